@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from swgpar.drive_results.summary import ANSWER_GROUPS
-from swgpar.evaluation.answers import AnswerKind
+from swgpar.evaluation.answers import AnswerKind, declared_answers
 from swgpar.evaluation.step_values import StepValues
 
 
@@ -25,8 +25,8 @@ def kinds_of(name: str) -> tuple[AnswerKind, ...]:
             "column of history.csv at the end of the step: 1 deflection, 2 engagement, 3 load, 4 "
             "rotation"
         )
-        return (AnswerKind("step1.COLUMN to step4.COLUMN", text, "that of the column"),)
-    return group.KINDS
+        return (AnswerKind("step1.COLUMN to step4.COLUMN", text, "that of the column", "values"),)
+    return declared_answers(group)
 
 
 def tables() -> Iterator[str]:
@@ -35,10 +35,10 @@ def tables() -> Iterator[str]:
         asked = f", with `{group.ASKED_BY}`" if group.ASKED_BY else ""
         yield f"### {group.TITLE[0].upper()}{group.TITLE[1:]}\n"
         yield f"`summary.{name}`{asked}: {{py:class}}`{group.__module__}.{group.__name__}`\n"
-        yield "| name | unit | meaning |\n|---|---|---|"
+        yield "| name | attribute | unit | meaning |\n|---|---|---|---|"
         for kind in kinds_of(name):
             text = kind.text.replace("|", "\\|")
-            yield f"| `{kind.name}` | {kind.unit} | {text} |"
+            yield f"| `{kind.name}` | `{kind.path}` | {kind.unit} | {text} |"
         yield ""
 
 

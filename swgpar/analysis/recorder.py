@@ -79,7 +79,9 @@ class Recorder(ABC):
 
     def keep_choice(self, chosen: ChosenMesh, accuracy: float) -> None:
         """Keep the stress that the windows of a mesh chosen for an accuracy gave."""
-        self.record.accuracy = Accuracy(accuracy, chosen.error, chosen.error <= accuracy)
+        self.record.accuracy = Accuracy(
+            asked=accuracy, estimated=chosen.error, reached=chosen.error <= accuracy
+        )
         self.record.root_stress, self.record.coarse = chosen.root_stress, chosen.coarse
 
     def keep(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:

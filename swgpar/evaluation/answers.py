@@ -1,26 +1,29 @@
 """Answers: the numbers that a run gives, with their names, units, errors and places.
 
-What an evaluation gives is a dataclass that knows which of its fields are answers. Names and units
-are known before a run, so that studies and optimisations can check what they ask for.
+What an evaluation gives is a dataclass whose fields declare which of them are answers. Names and
+units are known before a run, so that studies and optimisations can check what they ask for.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass, replace
+from types import UnionType
+from typing import Any, ClassVar, TypeVar, dataclass_transform, get_args, get_type_hints
 
 from swgpar.design.drive_design import DriveDesign
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
 class AnswerKind:
     """What a number is.
 
-    name : group and name, as in "stiffness.K1"
+    name : group and name, as in "stiffness.K1", with upper-case words for parts that a design gives
     text : what it is, without its unit;  unit : empty for a pure number
     path : where the evaluation has it: names of attributes or keys, with dots between; by default
-    the end of the name
+    the field that declares it
     detail : whether the terminal and the first table of the report leave it out
     """
 
@@ -52,36 +55,73 @@ class Answer:
     detail: bool = False
 
 
+def part_answers(*kinds: AnswerKind, default: Any = MISSING) -> Any:
+    """A field of an `evaluation` whose parts are answers."""
+    return field(default=default, metadata={"answers": kinds})
+
+
+def answer(
+    name: str,
+    text: str,
+    unit: str = "",
+    path: str = "",
+    *,
+    detail: bool = False,
+    default: Any = MISSING,
+) -> Any:
+    """A field of an `evaluation` that is an answer; arguments are those of `AnswerKind`."""
+    return part_answers(AnswerKind(name, text, unit, path, detail), default=default)
+
+
+@dataclass_transform(
+    frozen_default=True, kw_only_default=True, field_specifiers=(answer, part_answers, field)
+)
+def evaluation(kind: type[T]) -> type[T]:
+    """Make a class a frozen dataclass whose fields may be made by `answer` or `part_answers`."""
+    return dataclass(frozen=True, kw_only=True)(kind)
+
+
+def declared_answers(kind: type) -> tuple[AnswerKind, ...]:
+    """Answers that the fields of an `evaluation` and of its parts declare, in their order."""
+    found, types = [], get_type_hints(kind)
+    for one in fields(kind):
+        declared = one.metadata.get("answers", ())
+        found += [replace(answer, path=answer.path or one.name) for answer in declared]
+        annotation = types[one.name]
+        for part in get_args(annotation) if isinstance(annotation, UnionType) else (annotation,):
+            # the answers of a base class are those of the class itself
+            if isinstance(part, type) and is_dataclass(part) and not issubclass(kind, part):
+                found += [
+                    replace(answer, path=f"{one.name}.{answer.path}")
+                    for answer in declared_answers(part)
+                ]
+    return tuple(found)
+
+
 class AnswerGroup:
-    """What one evaluation of a run gives; its results are the fields of the dataclass that derives
-    from it.
+    """What one evaluation of a run gives: an `evaluation` derives from it.
 
     Attributes
     ----------
     TITLE : heading of its answers
     ASKED_BY : what in the design file asks for it; empty for what every run has
     SECTION : attribute of the design without which there is none; empty for what needs no section
-    KINDS : its answers, with upper-case words for parts of names that a design or a run gives
     """
 
     TITLE: ClassVar[str]
     ASKED_BY: ClassVar[str] = ""
     SECTION: ClassVar[str] = ""
-    KINDS: ClassVar[tuple[AnswerKind, ...]]
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
         """The answers that a run of a design has."""
-        return () if cls.SECTION and getattr(design, cls.SECTION) is None else cls.KINDS
+        missing = cls.SECTION and getattr(design, cls.SECTION) is None
+        return () if missing else declared_answers(cls)
 
     def answers(self) -> Iterator[Answer]:
         """The answers that have a value."""
-        return self.values_of(self.KINDS)
-
-    def values_of(self, kinds: tuple[AnswerKind, ...]) -> Iterator[Answer]:
-        """Answers of these kinds that have a value."""
-        for kind in kinds:
-            value = self._at(kind.path or kind.name.partition(".")[2])
+        for kind in declared_answers(type(self)):
+            value = self._at(kind.path)
             if value is not None:
                 yield Answer(kind.name, float(value), kind.unit, kind.text, detail=kind.detail)
 

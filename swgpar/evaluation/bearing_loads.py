@@ -8,7 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
+from swgpar.evaluation.answers import (
+    Answer,
+    AnswerGroup,
+    AnswerKind,
+    answer,
+    evaluation,
+    part_answers,
+)
 from swgpar.evaluation.bearing_life import BearingSeries, million_turns
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
@@ -33,80 +40,60 @@ class ComplianceShares:
         return self.balls + self.race
 
 
-@dataclass(frozen=True)
+@evaluation
 class BearingLife:
     """Rating life of a bearing.
 
-    load_rating_N : basic dynamic load rating;  load_rating_given : whether it is that of the design
-    file
-    equivalent_load_N : load that gives the same life
-    L10_turns : of the wave generator, None without load;  L10_hours : at `load.input_speed`
+    load_rating_given : whether the load rating is that of the design file
+    L10_turns, L10_hours : at `load.input_speed`, None without load
     """
 
-    load_rating_N: float
+    load_rating_N: float = answer("bearing.load_rating", "basic dynamic load rating", "N")
     load_rating_given: bool
-    equivalent_load_N: float
-    L10_turns: float | None
-    L10_hours: float | None
+    equivalent_load_N: float = answer(
+        "bearing.equivalent_load", "load that gives the same life", "N"
+    )
+    L10_turns: float | None = answer(
+        "bearing.life_turns", "rating life L10 of the bearing, turns of the wave generator"
+    )
+    L10_hours: float | None = answer("bearing.life_hours", "rating life L10 of the bearing", "h")
 
 
-@dataclass(frozen=True)
+@evaluation
 class BallLoads(AnswerGroup):
     """Loads of the balls over the increments under load.
 
-    largest_load_N, largest_pressure_MPa, largest_approach_um : of a ball;  wg_angle_deg,
-    cam_angle_deg : where, angles of the wave generator and from the major axis
-    mean_load_N : over all balls;  unloaded_balls : largest number of balls without load
+    wg_angle_deg, cam_angle_deg : angles of the wave generator and from the major axis, where the
+    load of a ball is the largest
     cage_speed : of the cage over that of the wave generator
     balls_fixed_to_cam : whether `steps.samples` has fixed the balls to the cam
     ball_passing_deg : rotation after which the next ball is at the same place of the cam, None if
     fixed to it
     covers_ball_passing : whether the run covers it
-    load_ripple : range of the largest ball load over its mean, None without load
-    torsional_share, radial_share : in the compliance of the loaded drive, None without a torque
-    race_s1_MPa, race_s3_MPa, race_vm_MPa : largest stresses of the outer race
-    life : rating life
+    load_ripple : None without load;  torsional_share, radial_share : None without a torque
     """
 
-    largest_load_N: float
-    largest_pressure_MPa: float
-    largest_approach_um: float
+    largest_load_N: float = answer("bearing.largest_load", "largest ball load under load", "N")
+    largest_pressure_MPa: float = answer(
+        "bearing.pressure", "largest pressure of a ball on a race", "MPa"
+    )
+    largest_approach_um: float = answer(
+        "bearing.approach", "largest approach of the races at a ball", "µm"
+    )
     wg_angle_deg: float
     cam_angle_deg: float
-    mean_load_N: float
-    unloaded_balls: int
+    mean_load_N: float = answer("bearing.mean_load", "mean ball load under load", "N")
+    unloaded_balls: int = answer(
+        "bearing.unloaded_balls", "largest number of balls without load", detail=True
+    )
     cage_speed: float
     balls_fixed_to_cam: bool
     ball_passing_deg: float | None
     covers_ball_passing: bool
-    load_ripple: float | None
-    torsional_share: ComplianceShares | None
-    radial_share: ComplianceShares | None
-    life: BearingLife
-    race_s1_MPa: float | None = None
-    race_s3_MPa: float | None = None
-    race_vm_MPa: float | None = None
-
-    TITLE = "ball loads and life of the bearing"
-    ASKED_BY = "[wave_generator.bearing]"
-    SECTION = "bearing"
-    KINDS = (
-        AnswerKind("bearing.largest_load", "largest ball load under load", "N", "largest_load_N"),
-        AnswerKind(
-            "bearing.pressure",
-            "largest pressure of a ball on a race",
-            "MPa",
-            "largest_pressure_MPa",
-        ),
-        AnswerKind(
-            "bearing.approach",
-            "largest approach of the races at a ball",
-            "µm",
-            "largest_approach_um",
-        ),
-        AnswerKind("bearing.mean_load", "mean ball load under load", "N", "mean_load_N"),
-        AnswerKind("bearing.unloaded_balls", "largest number of balls without load", detail=True),
-        AnswerKind("bearing.load_ripple", "range of the largest ball load over its mean"),
+    load_ripple: float | None = answer(
+        "bearing.load_ripple", "range of the largest ball load over its mean"
+    )
+    torsional_share: ComplianceShares | None = part_answers(
         AnswerKind(
             "bearing.torsional_share",
             "share of the bearing in the torsional compliance",
@@ -117,6 +104,8 @@ class BallLoads(AnswerGroup):
             "share of the balls in the torsional compliance",
             path="torsional_share.balls",
         ),
+    )
+    radial_share: ComplianceShares | None = part_answers(
         AnswerKind(
             "bearing.radial_share",
             "share of the bearing in the radial compliance",
@@ -127,45 +116,34 @@ class BallLoads(AnswerGroup):
             "share of the balls in the radial compliance",
             path="radial_share.balls",
         ),
-        AnswerKind(
-            "bearing.race_s1", "largest tension in the outer race under load", "MPa", "race_s1_MPa"
-        ),
-        AnswerKind(
-            "bearing.race_s3",
-            "largest compression in the outer race under load",
-            "MPa",
-            "race_s3_MPa",
-        ),
-        AnswerKind(
-            "bearing.race_vm",
-            "largest von Mises stress in the outer race under load",
-            "MPa",
-            "race_vm_MPa",
-        ),
-        AnswerKind("bearing.load_rating", "basic dynamic load rating", "N", "life.load_rating_N"),
-        AnswerKind(
-            "bearing.equivalent_load",
-            "load that gives the same life",
-            "N",
-            "life.equivalent_load_N",
-        ),
-        AnswerKind(
-            "bearing.life_turns",
-            "rating life L10 of the bearing, turns of the wave generator",
-            path="life.L10_turns",
-        ),
-        AnswerKind("bearing.life_hours", "rating life L10 of the bearing", "h", "life.L10_hours"),
     )
+    race_s1_MPa: float | None = answer(
+        "bearing.race_s1", "largest tension in the outer race under load", "MPa", default=None
+    )
+    race_s3_MPa: float | None = answer(
+        "bearing.race_s3", "largest compression in the outer race under load", "MPa", default=None
+    )
+    race_vm_MPa: float | None = answer(
+        "bearing.race_vm",
+        "largest von Mises stress in the outer race under load",
+        "MPa",
+        default=None,
+    )
+    life: BearingLife
+
+    TITLE = "ball loads and life of the bearing"
+    ASKED_BY = "[wave_generator.bearing]"
+    SECTION = "bearing"
 
     def answers(self) -> Iterator[Answer]:
-        for answer in super().answers():
-            at_ball = answer.name in (
+        for one in super().answers():
+            at_ball = one.name in (
                 "bearing.largest_load",
                 "bearing.pressure",
                 "bearing.approach",
             )
             place = f"{self.cam_angle_deg:.0f} degrees from the major axis" if at_ball else ""
-            yield replace(answer, place=place)
+            yield replace(one, place=place)
 
     def remarks(self) -> Iterator[str]:
         yield (

@@ -10,7 +10,15 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind, place_text
+from swgpar.evaluation.answers import (
+    Answer,
+    AnswerGroup,
+    AnswerKind,
+    answer,
+    evaluation,
+    part_answers,
+    place_text,
+)
 from swgpar.evaluation.fatigue_criteria import (
     CriticalPlane,
     critical_plane,
@@ -82,7 +90,7 @@ class RegionSafety:
     warning: str
 
 
-@dataclass(frozen=True)
+@evaluation
 class Life:
     """Damage and life by Basquin, in turns of the wave generator or in passages of the load
     program.
@@ -92,14 +100,18 @@ class Life:
     """
 
     damage_per_turn: float | None = None
-    life_turns: float | None = None
-    life_hours: float | None = None
+    life_turns: float | None = answer(
+        "fatigue.life_turns", "life by Basquin, turns of the wave generator", default=None
+    )
+    life_hours: float | None = answer("fatigue.life_hours", "life by Basquin", "h", default=None)
     cycles_per_turn: float | None = None
     damage_per_program: float | None = None
-    life_programs: float | None = None
+    life_programs: float | None = answer(
+        "fatigue.life_programs", "life by Basquin, passages of the load program", default=None
+    )
 
 
-@dataclass(frozen=True)
+@evaluation
 class SafetyAndLife(AnswerGroup):
     """Least safety factors of the flexible spline and its life.
 
@@ -107,28 +119,12 @@ class SafetyAndLife(AnswerGroup):
     normal : (3,) of the critical plane, in the frame of the tooth (y radial)
     mesh_error : of Goodman's safety by the windows, None apart from tooth roots
     sampling_error : its change by half as many angles, None for an odd number of them
-    root_factor, root_factor_error : on stresses in the tooth root, None without windows
+    root_factor, root_factor_error : None without windows
     windows : whether windows resolve the stress at the teeth where the design asks for it
-    life : by Basquin;  phases : of a cycle, or points of the load program
-    fatigue_limit_of_the_part_MPa : with surface and size factors
+    phases : of a cycle, or points of the load program
     """
 
-    least: Mapping[str, LeastSafety]
-    regions: Mapping[str, RegionSafety]
-    normal: tuple[float, float, float]
-    mesh_error: float | None
-    sampling_error: float | None
-    root_factor: float | None
-    root_factor_error: float | None
-    windows: bool
-    life: Life
-    phases: int
-    fatigue_limit_of_the_part_MPa: float
-
-    TITLE = "safety and life of the flexible spline"
-    ASKED_BY = "[fatigue]"
-    SECTION = "fatigue"
-    KINDS = (
+    least: Mapping[str, LeastSafety] = part_answers(
         AnswerKind(
             "fatigue.goodman", "least safety factor by Goodman", path="least.goodman.safety"
         ),
@@ -143,26 +139,28 @@ class SafetyAndLife(AnswerGroup):
             "least.goodman.amplitude_MPa",
         ),
         AnswerKind("fatigue.mean", "its mean", "MPa", "least.goodman.mean_MPa"),
-        AnswerKind(
-            "fatigue.life_turns",
-            "life by Basquin, turns of the wave generator",
-            path="life.life_turns",
-        ),
-        AnswerKind("fatigue.life_hours", "life by Basquin", "h", "life.life_hours"),
-        AnswerKind(
-            "fatigue.life_programs",
-            "life by Basquin, passages of the load program",
-            path="life.life_programs",
-        ),
-        AnswerKind("fatigue.root_factor", "factor of windows on stresses in the tooth root"),
-        AnswerKind(
-            "fatigue.limit_of_the_part",
-            "fatigue limit with surface and size factors",
-            "MPa",
-            "fatigue_limit_of_the_part_MPa",
-            detail=True,
-        ),
     )
+    regions: Mapping[str, RegionSafety]
+    normal: tuple[float, float, float]
+    mesh_error: float | None
+    sampling_error: float | None
+    life: Life
+    root_factor: float | None = answer(
+        "fatigue.root_factor", "factor of windows on stresses in the tooth root"
+    )
+    root_factor_error: float | None
+    windows: bool
+    phases: int
+    fatigue_limit_of_the_part_MPa: float = answer(
+        "fatigue.limit_of_the_part",
+        "fatigue limit with surface and size factors",
+        "MPa",
+        detail=True,
+    )
+
+    TITLE = "safety and life of the flexible spline"
+    ASKED_BY = "[fatigue]"
+    SECTION = "fatigue"
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
@@ -170,20 +168,20 @@ class SafetyAndLife(AnswerGroup):
         return tuple(kind for kind in super().kinds(design) if not kind.name.endswith(left_out))
 
     def answers(self) -> Iterator[Answer]:
-        for answer in super().answers():
-            name = answer.name.partition(".")[2]
+        for one in super().answers():
+            name = one.name.partition(".")[2]
             if name == "root_factor":
-                answer = replace(answer, error=self.root_factor_error)
+                one = replace(one, error=self.root_factor_error)
             if name in self.least:
                 at = self.least[name]
-                answer = replace(answer, place=place_text(at.region, None, at.radius, at.z))
+                one = replace(one, place=place_text(at.region, None, at.radius, at.z))
             if (
                 name == "goodman" and self.mesh_error is not None
             ):  # that of the angles alone says little
-                answer = replace(
-                    answer, error=float(np.hypot(self.mesh_error, self.sampling_error or 0.0))
+                one = replace(
+                    one, error=float(np.hypot(self.mesh_error, self.sampling_error or 0.0))
                 )
-            yield answer
+            yield one
 
     def remarks(self) -> Iterator[str]:
         if self.life.life_turns is None and self.life.life_programs is None:

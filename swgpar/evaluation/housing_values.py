@@ -3,47 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
 from swgpar.contact.contact import largest
-from swgpar.evaluation.answers import AnswerGroup, AnswerKind
+from swgpar.evaluation.answers import AnswerGroup, answer, evaluation
 from swgpar.fem.body import RING_GEAR
 from swgpar.model.drive_model import DriveModel
 
 MICROMETRES = 1000.0
 
 
-@dataclass(frozen=True)
+@evaluation
 class HousingStresses(AnswerGroup):
     """Largest values of the housing over the increments under load.
 
     s1_MPa, s3_MPa, vm_MPa : by nodal averages over its own elements, s3 as a positive number
-    bulge_um : radial displacement, outwards, of the outer surface of the ring gear
     """
 
-    s1_MPa: float
-    s3_MPa: float
-    vm_MPa: float
-    bulge_um: float
+    s1_MPa: float = answer("housing.s1", "largest tension in the housing under load", "MPa")
+    s3_MPa: float = answer("housing.s3", "largest compression in the housing under load", "MPa")
+    vm_MPa: float = answer(
+        "housing.vm", "largest von Mises stress in the housing under load", "MPa"
+    )
+    bulge_um: float = answer(
+        "housing.bulge",
+        "largest radial displacement of the ring gear's outer surface under load",
+        "µm",
+    )
 
     TITLE = "housing under load"
     ASKED_BY = "[ring_gear.housing]"
     SECTION = "housing"
-    KINDS = (
-        AnswerKind("housing.s1", "largest tension in the housing under load", "MPa", "s1_MPa"),
-        AnswerKind("housing.s3", "largest compression in the housing under load", "MPa", "s3_MPa"),
-        AnswerKind(
-            "housing.vm", "largest von Mises stress in the housing under load", "MPa", "vm_MPa"
-        ),
-        AnswerKind(
-            "housing.bulge",
-            "largest radial displacement of the ring gear's outer surface under load",
-            "µm",
-            "bulge_um",
-        ),
-    )
 
 
 def housing_values(model: DriveModel, stresses: Mapping[str, float]) -> dict[str, float]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
+from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind, answer, evaluation
 from swgpar.results.history import Row
 
 EDGE = (
@@ -17,17 +17,14 @@ EDGE = (
 )
 
 
-@dataclass(frozen=True)
+@evaluation
 class LargestContact(AnswerGroup):
     """A row of pairs.csv: the one with the largest pressure, of those off an edge if there are any.
 
     increment, step, wg_angle_deg : when;  tooth, flank, ring_tooth : which
-    angle_deg, radius_mm, z_mm : where
-    force_N, line_load_Nmm : of the pair, N and N/mm
-    pressure_MPa, half_width_mm, shear_MPa : of the line contact; shear is the largest below the
-    surface
-    edge : 1 where it lies on an edge;  on_edge : whether any contact under load lies on one
     ring : the ring gear, in a pancake drive
+    angle_deg, radius_mm, z_mm : where
+    force_N : of the pair;  edge : 1 where it lies on an edge
     """
 
     increment: int
@@ -36,43 +33,37 @@ class LargestContact(AnswerGroup):
     tooth: int
     flank: str
     ring_tooth: int
+    ring: str | None = None
     angle_deg: float
     radius_mm: float
     z_mm: float
     force_N: float
-    line_load_Nmm: float
-    pressure_MPa: float
-    half_width_mm: float
-    shear_MPa: float
-    edge: int
-    on_edge: bool
-    ring: str | None = None
+    pressure_MPa: float = answer(
+        "contact.pressure",
+        "largest pressure of the flanks under load, off edges",
+        "MPa",
+        "pressure_off_edges",
+    )
+    on_edge: bool = answer(
+        "contact.on_edge", "whether a contact under load lies on an edge: 1 or 0"
+    )
+    edge: int = answer(
+        "contact.pressure_on_edge",
+        "largest pressure of the flanks under load",
+        "MPa",
+        "pressure_on_edges",
+    )
+    line_load_Nmm: float = answer("contact.line_load", "line load there", "N/mm")
+    half_width_mm: float = answer("contact.half_width", "half width of the contact there", "mm")
+    shear_MPa: float = answer(
+        "contact.shear", "largest shear stress below the surface there", "MPa"
+    )
 
     TITLE = "contact of the flanks under load"
-    KINDS = (
-        AnswerKind(
-            "contact.pressure",
-            "largest pressure of the flanks under load, off edges",
-            "MPa",
-            "pressure_off_edges",
-        ),
-        AnswerKind("contact.on_edge", "whether a contact under load lies on an edge: 1 or 0"),
-        AnswerKind(
-            "contact.pressure_on_edge",
-            "largest pressure of the flanks under load",
-            "MPa",
-            "pressure_on_edges",
-        ),
-        AnswerKind("contact.line_load", "line load there", "N/mm", "line_load_Nmm"),
-        AnswerKind("contact.half_width", "half width of the contact there", "mm", "half_width_mm"),
-        AnswerKind(
-            "contact.shear", "largest shear stress below the surface there", "MPa", "shear_MPa"
-        ),
-    )
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
-        return cls.KINDS if design.resolves_root_stress else ()
+        return super().kinds(design) if design.resolves_root_stress else ()
 
     @property
     def pressure_off_edges(self) -> float | None:
@@ -90,10 +81,10 @@ class LargestContact(AnswerGroup):
             f"tooth {self.tooth}, {self.flank} flank{on}, radius {self.radius_mm:.2f}, z "
             f"{self.z_mm:.2f} mm"
         )
-        for answer in super().answers():
-            if answer.name.startswith("contact.pressure"):
-                answer = replace(answer, place=place, remark=EDGE if self.edge else "")
-            yield answer
+        for one in super().answers():
+            if one.name.startswith("contact.pressure"):
+                one = replace(one, place=place, remark=EDGE if self.edge else "")
+            yield one
 
 
 def largest_contact(pairs: Sequence[Row]) -> LargestContact | None:

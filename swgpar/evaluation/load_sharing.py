@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import AnswerGroup, AnswerKind
+from swgpar.evaluation.answers import AnswerGroup, AnswerKind, answer, evaluation, part_answers
 from swgpar.results.history import Row
 
 
@@ -21,30 +21,16 @@ class Spread:
     largest: float
 
 
-@dataclass(frozen=True)
+@evaluation
 class LoadSharing(AnswerGroup):
     """Numbers of touching pairs of flanks and their largest shares of the load over the rotation.
 
-    pairs : touching pairs;  teeth_share : share of the flexible spline's teeth that touch
-    largest_force_share : of one tooth in the forces of all pairs
-    largest_force_N, largest_line_load_Nmm : of one pair; the line load in N/mm, None where no
-    contact is known
-    opposing_torque_share : torque of the pairs that push against the others, over the sum of all
-    absolute values, mean
-    torque_error : largest difference between the sum of the pairs' torques and that of the teeth,
-    over the sum of their absolute values
+    largest_line_load_Nmm : None where no contact is known
+    opposing_torque_share : over the sum of all absolute values, mean
+    torque_error : largest, over the sum of their absolute values
     """
 
-    pairs: Spread
-    teeth_share: Spread
-    largest_force_share: float
-    largest_force_N: float
-    largest_line_load_Nmm: float | None
-    opposing_torque_share: float
-    torque_error: float
-
-    TITLE = "load sharing over the rotation"
-    KINDS = (
+    pairs: Spread = part_answers(
         AnswerKind(
             "sharing.pairs", "pairs of flanks in contact, mean over the rotation", path="pairs.mean"
         ),
@@ -58,36 +44,35 @@ class LoadSharing(AnswerGroup):
             "pairs of flanks in contact, fewest over the rotation",
             path="pairs.smallest",
         ),
-        AnswerKind(
-            "sharing.teeth_share",
-            "share of the flexible spline's teeth in contact, mean over the rotation",
-            path="teeth_share.mean",
-        ),
-        AnswerKind(
-            "sharing.largest_force_share", "largest share of one tooth in the force of all pairs"
-        ),
-        AnswerKind("sharing.largest_force", "largest force of one pair", "N", "largest_force_N"),
-        AnswerKind(
-            "sharing.largest_line_load",
-            "largest line load of one pair",
-            "N/mm",
-            "largest_line_load_Nmm",
-        ),
-        AnswerKind(
-            "sharing.opposing_torque_share",
-            "share of torques that push against the others",
-            detail=True,
-        ),
-        AnswerKind(
-            "sharing.torque_error",
-            "relative difference of the torques of pairs and teeth",
-            detail=True,
-        ),
     )
+    teeth_share: Spread = answer(
+        "sharing.teeth_share",
+        "share of the flexible spline's teeth in contact, mean over the rotation",
+        path="teeth_share.mean",
+    )
+    largest_force_share: float = answer(
+        "sharing.largest_force_share", "largest share of one tooth in the force of all pairs"
+    )
+    largest_force_N: float = answer("sharing.largest_force", "largest force of one pair", "N")
+    largest_line_load_Nmm: float | None = answer(
+        "sharing.largest_line_load", "largest line load of one pair", "N/mm"
+    )
+    opposing_torque_share: float = answer(
+        "sharing.opposing_torque_share",
+        "share of torques that push against the others",
+        detail=True,
+    )
+    torque_error: float = answer(
+        "sharing.torque_error",
+        "relative difference of the torques of pairs and teeth",
+        detail=True,
+    )
+
+    TITLE = "load sharing over the rotation"
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
-        return () if design.has_program else cls.KINDS
+        return () if design.has_program else super().kinds(design)
 
 
 def load_sharing(

@@ -8,13 +8,13 @@ The loss torque is the input torque that the losses take: their work per turn ov
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import astuple
 
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import AnswerGroup, AnswerKind
+from swgpar.evaluation.answers import AnswerGroup, answer, evaluation
 from swgpar.evaluation.stress_cycle import StressCycle, elements_of_rank
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.log import logger
@@ -30,74 +30,47 @@ CHUNK = 256
 """Elements whose harmonics are combined at once."""
 
 
-@dataclass(frozen=True)
+@evaluation
 class LossParts:
-    """Parts of the loss torque, N mm."""
+    """Parts of the loss torque."""
 
-    flank_friction: float
-    hysteresis: float
-    bearing: float
+    flank_friction: float = answer(
+        "losses.flank_friction", "its part by friction of the flanks", "N·mm"
+    )
+    hysteresis: float = answer("losses.hysteresis", "its part by hysteresis of the spline", "N·mm")
+    bearing: float = answer(
+        "losses.bearing", "its part by friction of the wave generator's bearing", "N·mm"
+    )
 
 
-@dataclass(frozen=True)
+@evaluation
 class DriveLosses(AnswerGroup):
     """Losses over a turn of the wave generator.
 
-    loss_torque_Nmm : input torque that the losses take;  parts_Nmm : its parts
-    work_per_turn_J, power_W : of all losses, at `load.input_speed`
     efficiency : None without a torque;  no_load_torque_Nmm : None with one
-    cam_force_N : pressure of the cam, integrated, or sum of the loads of all balls; mean
+    work_per_turn_J, power_W : at `load.input_speed`
+    cam_force_N : pressure of the cam, integrated, or sum of the loads of all balls
     flank_friction_coefficient : between the flanks
     """
 
-    loss_torque_Nmm: float
+    loss_torque_Nmm: float = answer("losses.torque", "input torque that the losses take", "N·mm")
     parts_Nmm: LossParts
-    work_per_turn_J: float
-    power_W: float
-    efficiency: float | None
-    no_load_torque_Nmm: float | None
-    cam_force_N: float
+    efficiency: float | None = answer("losses.efficiency", "efficiency")
+    no_load_torque_Nmm: float | None = answer(
+        "losses.no_load_torque", "input torque without a load", "N·mm"
+    )
+    work_per_turn_J: float = answer(
+        "losses.work_per_turn", "work of all losses per turn", "J", detail=True
+    )
+    power_W: float = answer("losses.power", "power of all losses", "W")
+    cam_force_N: float = answer(
+        "losses.cam_force", "force of the wave generator, mean", "N", detail=True
+    )
     flank_friction_coefficient: float
 
     TITLE = "losses and efficiency"
     ASKED_BY = "[losses]"
     SECTION = "losses"
-    KINDS = (
-        AnswerKind("losses.torque", "input torque that the losses take", "N·mm", "loss_torque_Nmm"),
-        AnswerKind(
-            "losses.flank_friction",
-            "its part by friction of the flanks",
-            "N·mm",
-            "parts_Nmm.flank_friction",
-        ),
-        AnswerKind(
-            "losses.hysteresis",
-            "its part by hysteresis of the spline",
-            "N·mm",
-            "parts_Nmm.hysteresis",
-        ),
-        AnswerKind(
-            "losses.bearing",
-            "its part by friction of the wave generator's bearing",
-            "N·mm",
-            "parts_Nmm.bearing",
-        ),
-        AnswerKind("losses.efficiency", "efficiency"),
-        AnswerKind(
-            "losses.no_load_torque", "input torque without a load", "N·mm", "no_load_torque_Nmm"
-        ),
-        AnswerKind(
-            "losses.work_per_turn",
-            "work of all losses per turn",
-            "J",
-            "work_per_turn_J",
-            detail=True,
-        ),
-        AnswerKind("losses.power", "power of all losses", "W", "power_W"),
-        AnswerKind(
-            "losses.cam_force", "force of the wave generator, mean", "N", "cam_force_N", detail=True
-        ),
-    )
 
 
 def cam_force(model: DriveModel) -> float:
@@ -134,7 +107,11 @@ def evaluate_losses(
     relative = 1.0 if design.output_gear == "ring_gear" else 1.0 - 1.0 / design.ratio
     bearing = losses.bearing_friction * forces * arm * relative
     hysteresis = losses.loss_factor * hysteresis_work(cycle) / (2.0 * np.pi)
-    parts = LossParts(float(sliding.mean()), hysteresis, float(bearing.mean()))
+    parts = LossParts(
+        flank_friction=float(sliding.mean()),
+        hysteresis=hysteresis,
+        bearing=float(bearing.mean()),
+    )
     if (missing := force_without_sliding(pairs, increments)) > SMALL_SHARE:
         logger.warning(
             "the friction of the flanks leaves out %.3g %% of their force: the contacts of these "

@@ -3,43 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
+from swgpar.evaluation.answers import Answer, AnswerGroup, answer, evaluation
 from swgpar.results.history import Row
 
 BALANCE = 1e-4
 """Largest torque that may be left over, over the largest torque of the teeth."""
 
 
-@dataclass(frozen=True)
+@evaluation
 class Numerics(AnswerGroup):
     """Residues of a run.
 
-    balance_error_Nmm : largest torque that is left over in an increment
     largest_tooth_torque_Nmm : largest torque of the teeth
-    condensed_MPa : bending stress that condensed sectors leave out, None without them
+    condensed_MPa : None without condensed sectors
     """
 
-    balance_error_Nmm: float
+    balance_error_Nmm: float = answer(
+        "residue.torque", "torque that is left over in an increment, largest", "N·mm"
+    )
     largest_tooth_torque_Nmm: float
-    condensed_MPa: float | None
+    condensed_MPa: float | None = answer(
+        "residue.condensed", "bending stress that condensed sectors leave out", "MPa"
+    )
 
     TITLE = "torque balance and reductions"
-    KINDS = (
-        AnswerKind(
-            "residue.torque",
-            "torque that is left over in an increment, largest",
-            "N·mm",
-            "balance_error_Nmm",
-        ),
-        AnswerKind(
-            "residue.condensed",
-            "bending stress that condensed sectors leave out",
-            "MPa",
-            "condensed_MPa",
-        ),
-    )
 
     @property
     def largest_balance_Nmm(self) -> float:
@@ -47,9 +36,9 @@ class Numerics(AnswerGroup):
         return BALANCE * self.largest_tooth_torque_Nmm
 
     def answers(self) -> Iterator[Answer]:
-        for answer in super().answers():
+        for one in super().answers():
             yield replace(
-                answer, limit=self.largest_balance_Nmm if answer.name == "residue.torque" else None
+                one, limit=self.largest_balance_Nmm if one.name == "residue.torque" else None
             )
 
 

@@ -10,7 +10,15 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind, place_text
+from swgpar.evaluation.answers import (
+    Answer,
+    AnswerGroup,
+    AnswerKind,
+    declared_answers,
+    evaluation,
+    part_answers,
+    place_text,
+)
 from swgpar.evaluation.contact_pressure import nodal_pressure
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.load.load_states import LoadState
@@ -71,26 +79,29 @@ STRESSES = {"s1": "tension s1", "s3": "compression |s3|", "vm": "von Mises stres
 BODIES = {"fs": "flexible spline", "rg": "ring gear", "ds": "dynamic spline"}
 
 
-@dataclass(frozen=True)
+@evaluation
 class LargestStresses(AnswerGroup):
     """Largest nodal stresses under load.
 
     places : by column of the history, and with `APART`;  regions : by names with `OF_REGION`
     """
 
-    places: Mapping[str, Place]
+    places: Mapping[str, Place] = part_answers(
+        *(
+            AnswerKind(
+                f"largest.{body}_{stress}{ending}",
+                f"{BODIES[body]}, {STRESSES[stress]}{words}",
+                "MPa",
+            )
+            for body in ("fs", "rg")
+            for stress in STRESSES
+            for ending, words in (("", ""), (APART, ", apart from the contact"))
+            if not (ending and stress == "s1")
+        )
+    )
     regions: Mapping[str, Place]
 
     TITLE = "largest nodal averages of stress under load"
-    KINDS = tuple(
-        AnswerKind(
-            f"largest.{body}_{stress}{ending}", f"{BODIES[body]}, {STRESSES[stress]}{words}", "MPa"
-        )
-        for body in ("fs", "rg")
-        for stress in STRESSES
-        for ending, words in (("", ""), (APART, ", apart from the contact"))
-        if not (ending and stress == "s1")
-    )
     OF_REGIONS = tuple(
         AnswerKind(
             f"largest.{body}_{stress}{OF_REGION}",
@@ -106,12 +117,13 @@ class LargestStresses(AnswerGroup):
     def of(cls, places: Mapping[str, Place]) -> LargestStresses:
         """From places by the names of `find_places`."""
         return cls(
-            {name: place for name, place in places.items() if OF_REGION not in name},
-            {name: place for name, place in places.items() if OF_REGION in name},
+            places={name: place for name, place in places.items() if OF_REGION not in name},
+            regions={name: place for name, place in places.items() if OF_REGION in name},
         )
 
     def answers(self) -> Iterator[Answer]:
-        kinds = {kind.name.partition(".")[2]: kind for kind in self.KINDS + self.OF_REGIONS}
+        declared = (*declared_answers(LargestStresses), *self.OF_REGIONS)
+        kinds = {kind.name.partition(".")[2]: kind for kind in declared}
         for name, place in (*self.places.items(), *self.regions.items()):
             stress, within, region = name.partition(OF_REGION)
             kind = kinds[stress + within]

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
+from swgpar.evaluation.answers import (
+    Answer,
+    AnswerGroup,
+    AnswerKind,
+    declared_answers,
+    evaluation,
+    part_answers,
+)
 from swgpar.load.load_program import ProgramPoint, torque_direction
 from swgpar.load.load_states import Stage
 from swgpar.results.history import Row, wrapped
@@ -60,7 +67,7 @@ def work_by_torque(rows: Sequence[PointRow]) -> float:
     return float((0.5 * (torque[1:] + torque[:-1]) * np.diff(rotation)).sum())
 
 
-@dataclass(frozen=True)
+@evaluation
 class ProgramStages(AnswerGroup):
     """The last point of every stage of a load program.
 
@@ -68,15 +75,16 @@ class ProgramStages(AnswerGroup):
     stage
     """
 
-    stages: Mapping[str, Mapping[str, float]]
+    stages: Mapping[str, Mapping[str, float]] = part_answers(
+        *(
+            AnswerKind(f"program.STAGE.{name}", f"{name} at the end of the stage STAGE", unit)
+            for name, unit in COLUMNS.items()
+            if name not in ("step", "stage")
+        )
+    )
 
     TITLE = "ends of the stages of the load program"
     ASKED_BY = "load.program"
-    KINDS = tuple(
-        AnswerKind(f"program.STAGE.{name}", f"{name} at the end of the stage STAGE", unit)
-        for name, unit in COLUMNS.items()
-        if name not in ("step", "stage")
-    )
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
@@ -92,7 +100,7 @@ class ProgramStages(AnswerGroup):
                 text=kind.text.replace("the stage STAGE", stage),
             )
             for stage in stages
-            for kind in cls.KINDS
+            for kind in declared_answers(cls)
         )
 
     def answers(self) -> Iterator[Answer]:
@@ -106,5 +114,7 @@ class ProgramStages(AnswerGroup):
 def stage_ends(rows: Sequence[PointRow]) -> ProgramStages:
     """The last point of every stage from the rows of program.csv."""
     return ProgramStages(
-        {row["stage"]: {name: row[name] for name in COLUMNS if name != "stage"} for row in rows}
+        stages={
+            row["stage"]: {name: row[name] for name in COLUMNS if name != "stage"} for row in rows
+        }
     )

@@ -4,13 +4,13 @@ way."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
+from swgpar.evaluation.answers import Answer, AnswerGroup, answer, evaluation
 from swgpar.evaluation.program_results import PointRow
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.load.load_program import pitch_angle, torque_direction
@@ -21,22 +21,26 @@ AT_TEETH, IN_SPLINE, NOTHING = "teeth jump over", "flexible spline buckles", "no
 and the output; nothing up to the end of the run."""
 
 
-@dataclass(frozen=True)
+@evaluation
 class RatchetingTorque(AnswerGroup):
     """The largest torque of the output under a prescribed rotation, and what gave way.
 
-    peak_torque_Nm : largest torque;  peak_error_Nm : difference from the points beside it
-    peak_rotation_deg, peak_rotation_pitches : rotation of the output there;  peak_step : its point
-    of the program
+    peak_error_Nm : difference from the points beside it;  peak_step : its point of the program
     last_torque_Nm, last_step : of the last point
     is_peak : whether the torque fell after it;  gave_way : `AT_TEETH`, `IN_SPLINE` or `NOTHING`;
     ended : why
     """
 
-    peak_torque_Nm: float
+    peak_torque_Nm: float = answer(
+        "ratcheting.peak_torque_Nm", "largest torque of the output", "N·m"
+    )
     peak_error_Nm: float
-    peak_rotation_deg: float
-    peak_rotation_pitches: float
+    peak_rotation_deg: float = answer(
+        "ratcheting.peak_rotation_deg", "rotation of the output there", "deg"
+    )
+    peak_rotation_pitches: float = answer(
+        "ratcheting.peak_rotation_pitches", "rotation of the output there, in pitches"
+    )
     peak_step: int
     last_torque_Nm: float
     last_step: int
@@ -47,11 +51,6 @@ class RatchetingTorque(AnswerGroup):
     TITLE = "ratcheting torque"
     ASKED_BY = "[ratcheting]"
     SECTION = "ratcheting"
-    KINDS = (
-        AnswerKind("ratcheting.peak_torque_Nm", "largest torque of the output", "N·m"),
-        AnswerKind("ratcheting.peak_rotation_deg", "rotation of the output there", "deg"),
-        AnswerKind("ratcheting.peak_rotation_pitches", "rotation of the output there, in pitches"),
-    )
 
     def answers(self) -> Iterator[Answer]:
         torque, *others = super().answers()

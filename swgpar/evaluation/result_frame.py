@@ -9,11 +9,12 @@ against the ring gear, so that the wave generator stands. In the other layouts n
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.answers import answer, evaluation
+from swgpar.fem.stress import rotated_tensor
 from swgpar.geometry.rotation import rotated
 from swgpar.load.load_program import internal_torque
 from swgpar.model.drive_model import DriveModel
@@ -63,41 +64,23 @@ def nodal_fields(
         found[name] = {
             **values,
             "displacement": rotated(position + values["displacement"], back) - position,
-            "stress": rotated_stress(
-                values["stress"], float(model.design.in_frame_of_result(0.0, angle))
-            ),
+            "stress": rotated_tensor(values["stress"], back),
         }
     return found
 
 
-def rotated_stress(stress: np.ndarray, angle: float) -> np.ndarray:
-    """Tensors (..., 6), xx yy zz xy yz zx, rotated about z by an angle (rad)."""
-    xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
-    c, s = np.cos(angle), np.sin(angle)
-    return np.stack(
-        [
-            c * c * xx + s * s * yy - 2.0 * c * s * xy,
-            s * s * xx + c * c * yy + 2.0 * c * s * xy,
-            zz,
-            c * s * (xx - yy) + (c * c - s * s) * xy,
-            c * yz + s * zx,
-            c * zx - s * yz,
-        ],
-        axis=-1,
-    )
-
-
-@dataclass(frozen=True)
+@evaluation
 class InputTorque:
-    """Torque (N mm) of a ring gear that is driven, over the rotation.
+    """Torque of a ring gear that is driven, over the rotation.
 
-    torque_Nmm : mean;  torque_expected_Nmm : by the energy balance, T_in theta_in + T_out theta_out
-    = 0
+    torque_expected_Nmm : T_in theta_in + T_out theta_out = 0
     torque_ripple : largest less smallest, over the mean; None for a mean of 0
     """
 
-    torque_Nmm: float
-    torque_expected_Nmm: float
+    torque_Nmm: float = answer("input.torque", "torque of the driven ring gear, mean", "N·mm")
+    torque_expected_Nmm: float = answer(
+        "input.expected_torque", "the same by the energy balance", "N·mm"
+    )
     torque_ripple: float | None = None
 
 

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
+from swgpar.evaluation.answers import (
+    Answer,
+    AnswerGroup,
+    AnswerKind,
+    answer,
+    evaluation,
+    part_answers,
+)
 from swgpar.evaluation.jamming import jamming_remark
 from swgpar.evaluation.period import of_period, sampling_error
 from swgpar.evaluation.places import STRESSES, Place
@@ -26,83 +33,50 @@ MEAN_COLUMNS = (*GEAR_STRESSES, *(f"ds_{stress}" for stress in STRESSES), INPUT_
 """Columns of the history whose means and maxima over the rotation are taken."""
 
 
-@dataclass(frozen=True)
+def _by_column(group: str, field: str, words: str, *, detail: bool) -> Iterator[AnswerKind]:
+    """Answers in a field by column of the history."""
+    for name in MEAN_COLUMNS:
+        column = COLUMNS[name]
+        text = f"{column.label}, {words} over the rotation"
+        yield AnswerKind(f"{group}.{name}", text, column.unit, f"{field}.{name}", detail)
+
+
+@evaluation
 class Rotation(AnswerGroup):
     """What the increments of the rotation give; without a rotation there are no means.
 
     means, maxima : by column of the history: stresses in MPa, torque in N mm
-    torque_ripple : largest less smallest input torque, over the mean
-    transmission_error_arcsec : largest less smallest transmission error
+    input : with the wave generator fixed
     mesh_error : errors (MPa) of the means of nodal averages by the mesh, where they are known
     sampling_error : change of the means with half as many angles, with `steps.samples`
     newton_iterations_mean : of an increment
-    input : torque that drives the ring gear, with the wave generator fixed
-    wg_torque_expected_Nmm : mean torque of the wave generator by the energy balance
-    jammed : a sentence where the mean input torque is far from that
+    jammed : a sentence where the mean input torque is far from that of the energy balance
     """
 
-    means: Mapping[str, float]
-    maxima: Mapping[str, float]
-    torque_ripple: float | None
-    transmission_error_arcsec: float | None
+    means: Mapping[str, float] = part_answers(*_by_column("mean", "means", "mean", detail=False))
+    input: InputTorque | None
+    torque_ripple: float | None = answer(
+        "rotation.torque_ripple", "input torque, largest less smallest over mean"
+    )
+    transmission_error_arcsec: float | None = answer(
+        "rotation.transmission_error",
+        "transmission error of the ideal drive, peak to peak",
+        "arcsec",
+    )
+    wg_torque_expected_Nmm: float = answer(
+        "rotation.expected_wg_torque",
+        "mean torque of the wave generator by the energy balance",
+        "N·mm",
+    )
+    maxima: Mapping[str, float] = part_answers(
+        *_by_column("maximum", "maxima", "largest", detail=True)
+    )
     mesh_error: Mapping[str, float]
     sampling_error: Mapping[str, float] | None
     newton_iterations_mean: float | None
-    input: InputTorque | None
-    wg_torque_expected_Nmm: float
     jammed: str | None
 
     TITLE = "over the rotation"
-    OVERALL = (
-        AnswerKind(
-            "rotation.torque_ripple",
-            "input torque, largest less smallest over mean",
-            path="torque_ripple",
-        ),
-        AnswerKind(
-            "rotation.transmission_error",
-            "transmission error of the ideal drive, peak to peak",
-            "arcsec",
-            "transmission_error_arcsec",
-        ),
-        AnswerKind(
-            "rotation.expected_wg_torque",
-            "mean torque of the wave generator by the energy balance",
-            "N·mm",
-            "wg_torque_expected_Nmm",
-        ),
-    )
-    INPUT = (
-        AnswerKind(
-            "input.torque", "torque of the driven ring gear, mean", "N·mm", "input.torque_Nmm"
-        ),
-        AnswerKind(
-            "input.expected_torque",
-            "the same by the energy balance",
-            "N·mm",
-            "input.torque_expected_Nmm",
-        ),
-    )
-    MEANS = tuple(
-        AnswerKind(
-            f"mean.{name}",
-            f"{COLUMNS[name].label}, mean over the rotation",
-            COLUMNS[name].unit,
-            f"means.{name}",
-        )
-        for name in MEAN_COLUMNS
-    )
-    MAXIMA = tuple(
-        replace(
-            mean,
-            name=mean.name.replace("mean.", "maximum."),
-            text=mean.text.replace("mean", "largest"),
-            path=mean.path.replace("means", "maxima"),
-            detail=True,
-        )
-        for mean in MEANS
-    )
-    KINDS = (*MEANS, *INPUT, *OVERALL, *MAXIMA)
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
@@ -110,12 +84,12 @@ class Rotation(AnswerGroup):
             return ()
         left_out = () if design.dynamic_spline is not None else ("mean.ds_", "maximum.ds_")
         left_out += () if design.wave_generator_is_fixed else ("input.",)
-        return tuple(kind for kind in cls.KINDS if not kind.name.startswith(left_out))
+        return tuple(kind for kind in super().kinds(design) if not kind.name.startswith(left_out))
 
     def answers(self) -> Iterator[Answer]:
-        for answer in super().answers() if self.means else ():
-            group, _, name = answer.name.partition(".")
-            yield replace(answer, error=self.mesh_error.get(name) if group == "mean" else None)
+        for one in super().answers() if self.means else ():
+            group, _, name = one.name.partition(".")
+            yield replace(one, error=self.mesh_error.get(name) if group == "mean" else None)
 
     def remarks(self) -> Iterator[str]:
         if self.jammed:

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
+from swgpar.evaluation.answers import (
+    Answer,
+    AnswerGroup,
+    AnswerKind,
+    declared_answers,
+    evaluation,
+    part_answers,
+)
 from swgpar.load.load_states import Stage
 from swgpar.results.history import Row, columns_of
 
@@ -14,24 +20,25 @@ STEPS = range(Stage.DEFLECT, Stage.ROTATE + 1)
 """Steps with values of their own; all increments of the rotation count as the last one."""
 
 
-@dataclass(frozen=True)
+@evaluation
 class StepValues(AnswerGroup):
     """values : by step and column of the history, as in "step1.fs_s1" """
 
-    values: Mapping[str, float]
+    values: Mapping[str, float] = part_answers(
+        *(
+            AnswerKind(
+                f"step{k}.{column.name}",
+                f"{column.label or column.name}, end of step {k}",
+                column.unit,
+                detail=True,
+            )
+            for k in STEPS
+            for column in (*columns_of("all"), *columns_of("wave generator fixed"))
+            if column.name not in ("step", "wall_s")
+        )
+    )
 
     TITLE = "ends of the steps"
-    KINDS = tuple(
-        AnswerKind(
-            f"step{k}.{column.name}",
-            f"{column.label or column.name}, end of step {k}",
-            column.unit,
-            detail=True,
-        )
-        for k in STEPS
-        for column in (*columns_of("all"), *columns_of("wave generator fixed"))
-        if column.name not in ("step", "wall_s")
-    )
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
@@ -40,12 +47,12 @@ class StepValues(AnswerGroup):
         )
         return tuple(
             kind
-            for kind in cls.KINDS
+            for kind in declared_answers(cls)
             if not design.has_program and _parts(kind.name)[1] not in left_out
         )
 
     def answers(self) -> Iterator[Answer]:
-        for kind in self.KINDS:
+        for kind in declared_answers(StepValues):
             if kind.name in self.values:
                 yield Answer(kind.name, self.values[kind.name], kind.unit, kind.text, detail=True)
 
@@ -54,9 +61,9 @@ def step_values(rows: Sequence[Row]) -> StepValues:
     """From the rows of history.csv; steps that are left out have no values."""
     last = {min(int(row["step"]), STEPS[-1]): row for row in rows}
     return StepValues(
-        {
+        values={
             kind.name: float(last[k][name])
-            for kind in StepValues.KINDS
+            for kind in declared_answers(StepValues)
             for k, name in [_parts(kind.name)]
             if k in last and name in last[k]
         }

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, fields, replace
 from typing import Any
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
+from swgpar.evaluation.answers import Answer, AnswerGroup, answer, evaluation
 from swgpar.evaluation.program_results import PointRow, work_by_torque
 from swgpar.load.load_program import (
     BRANCHES,
@@ -43,40 +43,42 @@ WAY_BACK = {
 """The branch that is the same without friction."""
 
 
-@dataclass(frozen=True)
+@evaluation
 class Stiffness:
     """Torsional stiffness at one angle of the wave generator, or its mean, spread or error over
     several.
 
-    K1, K2, K3 : N m / rad, chords of the middle line up to the first break point, to the second and
-    to the top
-    lost_motion : arc minutes, between the middles of both branches at plus and minus a share of the
-    rated torque
-    hysteresis : arc minutes, width of the loop at zero torque
-    backlash : arc minutes, rotation without torque where the torque changes its sign
-    loop_work : N mm, area of the loop
+    K1, K2, K3 : chords of the middle line up to the first break point, to the second and to the top
+    lost_motion : between the middles of both branches at plus and minus a share of the rated torque
+    backlash : where the torque changes its sign
     """
 
-    K1: float
-    K2: float
-    K3: float
-    lost_motion: float
-    hysteresis: float
-    backlash: float
-    loop_work: float
+    K1: float = answer("stiffness.K1", "torsional stiffness up to the first break point", "N·m/rad")
+    K2: float = answer("stiffness.K2", "torsional stiffness between the break points", "N·m/rad")
+    K3: float = answer(
+        "stiffness.K3", "torsional stiffness above the second break point", "N·m/rad"
+    )
+    lost_motion: float = answer("stiffness.lost_motion", "lost motion", "arc minutes")
+    hysteresis: float = answer(
+        "stiffness.hysteresis", "width of the loop at zero torque", "arc minutes"
+    )
+    backlash: float = answer(
+        "stiffness.backlash", "rotation without torque between the flanks", "arc minutes"
+    )
+    loop_work: float = answer("stiffness.loop_work", "area of the loop", "N·mm")
 
 
 NAMES = tuple(field.name for field in fields(Stiffness))
 
 
-@dataclass(frozen=True)
+@evaluation
 class StiffnessAtAngle(Stiffness):
     """The stiffness at an angle (degrees) of the wave generator."""
 
     wg_angle_deg: float
 
 
-@dataclass(frozen=True)
+@evaluation
 class TorsionalStiffness(Stiffness, AnswerGroup):
     """Means of the torsional stiffness over angles of the wave generator.
 
@@ -97,23 +99,12 @@ class TorsionalStiffness(Stiffness, AnswerGroup):
     TITLE = "torsional stiffness, lost motion, hysteresis"
     ASKED_BY = "[stiffness]"
     SECTION = "stiffness"
-    KINDS = (
-        AnswerKind("stiffness.K1", "torsional stiffness up to the first break point", "N·m/rad"),
-        AnswerKind("stiffness.K2", "torsional stiffness between the break points", "N·m/rad"),
-        AnswerKind("stiffness.K3", "torsional stiffness above the second break point", "N·m/rad"),
-        AnswerKind("stiffness.lost_motion", "lost motion", "arc minutes"),
-        AnswerKind("stiffness.hysteresis", "width of the loop at zero torque", "arc minutes"),
-        AnswerKind(
-            "stiffness.backlash", "rotation without torque between the flanks", "arc minutes"
-        ),
-        AnswerKind("stiffness.loop_work", "area of the loop", "N·mm"),
-    )
 
     def answers(self) -> Iterator[Answer]:
-        for answer in super().answers():
-            name = answer.name.partition(".")[2]
+        for one in super().answers():
+            name = one.name.partition(".")[2]
             spread = f"spread over the positions {getattr(self.spread, name):.2g}"
-            yield replace(answer, error=(self.mesh_error or {}).get(name), remark=spread)
+            yield replace(one, error=(self.mesh_error or {}).get(name), remark=spread)
 
     def remarks(self) -> Iterator[str]:
         yield (
@@ -203,7 +194,9 @@ def at_position(design: DriveDesign, rows: Sequence[PointRow]) -> Stiffness:
     line = np.array([0.5 * (middle(0, torque) + middle(1, torque)) for torque in ends])
     chords = np.diff(ends) / np.diff(line)
     return Stiffness(
-        *(float(value) for value in chords),
+        K1=float(chords[0]),
+        K2=float(chords[1]),
+        K3=float(chords[2]),
         lost_motion=(middle(0, share) + middle(1, share)) / ARC_MINUTE,
         hysteresis=(unloading[0].at(0.0) + unloading[1].at(0.0)) / ARC_MINUTE,
         backlash=0.5

@@ -22,6 +22,7 @@ from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import split
+from swgpar.fem.stress import rotated_tensor
 from swgpar.load.load_program import program_points
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
@@ -164,22 +165,4 @@ def _rotation(before: np.ndarray, after: np.ndarray) -> np.ndarray:
     a, b = before - before.mean(axis=1, keepdims=True), after - after.mean(axis=1, keepdims=True)
     return np.arctan2(
         (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]).sum(axis=1), (a * b).sum(axis=(1, 2))
-    )
-
-
-def rotated_tensor(stress: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Tensors (..., 6) xx yy zz xy yz zx, rotated about z by angles (rad) that broadcast to
-    (...)."""
-    c, s = np.cos(angle), np.sin(angle)
-    xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
-    return np.stack(
-        [
-            c * c * xx - 2.0 * c * s * xy + s * s * yy,
-            s * s * xx + 2.0 * c * s * xy + c * c * yy,
-            zz,
-            c * s * (xx - yy) + (c * c - s * s) * xy,
-            s * zx + c * yz,
-            c * zx - s * yz,
-        ],
-        axis=-1,
     )

@@ -11,7 +11,7 @@ import numpy as np
 
 from swgpar.design.deviations import TiltedOffset
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import AnswerGroup, AnswerKind
+from swgpar.evaluation.answers import AnswerGroup, AnswerKind, answer, evaluation
 from swgpar.evaluation.period import of_period
 from swgpar.evaluation.result_frame import shown_output
 from swgpar.results.history import Row, column, transmission_error
@@ -59,64 +59,59 @@ class SpectrumLine:
     cause: str
 
 
-@dataclass(frozen=True)
+@evaluation
 class TorqueOverTurns:
-    """Torque of the wave generator over the same angles, N mm; `ripple` is peak to peak over the
-    mean."""
+    """Torque of the wave generator over the same angles; `ripple` is peak to peak over the mean.
 
-    mean: float
-    peak_to_peak: float
+    spectrum : its largest orders, N mm
+    """
+
+    mean: float = answer(
+        "transmission_error.torque_mean",
+        "torque of the wave generator over the same angles, mean",
+        "N·mm",
+    )
+    peak_to_peak: float = answer(
+        "transmission_error.torque_peak_to_peak",
+        "torque of the wave generator over the same angles, peak to peak",
+        "N·mm",
+    )
     ripple: float | None
     spectrum: tuple[SpectrumLine, ...]
 
 
-@dataclass(frozen=True)
+@evaluation
 class TransmissionError(AnswerGroup):
     """Transmission error over whole turns with deviations, or over the sampled period of the ideal
     drive.
 
     turns, angles : turns of the wave generator, and angles that stand for them
-    peak_to_peak, amplitude (half of it), mean : arc seconds;  spectrum : its largest orders, arc
-    seconds
-    torque : of the wave generator
+    spectrum : its largest orders, arc seconds
     """
 
     turns: float
     angles: int
-    peak_to_peak: float
-    amplitude: float
-    mean: float
+    peak_to_peak: float = answer(
+        "transmission_error.peak_to_peak", "transmission error, peak to peak", "arcsec"
+    )
+    amplitude: float = answer(
+        "transmission_error.amplitude",
+        "transmission error, half of peak to peak",
+        "arcsec",
+        detail=True,
+    )
+    mean: float = answer(
+        "transmission_error.mean", "transmission error, mean", "arcsec", detail=True
+    )
     spectrum: tuple[SpectrumLine, ...]
     torque: TorqueOverTurns
 
     TITLE = "transmission error over a period, or with deviations over whole turns"
     ASKED_BY = "steps.samples or [deviations]"
-    KINDS = (
-        AnswerKind("transmission_error.peak_to_peak", "transmission error, peak to peak", "arcsec"),
-        AnswerKind(
-            "transmission_error.amplitude",
-            "transmission error, half of peak to peak",
-            "arcsec",
-            detail=True,
-        ),
-        AnswerKind("transmission_error.mean", "transmission error, mean", "arcsec", detail=True),
-        AnswerKind(
-            "transmission_error.torque_mean",
-            "torque of the wave generator over the same angles, mean",
-            "N·mm",
-            "torque.mean",
-        ),
-        AnswerKind(
-            "transmission_error.torque_peak_to_peak",
-            "torque of the wave generator over the same angles, peak to peak",
-            "N·mm",
-            "torque.peak_to_peak",
-        ),
-    )
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
-        return () if design.has_program else cls.KINDS
+        return () if design.has_program else super().kinds(design)
 
     def remarks(self) -> Iterator[str]:
         yield (

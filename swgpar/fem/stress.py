@@ -21,6 +21,24 @@ def principal(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return s1, s3, mises
 
 
+def rotated_tensor(stress: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Tensors (..., 6) xx yy zz xy yz zx, rotated about z by angles (rad) that broadcast to
+    (...)."""
+    c, s = np.cos(angle), np.sin(angle)
+    xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
+    return np.stack(
+        [
+            c * c * xx - 2.0 * c * s * xy + s * s * yy,
+            s * s * xx + 2.0 * c * s * xy + c * c * yy,
+            zz,
+            c * s * (xx - yy) + (c * c - s * s) * xy,
+            s * zx + c * yz,
+            c * zx - s * yz,
+        ],
+        axis=-1,
+    )
+
+
 def body_fields(body: BodyElements, u: np.ndarray) -> dict[str, np.ndarray]:
     """Displacement, stress tensor, s1, s3 and von Mises stress at the nodes of the owned sectors.
 

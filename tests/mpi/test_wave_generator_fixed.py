@@ -15,7 +15,7 @@ import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import NO_SHORTCUTS, PLANE
 from swgpar.errors import InputError
-from swgpar.evaluation.result_frame import rotated_stress
+from swgpar.fem.stress import rotated_tensor
 from swgpar.geometry.rotation import rotated
 from swgpar.presentation.drive_result import DriveResult
 
@@ -119,7 +119,7 @@ def test_a_rotated_tensor() -> None:
     c, s = np.cos(angle), np.sin(angle)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     expected = turn @ tensor @ turn.T
-    found = rotated_stress(values, angle)
+    found = rotated_tensor(values, angle)
     assert found == pytest.approx(
         [expected[i] for i in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))]
     )

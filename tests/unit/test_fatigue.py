@@ -11,6 +11,7 @@ from support.small_drive import PLANE
 from swgpar.checks.design_file import load_design
 from swgpar.design.sections import Fatigue
 from swgpar.errors import InputError
+from swgpar.evaluation.answers import declared_answers
 from swgpar.evaluation.fatigue import SafetyAndLife, _life
 from swgpar.evaluation.fatigue_criteria import (
     critical_plane,
@@ -21,7 +22,7 @@ from swgpar.evaluation.fatigue_criteria import (
     smallest_ball,
 )
 from swgpar.evaluation.losses import DriveLosses
-from swgpar.evaluation.stress_cycle import rotated_tensor
+from swgpar.fem.stress import rotated_tensor
 from swgpar.systems.drive import DRIVE
 
 STEEL = Fatigue()
@@ -204,7 +205,7 @@ def test_a_run_has_figures_and_quantities() -> None:
         "the strengths in [fatigue]"
     )
     absent = {"fatigue.root_factor", "losses.no_load_torque"}  # without windows, and with a load
-    known = {kind.name for kind in (*SafetyAndLife.kinds(design), *DriveLosses.KINDS)}
+    known = {kind.name for kind in (*SafetyAndLife.kinds(design), *declared_answers(DriveLosses))}
     assert known - absent <= set(DRIVE.measure(result).values) & set(DRIVE.quantities(design))
     assert {"haigh", "safety"} <= set(result.plot.names)
     assert len(result.plot.haigh().axes) == 2 and result.plot.safety().axes

@@ -10,6 +10,7 @@ import pytest
 import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
+from swgpar.evaluation.answers import declared_answers
 from swgpar.evaluation.load_sharing import LoadSharing, Spread, load_sharing
 from swgpar.systems.drive import DRIVE
 
@@ -59,7 +60,7 @@ def test_a_run_reports_it() -> None:
     assert 0.0 < found.largest_force_share <= 0.5
     assert found.torque_error < 1e-9
     values = DRIVE.measure(result).values
-    assert {kind.name for kind in LoadSharing.KINDS} <= set(values) and values[
+    assert {kind.name for kind in declared_answers(LoadSharing)} <= set(values) and values[
         "sharing.pairs"
     ] == found.pairs.mean
     assert "load_sharing" in result.plot.names

@@ -80,10 +80,14 @@ def test_every_answer_is_in_the_tables_with_its_unit_and_meaning() -> None:
     """The tables come from the kinds; a run has no other answers, and has those that its design
     promises."""
     rows = re.findall(
-        r"^\| `([^`]+)` \| (.*?) \| (.*) \|$", "\n".join(ANSWER_TABLES.tables()), flags=re.MULTILINE
+        r"^\| `([^`]+)` \| `([^`]+)` \| (.*?) \| (.*) \|$",
+        "\n".join(ANSWER_TABLES.tables()),
+        flags=re.MULTILINE,
     )
     kinds = [kind for name in ANSWER_GROUPS for kind in ANSWER_TABLES.kinds_of(name)]
-    assert rows == [(kind.name, kind.unit, kind.text.replace("|", "\\|")) for kind in kinds]
+    assert rows == [
+        (kind.name, kind.path, kind.unit, kind.text.replace("|", "\\|")) for kind in kinds
+    ]
     gear = {"tip": 2, "layers": 1, "flank": 2, "root": 2, "under": 1, "rim": 1}
     design = swgpar.load_design(
         DRIVERS / "plane_half_turn.toml", {"steps.rotation": 3.0, "steps.samples": 2}

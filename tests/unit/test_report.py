@@ -52,10 +52,17 @@ def test_a_run_leaves_one_page_that_needs_nothing_else(folder: Path) -> None:
 
 def test_the_transmission_error_with_deviations_is_an_answer(folder: Path) -> None:
     summary = swgpar.open_result(folder).summary
-    torque = TorqueOverTurns(1.0, 0.0, 0.0, ())
-    summary = replace(
-        summary, transmission_error=TransmissionError(1.0, 8, 44.55, 22.3, 0.0, (), torque)
+    torque = TorqueOverTurns(mean=1.0, peak_to_peak=0.0, ripple=0.0, spectrum=())
+    error = TransmissionError(
+        turns=1.0,
+        angles=8,
+        peak_to_peak=44.55,
+        amplitude=22.3,
+        mean=0.0,
+        spectrum=(),
+        torque=torque,
     )
+    summary = replace(summary, transmission_error=error)
     assert summary["transmission_error.peak_to_peak"].value == 44.55
     assert (
         summary["rotation.transmission_error"].value == summary.rotation.transmission_error_arcsec
@@ -103,7 +110,18 @@ def test_verdicts_follow_the_numbers(folder: Path) -> None:
     assert verdicts(contact=replace(summary.contact, edge=1))["edge contact"] is False
     assert verdicts(contact=None)["edge contact"] is None
     root = RootStress(
-        100.0, 20.0, 90.0, "tooth root", "", 1, 20.0, 0.0, 0.0, BETWEEN, {BETWEEN: [100.0]}, 1000
+        s1=100.0,
+        error=20.0,
+        on_mesh=90.0,
+        region="tooth root",
+        warning="",
+        tooth=1,
+        radius=20.0,
+        z=0.0,
+        angle_deg=0.0,
+        part=BETWEEN,
+        by_part={BETWEEN: [100.0]},
+        elements=1000,
     )
     assert verdicts(root_stress=root)["resolution"] is False
     assert verdicts(root_stress=replace(root, error=2.0))["resolution"] is True

@@ -3,31 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
+from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind, answer, evaluation
 
 
-@dataclass(frozen=True)
+@evaluation
 class Accuracy(AnswerGroup):
     """Relative accuracy of the largest tensile stress at the teeth under load.
 
-    asked : what was asked for;  estimated : by refinement;  reached : whether the estimate is small
-    enough
+    asked : what was asked for;  reached : whether the estimate is small enough
     """
 
     asked: float
-    estimated: float
+    estimated: float = answer(
+        "accuracy.estimated", "estimated relative error of the largest tension at the teeth"
+    )
     reached: bool
 
     TITLE = "accuracy of the tension at the teeth"
     ASKED_BY = "--accuracy"
-    KINDS = (
-        AnswerKind(
-            "accuracy.estimated", "estimated relative error of the largest tension at the teeth"
-        ),
-    )
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
@@ -35,5 +31,5 @@ class Accuracy(AnswerGroup):
 
     def answers(self) -> Iterator[Answer]:
         remark = "" if self.reached else "NOT reached: no finer mesh is taken"
-        for answer in super().answers():
-            yield replace(answer, limit=self.asked, remark=remark)
+        for one in super().answers():
+            yield replace(one, limit=self.asked, remark=remark)

@@ -17,7 +17,15 @@ from typing import Any
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind, place_text
+from swgpar.evaluation.answers import (
+    Answer,
+    AnswerGroup,
+    AnswerKind,
+    answer,
+    evaluation,
+    part_answers,
+    place_text,
+)
 from swgpar.evaluation.places import root_nodes
 from swgpar.evaluation.windows.local_problem import SECTORS, LocalProblem, WindowStress, tooth_nodes
 from swgpar.fem.body import FLEXIBLE_SPLINE
@@ -107,12 +115,11 @@ class OverPeriod:
     maximum: float
 
 
-@dataclass(frozen=True)
+@evaluation
 class RootStress(AnswerGroup):
     """Largest tensile stress at the teeth.
 
-    s1 : MPa;  error : MPa, estimated, of the window's mesh
-    on_mesh : MPa, of the nodal averages on the drive's mesh
+    error : MPa, estimated, of the window's mesh
     region : as of a `Place`;  warning : why there is no limit to converge to; empty where there is
     one
     tooth : number, counter-clockwise from +y in the undeformed drive
@@ -126,9 +133,16 @@ class RootStress(AnswerGroup):
     period : angles of the wave generator (degrees) and s1 (MPa) there, of one sampled period
     """
 
-    s1: float
-    error: float
-    on_mesh: float
+    s1: float = answer("root.s1", "largest tension at the teeth under load, by windows", "MPa")
+    error: float = answer(
+        "root.s1_error",
+        "its error by the windows and by the mesh of the drive",
+        "MPa",
+        "total_error",
+    )
+    on_mesh: float = answer(
+        "root.s1_on_mesh", "the same by nodal averages of the drive's mesh", "MPa"
+    )
     region: str
     warning: str
     tooth: int
@@ -140,40 +154,30 @@ class RootStress(AnswerGroup):
     elements: int
     in_root: float = 0.0
     drive_error: float | None = None
-    period: tuple[tuple[float, float], ...] = ()
-
-    TITLE = "tension at the teeth, by windows"
-    ASKED_BY = "output.root_stress"
-    KINDS = (
-        AnswerKind("root.s1", "largest tension at the teeth under load, by windows", "MPa"),
-        AnswerKind(
-            "root.s1_error",
-            "its error by the windows and by the mesh of the drive",
-            "MPa",
-            "total_error",
-        ),
-        AnswerKind(
-            "root.s1_on_mesh", "the same by nodal averages of the drive's mesh", "MPa", "on_mesh"
-        ),
+    period: tuple[tuple[float, float], ...] = part_answers(
         AnswerKind("root.mean_s1", "the same over one period, mean", "MPa", "over_period.mean"),
         AnswerKind(
             "root.maximum_s1", "the same over one period, largest", "MPa", "over_period.maximum"
         ),
+        default=(),
     )
+
+    TITLE = "tension at the teeth, by windows"
+    ASKED_BY = "output.root_stress"
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
-        return cls.KINDS if design.resolves_root_stress else ()
+        return super().kinds(design) if design.resolves_root_stress else ()
 
     def answers(self) -> Iterator[Answer]:
         over = self.over_period
-        for answer in super().answers():
-            if answer.name == "root.s1":
+        for one in super().answers():
+            if one.name == "root.s1":
                 where = place_text(self.region, self.tooth, self.radius, self.z, self.angle_deg)
-                answer = replace(answer, error=self.total_error, place=where, remark=self.warning)
-            elif answer.name == "root.mean_s1" and over is not None:
-                answer = replace(answer, error=over.mean_error)
-            yield answer
+                one = replace(one, error=self.total_error, place=where, remark=self.warning)
+            elif one.name == "root.mean_s1" and over is not None:
+                one = replace(one, error=over.mean_error)
+            yield one
 
     def remarks(self) -> Iterator[str]:
         if (over := self.over_period) is not None:
