@@ -59,7 +59,7 @@ def section(ax: Axes, design: DriveDesign, title: str) -> None:
         Polygon(np.concatenate([wall, teeth])[:, ::-1], fc=SPLINE, ec=INK, lw=0.8, alpha=0.85)
     )
     axis_line(ax, (-half - 4.0, 0.0), (56.0, 0.0))
-    cup, faces = design.cup, design.cup_wall.faces
+    cup, faces = design.cup, design.cup_sizes.wall.faces
     low, high = {
         "bolted": (
             lambda: (

@@ -331,7 +331,7 @@ def pancake() -> Figure:
         lift = 0.5 * design.deflection if gear == "flexible_spline" else 0.0
         ends = (inner + lift, profile.r_tip_circle + lift)
         if gear != "flexible_spline":
-            ends = (profile.r_tip_circle, design.rim_radius(gear))
+            ends = (profile.r_tip_circle, design.geometry.gears[gear].outer_radius)
         box = np.array([(low, ends[0]), (high, ends[0]), (high, ends[1]), (low, ends[1])])
         fill(ax, box, colour, alpha=0.6)
         text = {
@@ -340,7 +340,7 @@ def pancake() -> Figure:
         }
         if gear in text:
             label(ax, (0.5 * (low + high), ends[1] - 2.2), text[gear], color=INK)
-    outer = max(design.rim_radius(gear) for gear in design.gears[1:])
+    outer = max(design.geometry.gears[gear].outer_radius for gear in design.gears[1:])
     label(ax, (0.0, inner + 1.6), "flexible spline, 120 teeth", color=INK)
     label(ax, (0.0, outer + 0.8), "gap", color=INK)
     ax.set(xlim=(-half - 1.0, half + 1.0), ylim=(cam - 5.5, outer + 1.6))

@@ -135,7 +135,7 @@ def write_job(
         folder / "spline.inp",
         whole_drive({BODY: mesh}),
         {},
-        {BODY: design.material_of(BODY)},
+        {BODY: design.materials[BODY]},
         design.drive.face_width,
     )
     job = [

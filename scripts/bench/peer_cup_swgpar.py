@@ -42,7 +42,7 @@ def main() -> None:
     comm, design = MPI.COMM_WORLD, load_design(Path(DESIGN), ["solver.rtol=1e-5"])
     mesh, material = (
         build_sector(design.geometry, load_recipe(name), BODY),
-        design.material_of(BODY),
+        design.materials[BODY],
     )
     layout = build_layout(design, build_gear(design, mesh))
     partition = Partition([layout], comm)

@@ -109,7 +109,7 @@ class BentSpline:
     def _on_plate(self, radius: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Which points (n,) belong to the closed end or flange, the fillet but for its beginning
         included."""
-        wall, margin = self.design.cup_wall, 0.5 * self.design.flexible_spline.rim
+        wall, margin = self.design.cup_sizes.wall, 0.5 * self.design.flexible_spline.rim
         if wall.outwards:
             beyond = radius > wall.outer.points[-1, 1] + margin
         else:
@@ -149,7 +149,7 @@ class BentSpline:
         cup = self.design.cup
         edge, nu = (
             (cup.clamping_radius or cup.edge) / self.radius,
-            self.design.material_of("flexible_spline").poisson,
+            self.design.materials["flexible_spline"].poisson,
         )
         power = np.array([order, -order, order + 2.0, 2.0 - order])
 

@@ -99,7 +99,9 @@ def _is_twofold(design: DriveDesign, deviations: Deviations) -> bool:
     rigid = (deviations.wave_generator, deviations.cup)
     if any(part.eccentricity or part.tilt for part in rigid):
         return False
-    return all(gear_deviations(deviations, gear, design.teeth(gear)).is_twofold() for gear in GEARS)
+    return all(
+        gear_deviations(deviations, gear, design.drive.teeth(gear)).is_twofold() for gear in GEARS
+    )
 
 
 class DeviatingDrive:
@@ -130,7 +132,7 @@ class DeviatingDrive:
         self.stepper = LoadStepper(self.model)
         self.loaded = sequence.loaded
         self.stepper.resume_at(self.loaded)
-        gears = [gear_deviations(self.deviations, gear, design.teeth(gear)) for gear in GEARS]
+        gears = [gear_deviations(self.deviations, gear, design.drive.teeth(gear)) for gear in GEARS]
         layouts = self.model.partition.layouts
         self.tables = flank_deviations(
             layouts[FLEXIBLE_SPLINE], layouts[RING_GEAR], *gears, design.axial_travel

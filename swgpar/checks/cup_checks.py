@@ -78,7 +78,7 @@ def _check_shape(cup: Cup) -> None:
 def _check_contour(design: DriveDesign, cup: Cup) -> None:
     """Every point lies behind the one before, and no surface is steeper than 45 degrees."""
     length, least = cup.length - cup.fillet_radius, THINNEST * design.flexible_spline.rim
-    points = design.wall_points
+    points = design.cup_sizes.points
     for k, (point, before) in enumerate(zip(cup.contour, points, strict=False), 1):
         key, (start, inner, thickness, _) = f"cup.contour.{k}", before
         if not start + least <= point.distance * ROUND_OFF or point.distance > length * ROUND_OFF:
@@ -102,7 +102,7 @@ def _check_contour(design: DriveDesign, cup: Cup) -> None:
                 point.thickness,
                 f"{low:.5g} to {high:.5g} mm ({steep}, {THINNEST:g} rims)",
             )
-    wall = design.cup_wall
+    wall = design.cup_sizes.wall
     most = np.minimum(wall.inner.largest_rounding(), wall.outer.largest_rounding())
     for k, point in enumerate(cup.contour, 1):
         limit = (
@@ -118,7 +118,7 @@ def _check_contour(design: DriveDesign, cup: Cup) -> None:
 
 def _check_end(design: DriveDesign, cup: Cup) -> None:
     """Fillet and closed end or flange."""
-    wall = design.cup_wall
+    wall = design.cup_sizes.wall
     smallest = SMALLEST_FILLET * wall.thickness
     if cup.fillet_radius * ROUND_OFF < smallest:
         limits = f"{smallest:g} ({SMALLEST_FILLET:g} times the cup's thickness) to inf mm"
@@ -161,7 +161,9 @@ def _check_back(design: DriveDesign, cup: Cup) -> None:
             f"{THICK_CUP:g})"
         )
         _refuse("cup.back_fillet", cup.back_fillet, allowed)
-    straight = min(line.straight for line in (design.cup_wall.inner, design.cup_wall.outer))
+    straight = min(
+        line.straight for line in (design.cup_sizes.wall.inner, design.cup_sizes.wall.outer)
+    )
     if cup.back_fillet > straight * ROUND_OFF:
         _refuse(
             "cup.back_fillet",
@@ -173,10 +175,10 @@ def _check_back(design: DriveDesign, cup: Cup) -> None:
 def _check_attachment(design: DriveDesign, cup: Cup) -> None:
     """What is attached lies on the flat part of closed end or flange; washers lie beside each
     other."""
-    begin, _ = design.cup_wall.center
+    begin, _ = design.cup_sizes.wall.center
     low, high = sorted((begin, cup.edge))
     flat = f"the flat part of the {'flange' if cup.shape == 'hat' else 'closed end'}"
-    narrowest = NARROWEST * design.end_thickness
+    narrowest = NARROWEST * design.cup_sizes.end_thickness
     if cup.attachment == "clamped":
         radius = cup.clamping_radius
         if not low <= radius <= high or abs(cup.edge - radius) < narrowest:

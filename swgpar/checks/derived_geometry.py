@@ -35,7 +35,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         "r_fs, inner radius of the spline (mm)": design.inner_radius,
         "backlash at the pitch circle (mm)": design.backlash,
         "gamma, rotation that closes it (deg)": float(np.degrees(design.backlash_angle)),
-        "outer diameter (mm)": 2.0 * design.largest_radius,
+        "outer diameter (mm)": 2.0 * design.geometry.largest_radius,
         **_cup(design),
         "tooth height, flexible spline (mm)": spline.r_tip_circle - spline.r_root_circle,
         "tooth height, ring gear (mm)": ring.r_root_circle - ring.r_tip_circle,
@@ -70,13 +70,13 @@ def _cup(design: DriveDesign) -> dict[str, float]:
     """Thicknesses of the cup and its attached area; those that equal the first one are left out."""
     if design.drive.model != "cup":
         return {}
-    cup, thinnest = design.cup, min(thickness for _, _, thickness, _ in design.wall_points)
+    cup, thinnest = design.cup, min(thickness for _, _, thickness, _ in design.cup_sizes.points)
     sizes = {"cup thickness (mm)": design.cup_thickness}
     if thinnest != design.cup_thickness:
         sizes["thinnest place of the wall (mm)"] = thinnest
-    if design.end_thickness != design.cup_thickness:
+    if design.cup_sizes.end_thickness != design.cup_thickness:
         sizes[f"thickness of the {'flange' if cup.shape == 'hat' else 'closed end'} (mm)"] = (
-            design.end_thickness
+            design.cup_sizes.end_thickness
         )
     if cup.attachment == "clamped":
         sizes["attached area, one side (mm2)"] = np.pi * abs(cup.edge**2 - cup.clamping_radius**2)
@@ -94,7 +94,7 @@ def _dynamic_spline(design: DriveDesign) -> dict[str, float]:
     low, high = design.axial_range("ring_gear")
     return {
         "face width of the ring gear (mm)": high - low,
-        "backlash of the dynamic spline (mm)": design.dynamic_backlash,
+        "backlash of the dynamic spline (mm)": design.backlash_of("dynamic_spline"),
         "tip of spline to root of dynamic spline (mm)": second.r_root_circle
         - spline.r_tip_circle
         - half,

@@ -76,7 +76,7 @@ LENGTHS = {
 
 def _check_pitch(design: DriveDesign, deviations: Deviations, gear: str) -> None:
     section, key = getattr(deviations, gear), f"deviations.{gear}"
-    errors, teeth = section.pitch_errors, design.teeth(gear).n_teeth
+    errors, teeth = section.pitch_errors, design.drive.teeth(gear).n_teeth
     if section.pitch_column:
         raise InputError(
             f"{key}.pitch_column = {show(section.pitch_column)} has no file: allowed with "

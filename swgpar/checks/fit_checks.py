@@ -164,11 +164,11 @@ def _check_steps(design: DriveDesign) -> None:
 def _check_torque(design: DriveDesign) -> None:
     """Torques that a cylinder like the weakest section of the cup, or the rim in the plane model,
     cannot carry."""
-    material = design.material_of("flexible_spline")
+    material = design.materials["flexible_spline"]
     shear_modulus = 0.5 * material.modulus / (1.0 + material.poisson)
     weakest = design.inner_radius**2 * design.cup_thickness
     if design.has_cup:
-        weakest = min(radius**2 * thickness for _, radius, thickness, _ in design.wall_points)
+        weakest = min(radius**2 * thickness for _, radius, thickness, _ in design.cup_sizes.points)
     most = 0.001 * LARGEST_SHEAR * shear_modulus * 2.0 * np.pi * weakest
     torques = {"load.torque": design.load.torque}
     torques |= {

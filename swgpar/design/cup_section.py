@@ -108,6 +108,18 @@ class Cup(Section):
         return self.washer_diameter or abs((self.clamping_radius or self.edge) - self.edge)
 
     @property
+    def attached_ring(self) -> tuple[float, float] | None:
+        """Radii (mm) between which closed end or flange is clamped, or its bolts lie."""
+        if self.attachment == "edge":
+            return None
+        if self.attachment == "bolted":
+            middle, half = 0.5 * self.bolt_circle, 0.5 * self.washer_diameter
+            return middle - half, middle + half
+        return (
+            (self.clamping_radius, np.inf) if self.shape == "hat" else (0.0, self.clamping_radius)
+        )
+
+    @property
     def edge(self) -> float:
         """Radius (mm) of the bore, or of the rim of the flange."""
         return self.flange_radius if self.shape == "hat" else self.inner_radius

@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
 from swgpar.design.cup_section import Cup
+from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.deviations import Deviations
 from swgpar.design.program_sections import Ratcheting, Stiffness
 from swgpar.design.sections import (
@@ -31,30 +32,20 @@ from swgpar.design.sections import (
 )
 from swgpar.geometry.bearing import BearingSizes
 from swgpar.geometry.cams import Bearing, Cam, FourRoller, WaveGenerator, make_cam
-from swgpar.geometry.cup_wall import CupWall, rounded_lines
-from swgpar.geometry.drive_geometry import CupGeometry, DriveGeometry, FlankCrowning, GearGeometry
+from swgpar.geometry.drive_geometry import DriveGeometry, FlankCrowning, GearGeometry
 from swgpar.geometry.micro_geometry import WaveGeneratorSurface
-from swgpar.geometry.neutral_line import NeutralLine, neutral_line
+from swgpar.geometry.neutral_line import neutral_line
 from swgpar.geometry.profiles import (
     Conjugate,
     RackInvolute,
-    Teeth,
     ToothMotion,
     ToothProfile,
     make_profile,
 )
 from swgpar.geometry.profiles.rigid_teeth import RigidTeeth
+from swgpar.geometry.rim_motion import axial_travel, omitted_bending
 from swgpar.input.design import Design
 from swgpar.materials import ChosenMaterial, Material
-
-
-@lru_cache(maxsize=16)
-def _line(
-    keys: WaveGenerator, a: float, b: float | None, inner_radius: float, radius: float, share: float
-) -> NeutralLine:
-    """Neutral line on the cam of these keys; kept, because a design asks for its profiles again and
-    again."""
-    return neutral_line(make_cam(keys, a, b), inner_radius, radius, share, keys.lobes)
 
 
 class DriveDesign(Design):
@@ -94,11 +85,6 @@ class DriveDesign(Design):
         return (
             (half - width, half) if gear == "dynamic_spline" else (-half, half - width - second.gap)
         )
-
-    def rim_radius(self, ring: GearName) -> float:
-        """Outer radius (mm) of a ring gear, without a housing."""
-        section: InternalGear | DynamicSpline = getattr(self, ring)
-        return self.profile(ring).r_root_circle + section.rim
 
     @property
     def deflection(self) -> float:
@@ -185,7 +171,7 @@ class DriveDesign(Design):
     def period_angle(self) -> float:
         """Period of the motion, rad of the wave generator against the standing gear: one pitch
         angle of that gear."""
-        return 2.0 * np.pi / self.teeth(self.standing_gear).n_teeth
+        return 2.0 * np.pi / self.drive.teeth(self.standing_gear).n_teeth
 
     @property
     def has_program(self) -> bool:
@@ -246,22 +232,14 @@ class DriveDesign(Design):
 
     @property
     def backlash(self) -> float:
-        """Circumferential backlash at the pitch circles, mm (eqs 6.1 to 6.3): the pitch less both
-        teeth."""
-        thickness = [self.profile(gear).thickness(self.teeth(gear).r_pitch) for gear in GEARS]
-        return float(np.pi * self.drive.module - sum(thickness))
+        """Circumferential backlash at the pitch circles, mm (eqs 6.1 to 6.3)."""
+        return self.backlash_of("ring_gear")
 
-    @property
-    def dynamic_backlash(self) -> float:
-        """Circumferential backlash of the dynamic spline, mm: its pitch less both teeth; 0 without
-        one."""
-        if self.dynamic_spline is None:
-            return 0.0
-        second = self.teeth("dynamic_spline")
-        space = np.pi * second.module - self.profile("dynamic_spline").thickness(second.r_pitch)
-        return float(
-            space - self.profile("flexible_spline").thickness(self.teeth("flexible_spline").r_pitch)
-        )
+    def backlash_of(self, ring: GearName) -> float:
+        """Circumferential backlash (mm) of a ring gear: its pitch less both teeth."""
+        teeth = {gear: self.drive.teeth(gear) for gear in ("flexible_spline", ring)}
+        thickness = [self.profile(gear).thickness(teeth[gear].r_pitch) for gear in teeth]
+        return float(np.pi * teeth[ring].module - sum(thickness))
 
     @property
     def backlash_angle(self) -> float:
@@ -290,29 +268,6 @@ class DriveDesign(Design):
     def housing(self) -> Housing | None:
         """Section [ring_gear.housing]; None where the frame around the ring gear is rigid."""
         return self.ring_gear.housing
-
-    @property
-    def ring_outer_radius(self) -> float:
-        """Outer radius of the ring gear, mm, without a housing."""
-        return self.rim_radius("ring_gear")
-
-    @property
-    def outer_radius(self) -> float:
-        """Outer radius of the ring gear, mm, or of its housing."""
-        return self.ring_outer_radius + (self.housing.thickness if self.housing else 0.0)
-
-    @property
-    def largest_radius(self) -> float:
-        """Largest radius of any part of the drive, mm: ring gears, housing, wall and flange."""
-        radii = [self.outer_radius]
-        if self.dynamic_spline is not None:
-            radii.append(self.rim_radius("dynamic_spline"))
-        if self.has_cup:
-            radii += [
-                self.cup.edge,
-                *(inner + thickness for _, inner, thickness, _ in self.wall_points),
-            ]
-        return max(radii)
 
     @property
     def frame_is_rigid(self) -> bool:
@@ -360,34 +315,25 @@ class DriveDesign(Design):
     @property
     def axial_travel(self) -> float:
         """Axial displacement (mm) of a tooth at the major axis towards the closed end; 0 in the
-        plane model.
-
-        The cup is taken as a wall that bends without extension, with a radial deflection d / 2 cos
-        n phi that grows linearly from the closed end, n lobes. Such a wall moves axially by r d /
-        (2 n² L) (Love's inextensional mode), and the tooth leans by d / (2 L).
-        """
+        plane model."""
+        if not self.has_cup:
+            return 0.0
         middle = self.inner_radius + 0.5 * self.flexible_spline.rim
         height = 0.5 * self.drive.teeth_fs * self.drive.module - middle
-        return (
-            0.5 * self.deflection / self.cup.length * (middle / self.lobes**2 + height)
-            if self.has_cup
-            else 0.0
-        )
+        return axial_travel(self.deflection, self.cup.length, middle, height, self.lobes)
 
     @property
     def omitted_bending(self) -> float:
-        """Share of the bending strain that the plane model's condensed sectors leave out, at most.
-
-        The change of the rim's curvature rotates the ends of a sector, a pitch apart, by theta
-        relative to each other. The strain left out is theta^2 / 8, here divided by the bending
-        strain. With n lobes the curvature changes by (n^2 - 1) d / (2 r^2) on a cam that the rim
-        follows all around, as an ellipse. A ring that touches at its major axis only bends 1.4
-        times as much there, on rollers 70 degrees apart 2.9 times: 3 covers both.
-        """
-        factor = 1.0 if self.wave_generator.type == "elliptical" else 3.0
-        curvature = factor * 0.5 * (self.lobes**2 - 1) * self.deflection / self.inner_radius**2
-        pitch = 2.0 * np.pi * self.inner_radius / self.drive.teeth_fs
-        return (curvature * pitch) ** 2 / 8.0 / (0.5 * self.flexible_spline.rim * curvature)
+        """Share of the bending strain that the plane model's condensed sectors leave out, at
+        most."""
+        return omitted_bending(
+            self.deflection,
+            self.inner_radius,
+            self.flexible_spline.rim,
+            self.drive.teeth_fs,
+            self.lobes,
+            self.wave_generator.type == "elliptical",
+        )
 
     @property
     def can_condense(self) -> bool:
@@ -396,66 +342,28 @@ class DriveDesign(Design):
         return self.drive.model == "plane" and self.omitted_bending <= OMITTED_BENDING
 
     @property
-    def cup_thickness(self) -> float:
-        """Thickness (mm) of the cup's wall at the back of the teeth; that of the rim in the plane
-        model without cup."""
-        return (self.cup.thickness_coef if self.has_cup else 1.0) * self.flexible_spline.rim
-
-    @property
-    def wall_points(self) -> list[tuple[float, float, float, float]]:
-        """Points of the cup's wall: distance from the back of the teeth, inner radius, thickness
-        and rounding, mm."""
-        cup = self.cup
-        points = [(0.0, self.inner_radius, self.cup_thickness, 0.0)]
-        points += [
-            (p.distance, p.radius or self.inner_radius, p.thickness, p.rounding)
-            for p in cup.contour
-        ]
-        (last, radius, thickness, _), length = points[-1], cup.length - cup.fillet_radius
-        return points if last >= length else [*points, (length, radius, thickness, 0.0)]
-
-    @property
-    def cup_wall(self) -> CupWall:
-        """Section of the wall of the cup, which the design must have."""
-        cup, back = self.cup, 0.5 * self.drive.face_width
-        inner, outer = rounded_lines(self.wall_points)
-        return CupWall(
-            inner=inner,
-            outer=outer,
-            back=back,
-            end=back + cup.length,
-            fillet=cup.fillet_radius,
-            end_thickness=self.end_thickness,
-            edge=cup.edge,
-            outwards=cup.shape == "hat",
+    def cup_sizes(self) -> CupSizes:
+        """Sizes of the cup, which the design must have."""
+        return CupSizes(
+            self.cup, self.inner_radius, self.flexible_spline.rim, 0.5 * self.drive.face_width
         )
 
     @property
-    def end_thickness(self) -> float:
-        """Thickness of the closed end or flange, mm."""
-        return self.cup.end_thickness or self.wall_points[-1][2]
+    def cup_thickness(self) -> float:
+        """Thickness (mm) of the cup's wall at the back of the teeth; that of the rim in the plane
+        model without cup."""
+        return self.cup_sizes.thickness if self.has_cup else self.flexible_spline.rim
 
     @property
     def rest_plane(self) -> float:
         """z (mm) at which the deflection vanishes: the middle of the closed end or flange; 0 in the
         plane model."""
-        return (
-            0.5 * self.drive.face_width + self.cup.length - 0.5 * self.end_thickness
-            if self.has_cup
-            else 0.0
-        )
-
-    def material_of(self, body: DesignBody) -> Material:
-        """Material of a body of the design: that of its own section, else [material]."""
-        section = {"housing": self.housing, "bearing": self.bearing}.get(body) or getattr(
-            self, body
-        )
-        return section.material or self.material
+        return self.cup_sizes.rest_plane if self.has_cup else 0.0
 
     def modulus_of(self, *bodies: DesignBody) -> float:
         """Modulus of elasticity (MPa) of the softest of bodies: the scale of contacts and supports
         between them."""
-        return min(self.material_of(body).modulus for body in bodies)
+        return min(self.materials[body].modulus for body in bodies)
 
     def penalty(self, *bodies: DesignBody) -> float:
         """Penalty of the contact of flanks of two bodies, or of the support of one, MPa / mm."""
@@ -467,12 +375,16 @@ class DriveDesign(Design):
         return self.contact.wg_penalty_coef * self.modulus_of("flexible_spline") / self.drive.module
 
     @property
-    def materials(self) -> dict[str, Material]:
-        """Materials of the gears, and of the housing if there is one, by name."""
-        bodies: tuple[DesignBody, ...] = (
-            self.gears if self.housing is None else (*self.gears, "housing")
-        )
-        return {body: self.material_of(body) for body in bodies}
+    def materials(self) -> dict[DesignBody, Material]:
+        """Materials of the gears, of the housing and of the bearing by name: that of their own
+        section, else [material]."""
+        sections: dict[DesignBody, Any] = {"housing": self.housing, "bearing": self.bearing}
+        sections |= {gear: getattr(self, gear) for gear in self.gears}
+        return {
+            body: section.material or self.material
+            for body, section in sections.items()
+            if section is not None
+        }
 
     @property
     def crowning(self) -> FlankCrowning:
@@ -484,12 +396,7 @@ class DriveDesign(Design):
     def geometry(self) -> DriveGeometry:
         """Sizes from which meshes are made. Raises InputError where keys of a profile give no
         flank."""
-        drive, cup = self.drive, None
-        if self.has_cup:
-            section = self.cup
-            cup = CupGeometry(
-                self.cup_wall, section.thickness_coef, section.back_fillet, section.clamping_radius
-            )
+        drive = self.drive
         return DriveGeometry(
             model=drive.model,
             gears={
@@ -503,25 +410,8 @@ class DriveDesign(Design):
             cam_width=self.wave_generator.face_width,
             inner_radius=self.inner_radius,
             crowning=self.crowning,
-            cup=cup,
+            cup=self.cup_sizes.geometry if self.has_cup else None,
             housing=self.housing.thickness if self.housing else 0.0,
-        )
-
-    def teeth(self, gear: GearName) -> Teeth:
-        """Number and sizes of the teeth of a gear.
-
-        The dynamic spline has the teeth of the flexible spline on the pitch circle of the ring
-        gear, where these mesh at the major axis: its module is larger.
-        """
-        drive, external = self.drive, gear == "flexible_spline"
-        wider = drive.teeth_rg / drive.teeth_fs if gear == "dynamic_spline" else 1.0
-        return Teeth(
-            n_teeth=drive.teeth_rg if gear == "ring_gear" else drive.teeth_fs,
-            module=drive.module * wider,
-            pressure_angle=float(np.radians(drive.pressure_angle)),
-            addendum=drive.addendum_coef * drive.module,
-            dedendum=drive.dedendum_coef * drive.module,
-            external=external,
         )
 
     def profile(self, gear: GearName) -> ToothProfile:
@@ -532,7 +422,7 @@ class DriveDesign(Design):
             other = GEARS[1 - GEARS.index(gear)]
             partner = self.profile(other), self.tooth_motion(section.profile.section)
         return make_profile(
-            section.profile, self.teeth(gear), section.c_P, section.c_l, gear, partner
+            section.profile, self.drive.teeth(gear), section.c_P, section.c_l, gear, partner
         )
 
     def tooth_motion(self, z: float = 0.0, ring: GearName = "ring_gear") -> ToothMotion:
@@ -543,7 +433,7 @@ class DriveDesign(Design):
         if self.has_cup:
             # the deflection of a cup grows linearly from the closed end, whose middle stays plane
             share = (self.rest_plane - z) / self.rest_plane
-        line = _line(
+        line = neutral_line(
             self.wave_generator,
             self.major_semi_axis,
             self.minor_semi_axis,
@@ -551,7 +441,7 @@ class DriveDesign(Design):
             radius,
             share,
         )
-        return ToothMotion(line, self.drive.teeth_fs, self.teeth(ring).n_teeth)
+        return ToothMotion(line, self.drive.teeth_fs, self.drive.teeth(ring).n_teeth)
 
     def rigid_teeth(self, ring: GearName = "ring_gear") -> RigidTeeth:
         """Undeformed teeth of the flexible spline and of a ring gear at mid-width."""

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Literal
 
+import numpy as np
+
 from swgpar.design.program_sections import ProgramStage
-from swgpar.geometry.profiles import ExternalProfile, InternalProfile
+from swgpar.geometry.profiles import ExternalProfile, InternalProfile, Teeth
 from swgpar.input.quantities import Section, quantity
 from swgpar.materials import OptionalMaterial
 
@@ -43,6 +45,23 @@ class Drive(Section):
     addendum_coef: float = quantity(unit="modules", text="addendum", gt=0.0, le=2.0)
     dedendum_coef: float = quantity(unit="modules", text="dedendum", gt=0.0, le=2.0)
     face_width: float = quantity(unit="mm", text="face width", gt=0.0)
+
+    def teeth(self, gear: GearName) -> Teeth:
+        """Number and sizes of the teeth of a gear.
+
+        The dynamic spline has the teeth of the flexible spline on the pitch circle of the ring
+        gear, where these mesh at the major axis: its module is larger.
+        """
+        external = gear == "flexible_spline"
+        wider = self.teeth_rg / self.teeth_fs if gear == "dynamic_spline" else 1.0
+        return Teeth(
+            n_teeth=self.teeth_rg if gear == "ring_gear" else self.teeth_fs,
+            module=self.module * wider,
+            pressure_angle=float(np.radians(self.pressure_angle)),
+            addendum=self.addendum_coef * self.module,
+            dedendum=self.dedendum_coef * self.module,
+            external=external,
+        )
 
 
 class Gear(Section):

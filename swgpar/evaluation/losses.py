@@ -185,7 +185,7 @@ def hysteresis_work(cycle: StressCycle) -> float:
         layout,
         cycle.nodes[mine],
         stress,
-        model.design.material_of("flexible_spline"),
+        model.design.materials["flexible_spline"],
         thickness,
     )
     return per_cycle * 2.0 * np.pi / cycle.angle

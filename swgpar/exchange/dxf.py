@@ -29,11 +29,15 @@ def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
     for gear in design.gears:
         document.layers.add(gear)
         _draw(space, gear_outline(design, gear), gear)
-        rim = design.inner_radius if gear == "flexible_spline" else design.rim_radius(gear)
+        rim = (
+            design.inner_radius
+            if gear == "flexible_spline"
+            else design.geometry.gears[gear].outer_radius
+        )
         space.add_circle((0.0, 0.0), rim, dxfattribs={"layer": gear})
     if design.housing is not None:
         document.layers.add("housing")
-        space.add_circle((0.0, 0.0), design.outer_radius, dxfattribs={"layer": "housing"})
+        space.add_circle((0.0, 0.0), design.geometry.outer_radius, dxfattribs={"layer": "housing"})
     document.layers.add("wave_generator")
     for points in cam_outlines(
         design

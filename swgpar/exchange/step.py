@@ -75,14 +75,19 @@ def _build(gmsh: ModuleType, design: DriveDesign, name: str) -> None:
             gmsh,
             [
                 _circle(gmsh, radius, back)
-                for radius in (design.outer_radius, design.ring_outer_radius)
+                for radius in (
+                    design.geometry.outer_radius,
+                    design.geometry.gears["ring_gear"].outer_radius,
+                )
             ],
             width,
         )
         return
     teeth = _loop(gmsh, gear_outline(design, name), back)
     if name != "flexible_spline":
-        _extrude(gmsh, [_circle(gmsh, design.rim_radius(name), back), teeth], width)
+        _extrude(
+            gmsh, [_circle(gmsh, design.geometry.gears[name].outer_radius, back), teeth], width
+        )
         return
     toothed = _extrude(gmsh, [teeth, _circle(gmsh, design.inner_radius, back)], width)
     if design.has_cup:
@@ -189,7 +194,7 @@ class _Meridian:
 
 def _wall(gmsh: ModuleType, design: DriveDesign) -> tuple[int, int]:
     """The wall of the cup behind the teeth: its section turned about the axis."""
-    occ, wall, fillet = gmsh.model.occ, design.cup_wall, design.cup.back_fillet
+    occ, wall, fillet = gmsh.model.occ, design.cup_sizes.wall, design.cup.back_fillet
     r_center, z_center = wall.center
     r_first = wall.outer.points[0, 1]
     section = _Meridian(gmsh, wall.inner.points[0, 1], wall.back)

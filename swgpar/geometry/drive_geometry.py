@@ -26,6 +26,11 @@ class GearGeometry:
     rim: float
     ends: tuple[float, float]
 
+    @property
+    def outer_radius(self) -> float:
+        """Outer radius (mm) of a ring gear, without a housing."""
+        return self.profile.r_root_circle + self.rim
+
 
 @dataclass(frozen=True)
 class CupGeometry:
@@ -34,12 +39,14 @@ class CupGeometry:
     wall : its section;  thickness_coef : thickness at the back of the teeth over that of the rim
     back_fillet : mm, radius at the back of the teeth;  clamping_radius : mm, of a clamped ring, or
     None
+    attached_ring : mm, radii between which closed end or flange is clamped or bolted, or None
     """
 
     wall: CupWall
     thickness_coef: float
     back_fillet: float
     clamping_radius: float | None
+    attached_ring: tuple[float, float] | None
 
     @property
     def continues_root(self) -> bool:
@@ -76,3 +83,17 @@ class DriveGeometry:
     crowning: FlankCrowning
     cup: CupGeometry | None
     housing: float
+
+    @property
+    def outer_radius(self) -> float:
+        """Outer radius of the ring gear, mm, or of its housing."""
+        return self.gears["ring_gear"].outer_radius + self.housing
+
+    @property
+    def largest_radius(self) -> float:
+        """Largest radius of any part of the drive, mm: ring gears, housing, wall and flange."""
+        rings = [gear.outer_radius for gear in self.gears.values() if not gear.profile.external]
+        radii = [self.outer_radius, *rings]
+        if self.cup is not None:
+            radii += [self.cup.wall.edge, float(self.cup.wall.outer.points[:, 1].max())]
+        return max(radii)

@@ -9,12 +9,12 @@ major axis along +y.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from swgpar.geometry.arrays import Floats
-from swgpar.geometry.cams import Cam, taut_length
+from swgpar.geometry.cams import Cam, WaveGenerator, make_cam, taut_length
 
 HARMONICS, POINTS = 16, 1440
 """Harmonics of the shape, and points around one lobe of the ring that stay outside of the cam."""
@@ -125,14 +125,17 @@ class NeutralLine:
         return np.exp(1j * np.outer(theta, order)) @ terms
 
 
+@lru_cache(maxsize=16)
 def neutral_line(
-    cam: Cam, inner_radius: float, radius: float, share: float = 1.0, lobes: int = 2
+    keys: WaveGenerator, a: float, b: float | None, inner_radius: float, radius: float, share: float
 ) -> NeutralLine:
-    """The neutral line on a cam of so many lobes.
+    """The neutral line on a cam; kept, because a design asks for its profiles again and again.
 
+    keys : of the cam;  a, b : mm, its semi-axes
     inner_radius, radius : mm, of the undeformed ring's inner surface and of its neutral line
     share : of the deflection that reaches the section; less than 1 towards the closed end of a cup
     """
+    cam, lobes = make_cam(keys, a, b), keys.lobes
     amplitudes = share * bent_ring(cam, inner_radius, radius, lobes)[1:]
     excess = max(taut_length(cam) / (2.0 * np.pi) - inner_radius, 0.0)
     return NeutralLine(tuple(map(complex, amplitudes)), radius, radius + share * excess, lobes)

@@ -144,7 +144,7 @@ def _contacts(model: DriveModel, state: LoadState, flanks: FlankContact) -> list
         if _peak(loads[pair.sector - first, pair.side]) > SMALLEST * top
     ]
     moved, facing = moved_teeth(model, [pairs[k] for k in resolved], flanks)
-    materials = (model.design.material_of(layout.name) for layout in (spline, flanks.ring.layout))
+    materials = (model.design.materials[layout.name] for layout in (spline, flanks.ring.layout))
     modulus = contact_modulus(*materials, plane_stress=model.design.drive.model == "plane")
     failed = []
     for k, teeth, ring_teeth in zip(resolved, moved, facing):

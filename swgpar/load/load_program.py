@@ -200,7 +200,7 @@ def _one_way(design: DriveDesign, k: int, torque: float) -> tuple[str, ...]:
 def pitch_angle(design: DriveDesign) -> float:
     """Angle of a pitch of the output, deg: a rotation by it with the wave generator locked renames
     its teeth."""
-    return 360.0 / design.teeth(design.output_gear).n_teeth
+    return 360.0 / design.drive.teeth(design.output_gear).n_teeth
 
 
 def _ratcheting(design: DriveDesign) -> list[ProgramPoint]:

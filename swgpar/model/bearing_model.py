@@ -32,12 +32,12 @@ def build_race(design: DriveDesign, spline: SectorMesh) -> Body:
     mesh = race_sector(
         spline, design.inner_radius, design.bearing.race_thickness, design.race_width, RADIAL
     )
-    return Body(mesh, (design.material_of("bearing"),), design.race_width)
+    return Body(mesh, (design.materials["bearing"],), design.race_width)
 
 
 def build_balls(design: DriveDesign) -> BallSet:
     """The balls with their springs, all of the bearing's material."""
-    bearing, sizes, material = design.bearing, design.bearing_sizes, design.material_of("bearing")
+    bearing, sizes, material = design.bearing, design.bearing_sizes, design.materials["bearing"]
     return BallSet(
         number=bearing.balls,
         diameter=bearing.ball_diameter,

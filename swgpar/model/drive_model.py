@@ -72,7 +72,7 @@ def search_distance(design: DriveDesign, share: float = NEAR) -> float:
     """
     return max(
         share * design.drive.module,
-        TOUCH * design.drive.module + max(design.backlash, design.dynamic_backlash),
+        TOUCH * design.drive.module + max(0.0, *map(design.backlash_of, design.gears[1:])),
     )
 
 
@@ -229,7 +229,7 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
 def build_gear(design: DriveDesign, mesh: SectorMesh) -> Body:
     """A gear, with its housing where the mesh has one."""
     parts = (mesh.body, "housing")[: len(mesh.parts)]
-    return Body(mesh, tuple(map(design.material_of, parts)), design.drive.face_width)
+    return Body(mesh, tuple(design.materials[part] for part in parts), design.drive.face_width)
 
 
 def build_layout(design: DriveDesign, body: Body) -> BodyLayout:

@@ -117,7 +117,7 @@ def _region_of_the_flank(
 def _region_of_the_cup(
     design: DriveDesign, mesh: SectorMesh, node: int, radius: float, z: float
 ) -> str:
-    wall = design.cup_wall
+    wall = design.cup_sizes.wall
     if _is_attached(design, radius) and z > min(wall.faces) - NEAR * design.drive.module:
         return ATTACHED
     if node in mesh.node_sets["bore"]:

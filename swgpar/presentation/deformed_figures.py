@@ -143,7 +143,7 @@ def draw_cup_section(
     limit = colour_limit(grids)
     bodies = deformed(grids, 1.0)
     length = design.drive.face_width + design.cup.length
-    outer = design.largest_radius
+    outer = design.geometry.largest_radius
     low = max(min(design.cup.edge, design.inner_radius) - 0.05 * outer, 0.0)
     height = min(8.0, max(3.0, 9.0 * (outer - low) / (2.0 * length)))
     half = 0.5 * design.drive.face_width

@@ -139,7 +139,7 @@ def _curves(design: DriveDesign) -> dict[str, list[np.ndarray]]:
     drive, half, lobes = design.drive, 0.5 * design.deflection, design.lobes
     angle = 2.0 * np.pi / drive.teeth_rg * (np.arange(drive.teeth_rg) + 0.5)
     ring = rotated(_tooth(design, "ring_gear")[None], angle[:, None]).reshape(-1, 2)
-    outer = design.ring_outer_radius
+    outer = design.geometry.gears["ring_gear"].outer_radius
     r = design.inner_radius + 0.5 * design.flexible_spline.rim
 
     def moved(psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -155,7 +155,11 @@ def _curves(design: DriveDesign) -> dict[str, list[np.ndarray]]:
     )
     place, turned = moved(np.linspace(0.0, 2.0 * np.pi, 721)[:-1])
     inside = place + rotated(np.array([[0.0, -0.5 * design.flexible_spline.rim]]), turned)
-    housing = {"housing": [_circle(design.outer_radius), _circle(outer)]} if design.housing else {}
+    housing = (
+        {"housing": [_circle(design.geometry.outer_radius), _circle(outer)]}
+        if design.housing
+        else {}
+    )
     return {
         **housing,
         "ring_gear": [_circle(outer), ring],
@@ -170,7 +174,7 @@ def _circle(radius: float) -> np.ndarray:
 
 
 def _front(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
-    outer = design.outer_radius
+    outer = design.geometry.outer_radius
     sheet = Sheet(215.0 / outer, 250.0, 265.0, 545.0)
     for name, closed in curves.items():
         sheet.outline(closed, name)
@@ -251,9 +255,9 @@ def _cut(curve: np.ndarray, half: float, low: float, high: float) -> np.ndarray:
 
 
 def _meridian(design: DriveDesign) -> Sheet:
-    cup, wall, width = design.cup, design.cup_wall, design.drive.face_width
+    cup, wall, width = design.cup, design.cup_sizes.wall, design.drive.face_width
     spline, ring = (design.profile(gear) for gear in GEARS)
-    outer = design.outer_radius
+    outer = design.geometry.outer_radius
     back = 0.5 * width
     length = width + cup.length
     top = max(outer, wall.edge)
@@ -269,8 +273,12 @@ def _meridian(design: DriveDesign) -> Sheet:
     body = np.concatenate([inner_line, outer_line[::-1], tooth])
     half = 0.5 * design.wave_generator.face_width
     boxes = {
-        **({"housing": (design.ring_outer_radius, outer, back)} if design.housing else {}),
-        "ring_gear": (ring.r_tip_circle, design.ring_outer_radius, back),
+        **(
+            {"housing": (design.geometry.gears["ring_gear"].outer_radius, outer, back)}
+            if design.housing
+            else {}
+        ),
+        "ring_gear": (ring.r_tip_circle, design.geometry.gears["ring_gear"].outer_radius, back),
         "wave_generator": (0.0, design.inner_radius, half),
     }
     for name, (r1, r2, reach) in boxes.items():
@@ -289,7 +297,9 @@ def _meridian(design: DriveDesign) -> Sheet:
     sheet.upright(0.0, design.inner_radius, -back, 40.0, f"r {design.inner_radius:.4g}", "start")
     if cup.attachment != "edge":
         _draw_attachment(sheet, design)
-    x, y = sheet.at(back + 0.5 * cup.length, min(radius for _, radius, _, _ in design.wall_points))
+    x, y = sheet.at(
+        back + 0.5 * cup.length, min(radius for _, radius, _, _ in design.cup_sizes.points)
+    )
     sheet.text(x, y + 18.0, f"wall {_thicknesses(design)}, fillet r {cup.fillet_radius:g}")
     sheet.height = bottom + 20.0
     micro = design.micro_geometry
@@ -305,13 +315,13 @@ def _thicknesses(design: DriveDesign) -> str:
     """Thickness of the wall in words: where it changes from place to place, with that of the closed
     end or flange."""
     wall = " / ".join(
-        f"{thickness:.3g}" for thickness in _changes([t for _, _, t, _ in design.wall_points])
+        f"{thickness:.3g}" for thickness in _changes([t for _, _, t, _ in design.cup_sizes.points])
     )
-    end, last = design.end_thickness, design.wall_points[-1][2]
+    end, last = design.cup_sizes.end_thickness, design.cup_sizes.points[-1][2]
     return (
         wall
         if end == last
-        else f"{wall}, {'flange' if design.cup_wall.outwards else 'end'} {end:.3g}"
+        else f"{wall}, {'flange' if design.cup_sizes.wall.outwards else 'end'} {end:.3g}"
     )
 
 
@@ -322,7 +332,7 @@ def _changes(values: Sequence[float]) -> list[float]:
 
 def _draw_attachment(sheet: Sheet, design: DriveDesign) -> None:
     """Radius of the clamped ring, or the axis of a bolt with its circle."""
-    cup, wall = design.cup, design.cup_wall
+    cup, wall = design.cup, design.cup_sizes.wall
     x = sheet.at(min(wall.faces), 0.0)[0] - 14.0
     if cup.attachment == "clamped":
         sheet.upright(

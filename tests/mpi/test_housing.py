@@ -218,7 +218,7 @@ def test_a_housing_under_two_opposite_radial_loads(halved: bool) -> None:
     body_elements = Elements(partition)
     body = body_elements.bodies["ring_gear"]
     coupling = DistributingCoupling(partition, body, "outer", halved)
-    arm = coupling.arm / design.outer_radius
+    arm = coupling.arm / design.geometry.outer_radius
     loaded_nodes = np.flatnonzero(np.abs(arm[:, 0]) < 1e-9)
     assert len(loaded_nodes) == (1 if halved else 2)
     supports = Supports(partition, [coupling], scale=1e5, share=0.5 if halved else 1.0)
@@ -235,8 +235,8 @@ def test_a_housing_under_two_opposite_radial_loads(halved: bool) -> None:
     side = coupling.nodes[np.abs(arm[:, 1]).argmin()]
     position, moved = problem.positions()[side], problem.displacement()[side]
     found = 2.0 * float(moved[0] * np.sign(position[0]))
-    radius = design.outer_radius - 0.5 * thickness
-    material = design.material_of("housing")
+    radius = design.geometry.outer_radius - 0.5 * thickness
+    material = design.materials["housing"]
     exact = growth_across(force, radius, thickness, width, material.modulus, material.poisson)
     thin = (
         force * radius**3 / (material.modulus * width * thickness**3 / 12.0) * (0.5 - 2.0 / np.pi)

@@ -55,7 +55,7 @@ def revolved(points: np.ndarray) -> float:
 def wall_volume(design: DriveDesign, n: int = 20001) -> float:
     """Volume (mm³) of the wall behind the teeth without the fillet there, by a fine polygon of its
     section."""
-    wall, cup = design.cup_wall, design.cup
+    wall, cup = design.cup_sizes.wall, design.cup
     share, angle = np.linspace(0.0, 1.0, n), np.linspace(0.0, 0.5 * np.pi, n)
     lines = []
     for line, thickness in ((wall.inner, 0.0), (wall.outer, wall.thickness)):

@@ -24,7 +24,7 @@ def main(path: str) -> None:
     """Stresses of distorted hexahedra under a constant strain are those of the law; a wrong section
     is refused."""
     design = load_design(path)
-    material = design.material_of("flexible_spline")
+    material = design.materials["flexible_spline"]
     assert not isinstance(material, Isotropic)
     points, hexes, inner = distorted_grid(3, 0.25, np.random.default_rng(0))
     mesh = ElementMesh(points, hexes, material)

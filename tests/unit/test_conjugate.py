@@ -99,7 +99,7 @@ def test_backlash_and_relief_are_taken_from_the_teeth() -> None:
     assert loose.backlash - plain.backlash == pytest.approx(0.02, abs=1e-6)
     lands = [each.profile("ring_gear").top_land for each in (plain, loose)]
     # both flanks give the relief and half of the backlash, at the addendum circle
-    scale = plain.profile("ring_gear").r_tip_circle / plain.teeth("ring_gear").r_pitch
+    scale = plain.profile("ring_gear").r_tip_circle / plain.drive.teeth("ring_gear").r_pitch
     assert lands[0] - lands[1] == pytest.approx(0.02 * scale + 0.02, rel=1e-6)
 
 

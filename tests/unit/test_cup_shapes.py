@@ -277,7 +277,7 @@ def test_torsion_of_a_wall_of_varying_thickness(shape: str) -> None:
     mesh, back = spline(case), 0.5 * case.drive.face_width
     s = np.linspace(begin, end, 2001)
     (inner, outer), shear = (
-        (line.radius(s) for line in (case.cup_wall.inner, case.cup_wall.outer)),
+        (line.radius(s) for line in (case.cup_sizes.wall.inner, case.cup_sizes.wall.outer)),
         0.5 * 210e3 / 1.29,
     )
     exact = shear / trapezoid(2.0 / np.pi / (outer**4 - inner**4), s)

@@ -105,8 +105,8 @@ def test_two_rings_of_two_materials() -> None:
 def test_bodies_fall_back_on_the_material_of_the_drive() -> None:
     sections = ("ring_gear.housing.thickness=3", "ring_gear.material={E=70e3, nu=0.33}")
     design = load_design(DESIGN, sections)
-    assert design.material_of("ring_gear") == ALUMINIUM
-    assert design.material_of("flexible_spline") is design.material_of("housing") is design.material
+    assert design.materials["ring_gear"] == ALUMINIUM
+    assert design.materials["flexible_spline"] is design.materials["housing"] is design.material
     assert design.modulus_of("flexible_spline", "ring_gear") == 70e3
 
 

@@ -122,7 +122,7 @@ class LocalProblem:
         first = tooth - SECTORS // 2
         mesh = window_mesh(design, recipe)
         self.layout = BodyLayout(
-            body=Body(mesh, (design.material_of(mesh.body),), design.drive.face_width),
+            body=Body(mesh, (design.materials[mesh.body],), design.drive.face_width),
             first_tooth=first,
             count=SECTORS,
             closed=False,

@@ -1,0 +1,79 @@
+"""Sizes of the cup that follow from its section and from those of the teeth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from swgpar.design.cup_section import Cup
+from swgpar.geometry.cup_wall import CupWall, rounded_lines
+from swgpar.geometry.drive_geometry import CupGeometry
+
+
+@dataclass(frozen=True)
+class CupSizes:
+    """The cup behind the teeth.
+
+    section : its keys;  inner_radius, rim : mm, of the undeformed flexible spline
+    back : mm, z of the back of the teeth
+    """
+
+    section: Cup
+    inner_radius: float
+    rim: float
+    back: float
+
+    @property
+    def thickness(self) -> float:
+        """Thickness of the wall at the back of the teeth, mm."""
+        return self.section.thickness_coef * self.rim
+
+    @property
+    def points(self) -> list[tuple[float, float, float, float]]:
+        """Points of the wall: distance from the back of the teeth, inner radius, thickness and
+        rounding, mm."""
+        cup = self.section
+        points = [(0.0, self.inner_radius, self.thickness, 0.0)]
+        points += [
+            (p.distance, p.radius or self.inner_radius, p.thickness, p.rounding)
+            for p in cup.contour
+        ]
+        (last, radius, thickness, _), length = points[-1], cup.length - cup.fillet_radius
+        return points if last >= length else [*points, (length, radius, thickness, 0.0)]
+
+    @property
+    def end_thickness(self) -> float:
+        """Thickness of the closed end or flange, mm."""
+        return self.section.end_thickness or self.points[-1][2]
+
+    @property
+    def rest_plane(self) -> float:
+        """z (mm) of the middle of the closed end or flange, where the deflection vanishes."""
+        return self.back + self.section.length - 0.5 * self.end_thickness
+
+    @property
+    def wall(self) -> CupWall:
+        """Section of the wall."""
+        cup = self.section
+        inner, outer = rounded_lines(self.points)
+        return CupWall(
+            inner=inner,
+            outer=outer,
+            back=self.back,
+            end=self.back + cup.length,
+            fillet=cup.fillet_radius,
+            end_thickness=self.end_thickness,
+            edge=cup.edge,
+            outwards=cup.shape == "hat",
+        )
+
+    @property
+    def geometry(self) -> CupGeometry:
+        """Sizes from which the mesh of the cup is made."""
+        cup = self.section
+        return CupGeometry(
+            self.wall,
+            cup.thickness_coef,
+            cup.back_fillet,
+            cup.clamping_radius,
+            cup.attached_ring,
+        )
