@@ -250,9 +250,10 @@ def run(
     )
     checked, options = on_all(comm, lambda: _checked(design, mesh, given))
     with log.session(comm, terminal=terminal):
-        result = system_of(checked).run(checked, options)
+        system = system_of(checked)
+        result = system.run(checked, options)
         if folder is not None:
-            if checked.output.figures:
+            if system.draws_figures(checked):
                 save_figures(result.plot, folder)
             try:
                 save_report(result, folder, comm)
@@ -325,13 +326,14 @@ def export(
     """
     from swgpar.exchange.export import export_files  # CAD kernels and tables are for this alone
 
+    found: Design | Result
     if isinstance(source, (str, Path)) and Path(source).is_dir():
-        source = open_result(source)
-    found = source if isinstance(source, DriveResult) else load_design(source)
-    if isinstance(ripple, (str, Path)):
-        ripple = open_result(ripple)
+        found = open_result(source)
+    else:
+        found = source if isinstance(source, DriveResult) else load_design(source)
+    rippled = open_result(ripple) if isinstance(ripple, (str, Path)) else ripple
     if not isinstance(found, DriveDesign | DriveResult) or not isinstance(
-        ripple, DriveResult | None
+        rippled, DriveResult | None
     ):
         raise InputError(
             "export is available for drives: a gear train has no geometry and no fields"
@@ -340,7 +342,7 @@ def export(
     paths: list[Path] = []
     with agreed(MPI.COMM_WORLD, Path(out)):
         if MPI.COMM_WORLD.rank == 0:
-            paths = export_files(found, Path(out), formats, recipe=recipe, ripple=ripple)
+            paths = export_files(found, Path(out), formats, recipe=recipe, ripple=rippled)
     return MPI.COMM_WORLD.bcast(paths)
 
 

@@ -48,11 +48,12 @@ class _Counter:
     """
 
     def __init__(self, comm: MPI.Comm) -> None:
+        assert isinstance(comm, MPI.Intracomm)  # a window belongs to the ranks of one group
         size = MPI.INT64_T.Get_size()
         self._window = MPI.Win.Allocate(size if comm.rank == 0 else 0, size, comm=comm)
         if comm.rank == 0:
             self._window.Lock(0, MPI.LOCK_EXCLUSIVE)
-            np.frombuffer(self._window.tomemory(), dtype=np.int64)[:] = 0
+            self._window.tomemory()[:] = bytes(size)
             self._window.Unlock(0)
         comm.Barrier()
 

@@ -132,12 +132,14 @@ class DeviatingDrive:
         self.stepper = LoadStepper(self.model)
         self.loaded = sequence.loaded
         self.stepper.resume_at(self.loaded)
-        gears = [gear_deviations(self.deviations, gear, design.drive.teeth(gear)) for gear in GEARS]
+        of_spline, of_ring = (
+            gear_deviations(self.deviations, gear, design.drive.teeth(gear)) for gear in GEARS
+        )
         layouts = self.model.partition.layouts
         self.tables = flank_deviations(
-            layouts[FLEXIBLE_SPLINE], layouts[RING_GEAR], *gears, design.axial_travel
+            layouts[FLEXIBLE_SPLINE], layouts[RING_GEAR], of_spline, of_ring, design.axial_travel
         )
-        bore = problem.supports.couplings[SPLINE_COUPLING]
+        bore = problem.supports.gear_couplings[SPLINE_COUPLING]
         self.bore_z = float(bore.sum(bore.weight * bore.undeformed[:, 2]))
         spline, ring = self.tables.periods()
         cup = self.deviations.cup

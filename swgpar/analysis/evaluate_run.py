@@ -98,7 +98,7 @@ def evaluate_run(
             else None
         ),
         program=stage_ends(program) if design.load.program and program else None,
-        fatigue=fatigue and fatigue.found,
+        fatigue=None if fatigue is None else fatigue.found,
         losses=losses,
         bearing=_bearing(recorder),
         housing=HousingStresses(**record.housing) if record.housing else None,

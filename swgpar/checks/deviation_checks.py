@@ -8,7 +8,7 @@ import numpy as np
 from swgpar.checks.program_checks import given_program
 from swgpar.design.deviations import MICRO, Deviations
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import GEARS
+from swgpar.design.sections import GEARS, GearName
 from swgpar.errors import InputError
 from swgpar.input.quantities import show
 
@@ -74,7 +74,7 @@ LENGTHS = {
 """Keys of deviations that are lengths, with their units in mm."""
 
 
-def _check_pitch(design: DriveDesign, deviations: Deviations, gear: str) -> None:
+def _check_pitch(design: DriveDesign, deviations: Deviations, gear: GearName) -> None:
     section, key = getattr(deviations, gear), f"deviations.{gear}"
     errors, teeth = section.pitch_errors, design.drive.teeth(gear).n_teeth
     if section.pitch_column:

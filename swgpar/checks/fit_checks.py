@@ -131,10 +131,10 @@ def _check_wave_generator(design: DriveDesign) -> None:
         )
         _refuse("wave_generator.C", wave.C, allowed)
     elif wave.type == "harmonic":
-        _check_concave(design)
+        _check_concave(design, wave)
 
 
-def _check_concave(design: DriveDesign) -> None:
+def _check_concave(design: DriveDesign, wave: Harmonic) -> None:
     """Bores so far from a concave part of a harmonic cam that points of them have several feet on
     it."""
     a = design.major_semi_axis
@@ -146,10 +146,10 @@ def _check_concave(design: DriveDesign) -> None:
         return 1.0 + (b - 0.5 * order * (a - b)) / b**2 * (bore - b) - UNIQUE
 
     if b < bore and room(b) < 0.0:  # the curvature there is the least one of the cam
-        least = design.wave_generator.C * brentq(room, b, bore) / b
+        least = wave.C * brentq(room, b, bore) / b
         _refuse(
             "wave_generator.C",
-            design.wave_generator.C,
+            wave.C,
             f"{least:.4g} (a concave cam near the spline) to 1",
         )
 

@@ -20,7 +20,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.geometry.cams import make_cam, taut_length
-from swgpar.geometry.cams.keys import Harmonic, Parabolic, Simplified, WaveGenerator
+from swgpar.geometry.cams.keys import Harmonic, Parabolic, Simplified
 from swgpar.geometry.profiles import RADII
 from swgpar.input.quantities import Section
 from swgpar.input.toml_file import toml_value, with_value
@@ -324,7 +324,7 @@ def _cam_keys(cam: CamType, table: dict[str, Any]) -> dict[str, float]:
             "r_4": _rounded(0.135 * major),
         }  # 8 mm on the reference drive (section 5.5)
 
-    def excess(keys: WaveGenerator) -> float:
+    def excess(keys: Simplified | Harmonic | Parabolic) -> float:
         C = 1.0 if isinstance(keys, Parabolic) else keys.C
         return taut_length(make_cam(keys, major, C * minor), 720) / (2.0 * np.pi * inner) - 1.0
 
@@ -340,13 +340,13 @@ def _cam_keys(cam: CamType, table: dict[str, Any]) -> dict[str, float]:
             lambda C: excess(Harmonic(C=C, lobes=lobes, face_width=1.0)), 0.5, 1.0, xtol=1e-8
         )
         return {"C": _rounded(fitting, 6)}
-    shape = {"C_p": 0.51, "r_c": _rounded(0.175 * minor)}  # that of the improved cam of Table 5.5
+    C_p, r_c = 0.51, _rounded(0.175 * minor)  # that of the improved cam of Table 5.5
     ellipse = 0.5 * major / minor**2
     bounds = ellipse, 1.08 * ellipse
     a_p = brentq(
-        lambda a_p: excess(Parabolic(a_p=a_p, face_width=1.0, **shape)), *bounds, xtol=1e-7
+        lambda a_p: excess(Parabolic(a_p=a_p, C_p=C_p, r_c=r_c, face_width=1.0)), *bounds, xtol=1e-7
     )
-    return {"C": 1.0, "a_p": _rounded(a_p, 5), **shape}
+    return {"C": 1.0, "a_p": _rounded(a_p, 5), "C_p": C_p, "r_c": r_c}
 
 
 def as_toml(request: Request, design: DriveDesign, table: dict[str, Any], name: str) -> str:

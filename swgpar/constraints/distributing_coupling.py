@@ -13,6 +13,7 @@ so that it is work-conjugate to phi at any rotation (section 3.4.5, "Load applic
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -76,8 +77,8 @@ def node_weights(coords: np.ndarray, nodes: np.ndarray, ccw: np.ndarray) -> np.n
     return np.where(np.isin(nodes, ccw), 0.0, weight)
 
 
-class NodeMeans:
-    """Mean motions of nodes of a body.
+class NodeMeans(ABC):
+    """Mean motions of nodes of a body; meets the protocol `Coupling`.
 
     Parameters
     ----------
@@ -92,6 +93,8 @@ class NodeMeans:
     ----------
     total : sum of the weights of all ranks;  weight : (n,) over that sum
     """
+
+    active: np.ndarray
 
     def __init__(
         self,
@@ -147,6 +150,10 @@ class NodeMeans:
         gradient[ROTATION, :, 0] = w * (-cosine * arm[:, 1] - sine * arm[:, 0]) / norm
         gradient[ROTATION, :, 1] = w * (cosine * arm[:, 0] - sine * arm[:, 1]) / norm
         return MeanMotion(value, gradient)
+
+    @abstractmethod
+    def supports(self) -> np.ndarray:
+        """Directions (m, n, 3) on single nodes that support the body rigidly; collective."""
 
 
 class DistributingCoupling(NodeMeans):
@@ -230,7 +237,7 @@ class RadialGuide:
     coupling : of the outer surface;  area : mm², of the modelled surface;  penalty : MPa / mm
     """
 
-    def __init__(self, coupling: DistributingCoupling, area: float, penalty: float) -> None:
+    def __init__(self, coupling: NodeMeans, area: float, penalty: float) -> None:
         self.nodes, self.position = coupling.nodes, coupling.undeformed[:, :2]
         self.radius = np.hypot(*self.position.T)
         self.stiffness = penalty * area * coupling.weight

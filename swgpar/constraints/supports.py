@@ -84,6 +84,7 @@ class Supports:
 
     Attributes
     ----------
+    gear_couplings, couplings : those of the gears alone, and all
     offsets : (n_couplings, 6) values at which coupled quantities are held, mm and rad
     """
 
@@ -102,7 +103,7 @@ class Supports:
         self.spline_ratio = spline_ratio
         self.partition, self.guide = partition, guide
         self.couplings: list[Coupling] = [*couplings] if race is None else [*couplings, race]
-        self.output_gear, self._gears = output, len(couplings)
+        self.gear_couplings, self.output_gear = couplings, output
         self.scale, self.share = scale, share
         self.offsets = np.zeros((len(self.couplings), N_COUPLED))
         self._attached = [(i, c) for i, c in enumerate(couplings) if isinstance(c, RigidAttachment)]
@@ -143,7 +144,7 @@ class Supports:
     @property
     def ring_floats(self) -> bool:
         """Whether the ring gear has a coupling, and is not clamped."""
-        return self._gears > RING_COUPLING
+        return len(self.gear_couplings) > RING_COUPLING
 
     def prescribed(self, state: LoadState) -> list[tuple[int, int]]:
         """Pairs (coupling, coupled quantity) that the load state prescribes."""
@@ -228,4 +229,5 @@ class Supports:
     def reactions(self, multiplier: np.ndarray) -> np.ndarray:
         """Torques (N mm) about z of the whole drive that support the coupled gears, from the
         multipliers."""
-        return -self.scale * multiplier[ROTATION::N_COUPLED][: self._gears] / self.share
+        rotations = multiplier[ROTATION::N_COUPLED][: len(self.gear_couplings)]
+        return -self.scale * rotations / self.share

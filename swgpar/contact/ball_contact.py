@@ -242,12 +242,13 @@ class BallContact:
         outside = np.ones(crossed.shape[1], dtype=bool)
         outside[max(self.own_range[0] - more, 0) : self.own_range[1] + more] = False
         crossed[:, outside] = False
-        return np.nonzero(crossed)
+        ball, piece = np.nonzero(crossed)
+        return ball, piece
 
     def _shape_functions(self, place: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Weights (n, n_node) of all nodes in the means around places (n,) rad, and their
         derivatives by the place."""
-        out = tuple(np.zeros((len(place), len(self.angle))) for _ in range(3))
+        value, rate, second = np.zeros((3, len(place), len(self.angle)))
         ball = np.arange(len(place))
         for weight, away in zip(self.kernel_weight, self.kernel_angle):
             at = place + away
@@ -258,10 +259,10 @@ class BallContact:
             at_place = shape_functions(
                 self.polynomials[piece - 1], (at - self.angle[piece]) / length
             )
-            for order, (total, weights) in enumerate(zip(out, at_place)):
+            for order, (total, weights) in enumerate(zip((value, rate, second), at_place)):
                 for k in range(NODES):
                     total[ball, piece - 1 + k] += weight * weights[:, k] / length**order
-        return out
+        return value, rate, second
 
     def _nodes(self, touch: _Touch, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Local nodes and image flags (n, m n_z) of chosen balls."""

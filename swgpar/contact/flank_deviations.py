@@ -46,10 +46,12 @@ class FlankDeviations:
         """The deviations after the teeth have been renamed: tooth k has those of tooth k +
         `teeth`."""
         leans = None if self.leans is None else np.roll(self.leans, -teeth, axis=0)
-        tables = (
-            np.roll(table, -teeth, axis=0) for table in (self.heights, self.points, self.tangents)
+        return FlankDeviations(
+            heights=np.roll(self.heights, -teeth, axis=0),
+            points=np.roll(self.points, -teeth, axis=0),
+            tangents=np.roll(self.tangents, -teeth, axis=0),
+            leans=leans,
         )
-        return FlankDeviations(*tables, leans)
 
     def scaled(self, share: float) -> FlankDeviations:
         """A share of the deviations."""
@@ -135,5 +137,9 @@ def flank_deviations(
             leans.append(
                 -((z.ravel() + axial_travel) * (away @ normal.T)).reshape(len(ring_teeth), *s.shape)
             )
-    tables = [np.stack(table, axis=1) for table in (heights, points, tangents)]
-    return FlankDeviations(*tables, np.stack(leans, axis=1) if leans else None)
+    return FlankDeviations(
+        heights=np.stack(heights, axis=1),
+        points=np.stack(points, axis=1),
+        tangents=np.stack(tangents, axis=1),
+        leans=np.stack(leans, axis=1) if leans else None,
+    )

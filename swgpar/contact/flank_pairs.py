@@ -166,11 +166,12 @@ class FlankPairs:
         flanks = MasterFlanks(
             grid.s,
             grid.z,
-            *(np.zeros((n_pair, len(grid.s), 2)) for _ in range(2)),
-            np.zeros(n_pair),
-            np.zeros((n_pair, 2)),
-            np.zeros((n_pair, *grid.nodes.shape), dtype=np.int32),
-            np.zeros((n_pair, *grid.nodes.shape), dtype=np.uint8),
+            point=np.zeros((n_pair, len(grid.s), 2)),
+            tangent=np.zeros((n_pair, len(grid.s), 2)),
+            orientation=np.zeros(n_pair),
+            rotation=np.zeros((n_pair, 2)),
+            conn=np.zeros((n_pair, *grid.nodes.shape), dtype=np.int32),
+            sixths=np.zeros((n_pair, *grid.nodes.shape), dtype=np.uint8),
         )
         profile = self.ring.layout.mesh.profile
         for k, p in enumerate(self.pairs):

@@ -12,7 +12,7 @@ kernel/friction.hpp).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -51,13 +51,14 @@ class Friction:
 
     def subset(self, rows: np.ndarray) -> Friction:
         """The same of some of the faces."""
-        arrays = (self.foot_point, self.gap, self.traction, self.current)
         lagged = None if self.lagged is None else np.ascontiguousarray(self.lagged[rows])
-        return Friction(
-            self.coefficient,
-            self.stiffness,
-            *(np.ascontiguousarray(a[rows]) for a in arrays),
-            lagged,
+        return replace(
+            self,
+            foot_point=np.ascontiguousarray(self.foot_point[rows]),
+            gap=np.ascontiguousarray(self.gap[rows]),
+            traction=np.ascontiguousarray(self.traction[rows]),
+            current=np.ascontiguousarray(self.current[rows]),
+            lagged=lagged,
         )
 
 

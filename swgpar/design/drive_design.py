@@ -20,6 +20,7 @@ from swgpar.design.sections import (
     DynamicSpline,
     ExternalGear,
     Fatigue,
+    Gear,
     GearName,
     Housing,
     InternalGear,

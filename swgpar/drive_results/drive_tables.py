@@ -58,6 +58,17 @@ class DriveTables:
 
 def read_tables(folder: Path) -> DriveTables:
     """The tables in a results folder."""
-    names = PAIRS, CONTACT_LINES, PROGRAM, TRANSMISSION_ERROR, BALLS, CYCLE, LOSSES
-    columns = [read_columns(folder / name) if (folder / name).exists() else {} for name in names]
-    return DriveTables(*columns, sector=read_sector(folder))
+
+    def columns(name: str) -> Columns:
+        return read_columns(folder / name) if (folder / name).exists() else {}
+
+    return DriveTables(
+        pairs=columns(PAIRS),
+        contact_lines=columns(CONTACT_LINES),
+        program=columns(PROGRAM),
+        turns=columns(TRANSMISSION_ERROR),
+        balls=columns(BALLS),
+        cycle=columns(CYCLE),
+        losses=columns(LOSSES),
+        sector=read_sector(folder),
+    )

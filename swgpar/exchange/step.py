@@ -15,10 +15,12 @@ from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
+from typing import Literal
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GearName
 from swgpar.exchange.outlines import Edge, cam_outlines, gear_outline
 from swgpar.meshing.gmsh_session import gmsh_model
 
@@ -29,13 +31,20 @@ SAME = 1e-7
 """mm, distance below which the ends of edges are one point."""
 
 
+Solid = GearName | Literal["wave_generator", "housing"]
+"""Name of a solid, and of its file."""
+
+
 def write_step(design: DriveDesign, folder: Path) -> list[Path]:
     """Write a STEP file of each gear, wave_generator.step and of a drive with one housing.step.
 
     Call it on one rank.
     """
     paths = []
-    for name in (*design.gears, "wave_generator", *(["housing"] if design.housing else [])):
+    names: list[Solid] = [*design.gears, "wave_generator"]
+    if design.housing:
+        names.append("housing")
+    for name in names:
         path = folder / f"{name}.step"
         with gmsh_model(name) as gmsh:
             _build(gmsh, design, name)
@@ -60,7 +69,7 @@ def _quiet() -> Iterator[None]:
         os.close(kept)
 
 
-def _build(gmsh: ModuleType, design: DriveDesign, name: str) -> None:
+def _build(gmsh: ModuleType, design: DriveDesign, name: Solid) -> None:
     """The solid of a body in the present model."""
     if name == "wave_generator":
         half = 0.5 * design.wave_generator.face_width

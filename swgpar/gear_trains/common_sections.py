@@ -29,12 +29,6 @@ def require_steps(key: str, step: float, duration: float) -> None:
         )
 
 
-class TrainDesign(Design):
-    """What every gear train's design file may hold beside its own sections."""
-
-    published: dict[str, Any] = quantity({}, text="published values by quantity")
-
-
 class GearTrain(Section):
     """Every design narrows `model` to the one name of its own."""
 
@@ -55,3 +49,10 @@ class MonteCarlo(Section):
 
 class Output(Section):
     figures: bool = quantity(True, text="draw the figures")
+
+
+class TrainDesign(Design):
+    """What every gear train's design file may hold beside its own sections."""
+
+    published: dict[str, Any] = quantity({}, text="published values by quantity")
+    output: Output = Output()

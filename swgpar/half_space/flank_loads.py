@@ -115,7 +115,7 @@ def nodal_forces(load: LineLoad, grid: FlankGrid, half_width: float) -> np.ndarr
             for k, value in enumerate(z):
                 force = np.array([np.interp(value, load.z, load.load[:, c]) for c in range(3)])
                 force = force * weight[k] * 0.5 * (high - low)
-                share = parabola(grid.s, np.interp(value, load.z, load.s), half_width)
+                share = parabola(grid.s, float(np.interp(value, load.z, load.s)), half_width)
                 out[:, j] += (1.0 - t[k]) * share[:, None] * force
                 out[:, j + 1] += t[k] * share[:, None] * force
     return out

@@ -227,14 +227,16 @@ def moved_teeth(
     moved, facing = [], []
     for k, pair in enumerate(pairs):
         tooth = spline.first_tooth + pair.sector + around
-        moved.append(
-            tuple(MovedTooth(spline, n, pair.side, u[k, i], crowned) for i, n in enumerate(tooth))
+        before, middle, after = (
+            MovedTooth(spline, n, pair.side, u[k, i], crowned) for i, n in enumerate(tooth)
         )
+        moved.append((before, middle, after))
         turned = ring_u[k] @ SIXTHS[pair.ring_sixths].T
         tooth = pair.ring_tooth + around
-        facing.append(
-            tuple(MovedTooth(ring, n, -pair.side, turned[i]) for i, n in enumerate(tooth))
+        before, middle, after = (
+            MovedTooth(ring, n, -pair.side, turned[i]) for i, n in enumerate(tooth)
         )
+        facing.append((before, middle, after))
     return moved, facing
 
 
@@ -254,7 +256,9 @@ def _with_pressure(
         found = _line(model, gap, load, modulus)
         shape, width, on_edge = found, float(np.ptp(load.z)), found.at_end
         size = float(along[0])
-        stations = (ContactStation(0.0, size, found.middle, found.half_width, found.peak),)
+        stations: tuple[ContactStation, ...] = (
+            ContactStation(0.0, size, found.middle, found.half_width, found.peak),
+        )
     else:
         patch = _patch(model, gap, load, along, contact.force_N, modulus)
         shape, on_edge = patch.strongest, patch.at_end or patch.reaches

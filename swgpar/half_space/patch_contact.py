@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -94,7 +95,7 @@ def patch_contact(
     for _ in range(MAX_GRIDS):
         grid = _Grid(
             gap,
-            lambda z, line=middle_line: np.interp(z, stations, least) + np.polyval(line, z),
+            partial(_centre, stations, least, middle_line),
             low,
             high,
             half,
@@ -133,6 +134,12 @@ def patch_contact(
             return grid.contact(pressure, ends)
         half, middle_line, (low, high) = narrower, line, shorter
     raise ArithmeticError(f"no contact was found for a force of {force:g} N")
+
+
+def _centre(stations: np.ndarray, least: np.ndarray, line: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """s (n,) mm of the middle of a grid at z (n,) mm: that of the least gap at the stations (m,)
+    and a line with coefficients of `numpy.polyval`."""
+    return np.interp(z, stations, least) + np.polyval(line, z)
 
 
 class _Grid:

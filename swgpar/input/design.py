@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any, Self
 
 from pydantic import PrivateAttr
 
 from swgpar.input.quantities import Section
-from swgpar.input.toml_file import apply_overrides
+from swgpar.input.toml_file import Overrides, apply_overrides
 
 
 class Design(Section):
@@ -22,12 +22,12 @@ class Design(Section):
         self._maker = maker
         return self
 
-    def with_values(self, values: Mapping[str, Any]) -> Self:
+    def with_values(self, values: Overrides) -> Self:
         """A new, checked design with other values.
 
         Parameters
         ----------
-        values : mapping
+        values : mapping, or sequence of str
             ``"section.key"`` -> value, in the units of the design file; a whole section is given as
             a dict.
 

@@ -310,10 +310,10 @@ def cup_slice(
         length = inner[last + 1, 1] - inner[last, 1]
         width = 2.0 * np.pi * drive.inner_radius / spline.profile.n_teeth / (grid.shape[1] - 1)
         share = 1.0 - min(0.5, width / length)
-        ring = [
+        on_inner, on_outer = (
             line[last : last + 1] + share * (line[last + 1] - line[last]) for line in (inner, outer)
-        ]
-        coords.append(positions(*ring, grid[:, dropped].ravel()).reshape(-1, 3))
+        )
+        coords.append(positions(on_inner, on_outer, grid[:, dropped].ravel()).reshape(-1, 3))
         first += between.size
         number[last + 1 :, kept] = first + np.arange((len(inner) - 1 - last) * len(kept)).reshape(
             -1, len(kept)

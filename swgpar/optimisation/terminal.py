@@ -33,7 +33,8 @@ class OptimiseProgress:
         self._objectives = section.objective
         self._wanted = wanted
         self._shown = terminal
-        self._done, self._best = 0, {}
+        self._done = 0
+        self._best: dict[str, float] = {}
         for evaluation in known.values():
             self._take(evaluation)
 

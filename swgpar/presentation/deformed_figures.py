@@ -208,6 +208,7 @@ def _draw_cut(
     """Draw a plane cut through a body with its outline. at : (n, 2) mm, places of its points in the
     figure"""
     from matplotlib.collections import LineCollection
+    from matplotlib.tri import Triangulation
 
     if not cut.n_points:
         return
@@ -225,9 +226,7 @@ def _draw_cut(
     )  # sectors have nodes of their own where they meet
     points, triangles = np.asarray(flat.points), flat.regular_faces
     axes.tripcolor(
-        points[:, 0],
-        points[:, 1],
-        triangles,
+        Triangulation(points[:, 0], points[:, 1], triangles),
         flat.point_data["vm"],
         shading="gouraud",
         cmap=COLOURS,

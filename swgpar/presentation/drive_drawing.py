@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import GEARS
+from swgpar.design.sections import GEARS, GearName
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing.cup import meridian
@@ -87,9 +87,9 @@ class Sheet:
         )
         self.outlines.append(Outline(path, FILLS[name], name.replace("_", " ")))
 
-    def line(self, *pixels: float, style: str = "dim") -> None:
-        """A line from x, y to x, y in pixels."""
-        self.lines.append(Line(*pixels, style=style))
+    def line(self, x1: float, y1: float, x2: float, y2: float, style: str = "dim") -> None:
+        """A line from x1, y1 to x2, y2 in pixels."""
+        self.lines.append(Line(x1, y1, x2, y2, style))
 
     def text(self, x: float, y: float, text: str, anchor: str = "middle") -> None:
         """A text at pixels."""
@@ -122,7 +122,7 @@ def draw_drive(design: DriveDesign) -> list[Sheet]:
     return [*sheets, _meridian(design)] if design.has_cup else sheets
 
 
-def _tooth(design: DriveDesign, gear: str) -> np.ndarray:
+def _tooth(design: DriveDesign, gear: GearName) -> np.ndarray:
     """One tooth (n, 2), mm, centred on +y, from its clockwise to its counter-clockwise root."""
     profile = design.profile(gear)
     ends = profile.breaks

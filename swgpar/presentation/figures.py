@@ -9,6 +9,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.drive_results.drive_data import SPLINE, DriveData
 from swgpar.errors import InputError
 from swgpar.evaluation.transmission_error import orders
 from swgpar.load.load_states import Stage
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from swgpar.drive_results.drive_data import DriveData
 
 STRESSES = ("fs_s1", "fs_s3", "fs_vm", "rg_vm")
 """Columns of the history in the figure of stresses."""
@@ -375,7 +375,7 @@ class DriveFigures(FigureSet):
 
         increment : as in `DriveData.field`
         """
-        result, body = self._result, "flexible_spline"
+        result, body = self._result, SPLINE
         sizes, design = result.summary.bodies[body], self._design
         return draw_circumference(
             design,

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
+    from swgpar.design.sections import GearName
     from swgpar.drive_results.drive_data import DriveData
 
 MOST_NODES = 400_000
@@ -87,7 +88,7 @@ def scene(result: DriveData) -> Scene | None:
     return Scene(content, [body.replace("_", " ") for body in result.gears], limit)
 
 
-def _body(result: DriveData, body: str, values: np.ndarray) -> dict[str, Any]:
+def _body(result: DriveData, body: GearName, values: np.ndarray) -> dict[str, Any]:
     """Surface of a body in the form that the drawer reads."""
     points, cells = result.mesh(body)
     drive = result.summary.design.drive

@@ -13,6 +13,7 @@ from swgpar.presentation.off_screen import errors_only, has_display
 if TYPE_CHECKING:
     import pyvista
 
+    from swgpar.design.sections import GearName
     from swgpar.drive_results.drive_data import DriveData
 
 COLOURED = {"vm": "von Mises, MPa", "s1": "s1, MPa", "s3": "s3, MPa"}
@@ -53,7 +54,7 @@ def view_plotter(result: DriveData, *, off_screen: bool = False) -> pyvista.Plot
     with errors_only():
         plotter = pyvista.Plotter(off_screen=off_screen, title="swgpar", window_size=(1300, 950))
     shown: dict[str, Any] = {"increment": result.increments - 1, "factor": 1.0, "field": "vm"}
-    surfaces: dict[str, pyvista.PolyData] = {}
+    surfaces: dict[GearName, pyvista.PolyData] = {}
     places: dict[str, np.ndarray] = {}
     actors = {}
     for body in result.gears:

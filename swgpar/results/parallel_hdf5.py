@@ -119,6 +119,7 @@ def _fill(
     blocks: Mapping[str, Block],
     offsets: Mapping[str, int],
 ) -> None:
+    assert isinstance(comm, MPI.Intracomm)  # a file belongs to the ranks of one group
     # Opening, flushing and closing are collective, writing one's own rows is not: a rank that fails
     # never leaves the others waiting in a call that it skipped.
     with agreed(comm, path):

@@ -117,7 +117,7 @@ def _compute(planned: PlannedRun, options: RunOptions) -> Outcome:
     ):  # an interrupted run begins anew, and may have left its first tables
         options = replace(options, restart=False, overwrite=options.overwrite or options.restart)
     result = system.run(planned.design, options)
-    if options.out is not None and planned.design.output.figures:
+    if options.out is not None and system.draws_figures(planned.design):
         save_figures(result.plot, options.out)
     return Outcome.finished(system.measure(result))
 

@@ -98,7 +98,7 @@ def make_report(
 
 
 def _cases(results: Sequence[Result]) -> Table:
-    rows: list[Mapping[str, Any]] = study_rows(results)
+    rows: Sequence[Mapping[str, Any]] = study_rows(results)
     header = [name for name in rows[0] if name != "reason"]
     notes = {job.case.name: job.case.section.note for job, _ in results}
     if any(notes.values()):

@@ -57,6 +57,9 @@ class Drives(System[DriveDesign, DriveResult]):
 
         return drive_report(result)
 
+    def draws_figures(self, design: DriveDesign) -> bool:
+        return design.output.figures
+
     def without_output(self, table: dict[str, Any]) -> dict[str, Any]:
         # fields fill the disk, and windows take time that few studies need
         return apply_overrides(

@@ -62,6 +62,9 @@ class GearTrains(System[TrainDesign, TrainResult]):
 
         return train_report(result)
 
+    def draws_figures(self, design: TrainDesign) -> bool:
+        return design.output.figures
+
     def without_output(self, table: dict[str, Any]) -> dict[str, Any]:
         # published values of the file belong to its own design, and may name what a varied one does
         # not compute

@@ -107,6 +107,10 @@ class System(ABC, Generic[D, R]):
     def report(self, result: R) -> bytes:
         """The page report.html of a result that has a folder; call it on one rank."""
 
+    @abstractmethod
+    def draws_figures(self, design: D) -> bool:
+        """Whether a run with a results folder draws its figures."""
+
     # what studies need
 
     @abstractmethod

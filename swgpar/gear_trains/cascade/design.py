@@ -10,7 +10,6 @@ from annotated_types import Len
 from swgpar.errors import InputError
 from swgpar.gear_trains.common_sections import (
     GearTrain,
-    Output,
     Positive,
     TrainDesign,
     require_steps,
@@ -182,7 +181,6 @@ class CascadeDesign(TrainDesign):
     load: Load
     tolerances: Tolerances
     population: Population
-    output: Output = Output()
 
     def radius(self, gear: str) -> float:
         """Pitch radius of a gear, m."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -92,7 +93,4 @@ def block_shares(design: CascadeDesign, block: int, count: int) -> PopulationSha
 def population_tasks(design: CascadeDesign) -> list[Callable[[], PopulationShares]]:
     """Tasks for all blocks of the population."""
     sizes = block_sizes(design.population.gearboxes, BLOCK_SIZE)
-    return [
-        lambda block=block, size=size: block_shares(design, block, size)
-        for block, size in enumerate(sizes)
-    ]
+    return [partial(block_shares, design, block, size) for block, size in enumerate(sizes)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -36,7 +37,7 @@ CURVE_END = 2.5
 
 def compute(design: CascadeDesign, comm: MPI.Comm) -> TrainResult:
     """All results of a design, the same on all ranks; collective."""
-    first = [
+    first: list[Callable[[], object]] = [
         partial(one_load_cycle, design),
         *(partial(braked_load_shares, design, side) for side in DIRECTIONS),
     ]

@@ -19,6 +19,7 @@ The rack has the tolerances of a gear whose pitch circle is as long as the rack,
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from scipy.stats import spearmanr
@@ -98,4 +99,4 @@ def stack_up_tasks(
     design: CascadeDesign,
 ) -> list[Callable[[], tuple[np.ndarray, dict[str, float]]]]:
     """Tasks for the stack-ups of all kinds of meshes, in the order of MESH_COUNTS."""
-    return [lambda kind=kind: sample_stack_up(design, kind) for kind in MESH_COUNTS]
+    return [partial(sample_stack_up, design, kind) for kind in MESH_COUNTS]

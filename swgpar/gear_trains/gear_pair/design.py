@@ -11,7 +11,6 @@ from swgpar.gear_trains.common_sections import (
     Damping,
     GearTrain,
     MonteCarlo,
-    Output,
     Positive,
     TrainDesign,
     require_steps,
@@ -77,7 +76,6 @@ class GearPairDesign(TrainDesign):
     load: Load
     time: Time
     monte_carlo: MonteCarlo
-    output: Output = Output()
 
     @property
     def steps(self) -> int:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial, reduce
 from itertools import product
-from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -22,7 +21,7 @@ from swgpar.gear_trains.gear_pair.monte_carlo import BLOCK_SIZE, simulate
 from swgpar.gear_trains.gear_pair.quantities import VALUES
 from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.log import logger
-from swgpar.vibration.linearisation import EQUIVALENT, linearise
+from swgpar.vibration.linearisation import EQUIVALENT, Criterion, linearise
 from swgpar.vibration.moments import Moments, SampleMoments, columns, percent_errors
 from swgpar.vibration.sampling import block_sizes, random_stream, run_tasks
 
@@ -44,19 +43,23 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
         design.monte_carlo.samples,
         comm.size,
     )
-    grid = design.step, design.steps, design.every
     pairs = [(gear_pair_system(design, case), static_equilibrium(design, case)) for case in cases]
     keys = list(product(cases, EQUIVALENT))
-    tasks: list[Callable[[], Any]] = [
-        partial(linearise, *pairs[case], *grid, criterion) for case, criterion in keys
-    ]
-    tasks += [
-        partial(
-            simulate, *pairs[case], *grid, size, random_stream(design.gear_train.seed, case, block)
+    tasks: list[Callable[[], object]] = []
+    for case, criterion in keys:
+        system, start = pairs[case]
+        tasks.append(
+            partial(linearise, system, start, design.step, design.steps, design.every, criterion)
         )
-        for case in cases
-        for block, size in enumerate(sizes)
-    ]
+    for case in cases:
+        system, start = pairs[case]
+        for block, size in enumerate(sizes):
+            random = random_stream(design.gear_train.seed, case, block)
+            tasks.append(
+                partial(
+                    simulate, system, start, design.step, design.steps, design.every, size, random
+                )
+            )
     done, seconds = run_tasks(comm, tasks)
     first, rows = len(keys), np.vstack([np.eye(len(COORDINATES)), DEFLECTION_ROW])
     linearised = {key: found.of(rows) for key, found in zip(keys, done[:first], strict=True)}
@@ -95,7 +98,7 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
     return TrainResult(history, tables, values, summary)
 
 
-def _density(final: np.ndarray, by_method: Mapping[str, Moments]) -> Table:
+def _density(final: np.ndarray, by_method: Mapping[Criterion, Moments]) -> Table:
     """Probability densities of the mesh deflection at the end, per µm. final : (samples,) m"""
     counts, edges = np.histogram(1e6 * final, bins=BINS, density=True)
     middle = 0.5 * (edges[1:] + edges[:-1])

@@ -12,7 +12,6 @@ from swgpar.gear_trains.common_sections import (
     Damping,
     GearTrain,
     MonteCarlo,
-    Output,
     Positive,
     TrainDesign,
 )
@@ -122,7 +121,6 @@ class PlanetaryDesign(TrainDesign):
     wind: Wind
     time: Time
     monte_carlo: MonteCarlo
-    output: Output = Output()
 
     @property
     def end(self) -> float:

@@ -195,8 +195,9 @@ def linearise(stepper: TimeStepper, wind: WindLoad, every: int) -> TrainMoments:
         if step % every == 0:
             rows.append(state.monitored(step))
         forces.append(state.mesh_forces())
-    columns = (np.array(column) for table in (rows, forces) for column in zip(*table, strict=True))
-    return TrainMoments(*columns, smallest_eigenvalue, asymmetry)
+    mean, deviation = (np.array(column) for column in zip(*rows, strict=True))
+    force, square = (np.array(column) for column in zip(*forces, strict=True))
+    return TrainMoments(mean, deviation, force, square, smallest_eigenvalue, asymmetry)
 
 
 def _covariance_errors(covariance: np.ndarray) -> tuple[float, float]:

@@ -33,7 +33,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import eigh
 
-from swgpar.gear_trains.planetary.design import PlanetaryDesign
+from swgpar.gear_trains.planetary.design import Carrier, Planet, PlanetaryDesign, Sun
 from swgpar.vibration.mesh_stiffness import MeshStiffness
 
 SUN = 0
@@ -106,9 +106,10 @@ class PlanetaryModel:
         n = first + self.ring.size
         mass, stiffness = np.zeros((n, n)), np.zeros((n, n))
         sun_radius, planet_radius, centres = radii(design)
-        lumped = [(SUN, design.sun, sun_radius), (carrier_index(design), design.carrier, centres)]
-        lumped += [
-            (planet_index(k), design.planet, planet_radius) for k in range(design.planet.count)
+        lumped: list[tuple[int, Sun | Carrier | Planet, float]] = [
+            (SUN, design.sun, sun_radius),
+            (carrier_index(design), design.carrier, centres),
+            *((planet_index(k), design.planet, planet_radius) for k in range(design.planet.count)),
         ]
         for first_index, section, radius in lumped:
             at = first_index + np.arange(3)

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Len
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.common_sections import GearTrain, Output, Positive, TrainDesign
+from swgpar.gear_trains.common_sections import GearTrain, Positive, TrainDesign
 from swgpar.input.quantities import Section, quantity
 from swgpar.vibration.curved_beam import BeamSection, Ring, supports_restrain_ring
 
@@ -75,7 +75,6 @@ class RingDesign(TrainDesign):
     supports: Supports | None = None
     teeth: Teeth | None = None
     moving_load: MovingLoad | None = None
-    output: Output = Output()
 
     def beam_section(self) -> BeamSection:
         """The rectangular section."""

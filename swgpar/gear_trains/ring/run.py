@@ -72,7 +72,8 @@ def _moving(design: RingDesign, comm: MPI.Comm) -> tuple[list[Response], Table, 
     """Responses at all speeds, the curve of critical speeds, and Monte Carlo at the first speed."""
     load = design.moving_load
     loads = MovingLoads(design)
-    sweep = np.linspace(*load.sweep, load.sweep_speeds)
+    slowest, fastest = load.sweep
+    sweep = np.linspace(slowest, fastest, load.sweep_speeds)
     sizes = block_sizes(load.samples, BLOCK_SIZE)
     tasks: list[Callable[[], Any]] = [
         partial(loads.respond, float(speed)) for speed in (*load.speeds, *sweep)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -56,7 +57,7 @@ def advise(
     """
     ranges = []
     for key, value in lengths.items():
-        working = working_range(key, value, lambda x, key=key: builds(key, x), unit)
+        working = working_range(key, value, partial(builds, key), unit)
         if working is not None:
             ranges.append(working)
     if not ranges:
