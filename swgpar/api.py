@@ -238,7 +238,8 @@ def run(
     >>> result.summary["root.s1"].value, result.history["fs_s1"].max()
     """
     comm = MPI.COMM_WORLD if comm is None else comm
-    terminal, folder = _terminal(progress), given_folder(out)
+    terminal = _terminal(progress)
+    folder = None if out is None else given_folder(out)
     given = RunOptions(
         folder,
         accuracy=accuracy,

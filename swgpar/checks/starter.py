@@ -225,7 +225,9 @@ def _table(request: Request, play: float) -> dict[str, Any]:
     teeth = round(lobes * request.ratio) - (0 if request.layout == "ring_fixed" else lobes)
     if request.diameter is not None:
         module = request.diameter / teeth
-    else:  # the inner radius is the pitch radius less dedendum and rim
+    else:
+        assert request.bore is not None  # one of both is given
+        # the inner radius is the pitch radius less dedendum and rim
         module = 0.5 * request.bore / ((0.5 - RIM[lobes]) * teeth - DEDENDUM)
     module = _rounded(module, 6)
     pitch = module * teeth

@@ -14,7 +14,7 @@ from swgpar.input.toml_file import Overrides, apply_overrides
 class Design(Section):
     """The content of a design file. Attributes are its sections; a design never changes."""
 
-    _maker: Callable[[dict[str, Any]], Self] | None = PrivateAttr(None)
+    _maker: Callable[[dict[str, Any]], Self] = PrivateAttr()
 
     def made_by(self, maker: Callable[[dict[str, Any]], Self]) -> Self:
         """This design, which `maker` has checked: designs that are made of it are checked in the

@@ -57,7 +57,7 @@ def _locate(
         if field and field.discriminator and path:
             tag = path.pop(0)
             classes = [c for c in classes if tag in get_args(c.model_fields["type"].annotation)]
-        if classes and path and _is_list(field):
+        if field and classes and path and _is_list(field):
             keys.append(path.pop(0) + 1)
         if not (classes and path):
             break
@@ -108,9 +108,8 @@ def sentence(model: type[Section], error: ValidationError) -> str:
     if _section_classes(field):
         return _bad_section(field, kind, key, value)
     if kind == "literal_error":
-        return (
-            f"{key} = {show(value)} is not available: allowed {_choices(field.annotation.__args__)}"
-        )
+        names = get_args(field.annotation)
+        return f"{key} = {show(value)} is not available: allowed {_choices(names)}"
     return _bad_value(field, kind, key, value)
 
 

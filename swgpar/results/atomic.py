@@ -50,7 +50,7 @@ def on_all(comm: MPI.Comm, task: Callable[[], T]) -> T:
 
     `task` must not contain collective calls after a statement that can fail on one rank only.
     """
-    value, failure = None, None
+    failure: SwgparError | None = None
     try:
         value = task()
     except SwgparError as error:

@@ -129,7 +129,9 @@ class FieldParts:
         return BodyMesh(points, (part.cells + sector).reshape(-1, 8))
 
     def flanks(self, body: str) -> FlankGrids:
-        return self._bodies[body].flanks
+        grids = self._bodies[body].flanks
+        assert grids is not None  # it is asked of gears only
+        return grids
 
     def names(self, body: str, increment: int) -> tuple[str, ...]:
         return tuple(sorted(self._fields[body][increment]))

@@ -87,12 +87,12 @@ RESULTS = (
 """Files that `overwrite` removes."""
 
 
-def given_folder(out: str | Path | None) -> Path | None:
+def given_folder(out: str | Path) -> Path:
     """The folder that a user has given; raises InputError for an empty text, which would be the
     working directory."""
     if isinstance(out, str) and not out.strip():
         raise InputError(f"out = {show(out)} names no folder: give the path of one")
-    return None if out is None else Path(out)
+    return Path(out)
 
 
 def open_log(out: Path | None, comm: MPI.Comm) -> None:

@@ -170,7 +170,7 @@ def run_study(
     OutputError
         A folder that cannot be written. A case that fails is an outcome.
     """
-    folder = given_folder(out)
+    folder = None if out is None else given_folder(out)
     study, jobs = _read(source, comm)
     statuses: list[str | None] | None = [None] * len(jobs)
     if folder is not None:
