@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from swgpar.design.cup_section import Cup
@@ -376,10 +374,13 @@ class DriveDesign(Design):
         return self.contact.wg_penalty_coef * self.modulus_of("flexible_spline") / self.drive.module
 
     @property
-    def materials(self) -> dict[DesignBody, Material]:
+    def materials(self) -> dict[str, Material]:
         """Materials of the gears, of the housing and of the bearing by name: that of their own
         section, else [material]."""
-        sections: dict[DesignBody, Any] = {"housing": self.housing, "bearing": self.bearing}
+        sections: dict[str, Gear | Housing | Bearing | None] = {
+            "housing": self.housing,
+            "bearing": self.bearing,
+        }
         sections |= {gear: getattr(self, gear) for gear in self.gears}
         return {
             body: section.material or self.material

@@ -44,7 +44,8 @@ def history_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
 def shown_output(design: DriveDesign, row: Row) -> float:
     """Angle of the output (degrees), within half a turn, of a row in the frame in which the drive
     is computed."""
-    return float(wrapped(design.in_frame_of_result(row["output_angle_deg"], row["wg_angle_deg"])))
+    angle = design.in_frame_of_result(row["output_angle_deg"], row["wg_angle_deg"])
+    return float(wrapped(np.array(angle)))
 
 
 def nodal_fields(

@@ -82,9 +82,14 @@ class Rotation(AnswerGroup):
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
         if design.has_program:
             return ()
-        left_out = () if design.dynamic_spline is not None else ("mean.ds_", "maximum.ds_")
-        left_out += () if design.wave_generator_is_fixed else ("input.",)
-        return tuple(kind for kind in super().kinds(design) if not kind.name.startswith(left_out))
+        left_out: tuple[str, ...] = ()
+        if design.dynamic_spline is None:
+            left_out += ("mean.ds_", "maximum.ds_")
+        if not design.wave_generator_is_fixed:
+            left_out += ("input.",)
+        return tuple(
+            kind for kind in super().kinds(design) if not kind.name.startswith(tuple(left_out))
+        )
 
     def answers(self) -> Iterator[Answer]:
         for one in super().answers() if self.means else ():

@@ -138,7 +138,7 @@ class LocalProblem:
             drive_mesh, flank_forces(model, state, teeth, model.problem.flanks_of(RING_GEAR))
         )
         displacement = self._of_the_drive(teeth)
-        scale = design.modulus_of(mesh.body) * design.drive.module
+        scale = design.modulus_of("flexible_spline") * design.drive.module
         problem = DiscreteProblem(
             partition=self.partition,
             elements=self.elements,

@@ -405,7 +405,8 @@ def _solve(
 ) -> dict[tuple[int, bool], WindowStress]:
     """Largest stresses at the ends of teeth or between them, by tooth and whether at the ends: a
     window per tooth."""
-    first, found = model.partition.layouts[FLEXIBLE_SPLINE].first_tooth, {}
+    first = model.partition.layouts[FLEXIBLE_SPLINE].first_tooth
+    found: dict[tuple[int, bool], WindowStress] = {}
     for tooth in dict.fromkeys(tooth for tooth, _ in places):
         window = LocalProblem(model, state, first + tooth, recipe)
         try:
