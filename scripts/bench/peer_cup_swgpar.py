@@ -26,7 +26,8 @@ from swgpar.log import PhaseTimes
 from swgpar.meshing import load_recipe
 from swgpar.meshing.export import sector_numbers
 from swgpar.meshing.tooth_sector import build_sector
-from swgpar.model.drive_model import build_gear, build_layout, newton_settings
+from swgpar.model.drive_model import newton_settings
+from swgpar.model.layouts import build_gear, build_layout
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.line_search import LineSearch
 from swgpar.solve.newton import NewtonSolver
@@ -44,7 +45,8 @@ def main() -> None:
         build_sector(design.geometry, load_recipe(name), BODY),
         design.materials[BODY],
     )
-    layout = build_layout(design, build_gear(design, mesh))
+    gear = build_gear(mesh, design.materials, design.drive.face_width)
+    layout = build_layout(gear, copies=design.copies, condensed_teeth=design.condenses_teeth)
     partition = Partition([layout], comm)
     elements = Elements(partition)
     body = elements.bodies[BODY]

@@ -241,6 +241,11 @@ class DriveDesign(Design):
         return float(np.pi * teeth[ring].module - sum(thickness))
 
     @property
+    def largest_backlash(self) -> float:
+        """Largest circumferential backlash (mm) of a ring gear; 0 where teeth interfere."""
+        return max(0.0, *map(self.backlash_of, self.gears[1:]))
+
+    @property
     def backlash_angle(self) -> float:
         """Rotation gamma of the flexible spline that closes the backlash on one side, rad (eq.
         6.4)."""
@@ -333,6 +338,18 @@ class DriveDesign(Design):
             self.lobes,
             self.wave_generator.type == "elliptical",
         )
+
+    @property
+    def condenses_teeth(self) -> bool:
+        """Whether a tooth is one element where nothing touches it."""
+        return self.solver.far_teeth == "left_out" and self.drive.model != "plane"
+
+    @property
+    def leaves_out_sectors(self) -> bool:
+        """Whether sectors of the ring gear out of reach are left out; an elastic housing gives way
+        all round."""
+        clamped = self.standing_gear == "ring_gear" and self.housing is None
+        return self.solver.far_teeth == "left_out" and clamped
 
     @property
     def can_condense(self) -> bool:

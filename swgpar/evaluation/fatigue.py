@@ -308,10 +308,10 @@ def _root_factor(root_stress: RootStress | None) -> tuple[float, float]:
 
 def _regions(cycle: StressCycle) -> tuple[np.ndarray, np.ndarray]:
     """Region and warning (n,) of the kept nodes; collective."""
-    design, mesh = cycle.model.design, cycle.body.layout.mesh
+    geometry, mesh = cycle.model.geometry, cycle.body.layout.mesh
     touched = np.zeros(len(mesh.coords), dtype=bool)
     touched[cycle.nodes] = cycle.model.comm.allreduce(cycle.touched.astype(int), op=MPI.SUM) > 0
-    near = near_contact(mesh, touched[None], APART_DISTANCE * design.drive.module)[0]
+    near = near_contact(mesh, touched[None], APART_DISTANCE * geometry.module)[0]
     names = cycle.model.regions[FLEXIBLE_SPLINE][False]
     regions, warnings = [], []
     for node in cycle.nodes:
@@ -319,7 +319,7 @@ def _regions(cycle: StressCycle) -> tuple[np.ndarray, np.ndarray]:
         if near[node] and region != ROOT:
             region = CONTACT
         regions.append(region)
-        warnings.append(warning_of(design, region, mesh.coords[node]))
+        warnings.append(warning_of(geometry, region, mesh.coords[node]))
     return np.array(regions), np.array(warnings)
 
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.answers import (
     Answer,
     AnswerGroup,
@@ -21,6 +20,7 @@ from swgpar.evaluation.answers import (
 )
 from swgpar.evaluation.contact_pressure import nodal_pressure
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.load.load_states import LoadState
 from swgpar.meshing.sector import SectorMesh
 from swgpar.model.drive_model import DriveModel
@@ -160,10 +160,10 @@ def find_places(
     pressed = pressed_nodes(
         model, state
     )  # those of the spline; any flank of the ring gear may be touched
-    found, design = {}, model.design
+    found, geometry = {}, model.geometry
     distance, on_rollers = (
-        APART_DISTANCE * design.drive.module,
-        design.wave_generator.type == "four_roller",
+        APART_DISTANCE * geometry.module,
+        model.design.wave_generator.type == "four_roller",
     )
     for name in (FLEXIBLE_SPLINE, RING_GEAR):
         body = model.elements.bodies[name]
@@ -172,7 +172,7 @@ def find_places(
         touched = np.ones(fields[name]["s3"].shape, dtype=bool) if ring else pressed
         # every sector of the ring gear is alike: one stands for all
         near = near_contact(body.layout.mesh, touched[:1] if ring else touched, distance)
-        near |= inside_teeth(design, body.layout.mesh)
+        near |= inside_teeth(geometry, body.layout.mesh)
         apart = np.broadcast_to(~near, touched.shape)
         regions = model.regions[name]
         beyond = np.ones(touched.shape[1], dtype=bool)  # nodes of the housing
@@ -219,28 +219,26 @@ def _by_region(
     }
 
 
-def inside_teeth(design: DriveDesign, mesh: SectorMesh) -> np.ndarray:
+def inside_teeth(geometry: DriveGeometry, mesh: SectorMesh) -> np.ndarray:
     """Whether a node (n_node,) of a sector lies inside of its tooth: neither on a surface nor in
     the rim."""
     radius, z = np.hypot(mesh.coords[:, 0], mesh.coords[:, 1]), mesh.coords[:, 2]
     low, high = sorted((mesh.profile.r_root_circle, mesh.profile.r_tip_circle))
-    near = NEAR * design.drive.module
+    near = NEAR * geometry.module
     inside = (radius > low + near) & (radius < high - near)
     if not mesh.plane:
-        inside &= np.abs(z) < 0.5 * design.drive.face_width - near
+        inside &= np.abs(z) < 0.5 * geometry.face_width - near
     for grid in mesh.flanks:
         inside[grid.nodes.ravel()] = False
     return inside
 
 
-def root_nodes(design: DriveDesign, mesh: SectorMesh) -> np.ndarray:
+def root_nodes(geometry: DriveGeometry, mesh: SectorMesh) -> np.ndarray:
     """Nodes (n,) on the roots of a sector's tooth, between its ends."""
     nodes = [grid.nodes[grid.s >= mesh.profile.breaks[-2]].ravel() for grid in mesh.flanks]
     found = np.unique(np.concatenate(nodes))
     return (
-        found
-        if mesh.plane
-        else found[np.abs(mesh.coords[found, 2]) <= END * design.drive.face_width]
+        found if mesh.plane else found[np.abs(mesh.coords[found, 2]) <= END * geometry.face_width]
     )
 
 
@@ -290,7 +288,7 @@ def _largest(model: DriveModel, name: str, values: np.ndarray, touched: np.ndarr
             int(node),
             bool(touched[sector, node]),
         )
-    mine = float(values[:, root_nodes(model.design, body.layout.mesh)].max(initial=0.0))
+    mine = float(values[:, root_nodes(model.geometry, body.layout.mesh)].max(initial=0.0))
     in_root = max(model.comm.allgather(mine))
     value, sector, node, pressed = max(model.comm.allgather(best), key=lambda one: one[0])
     x, y, z = point = body.layout.mesh.coords[node]
@@ -305,7 +303,7 @@ def _largest(model: DriveModel, name: str, values: np.ndarray, touched: np.ndarr
         radius=float(np.hypot(x, y)),
         z=0.0 if body.layout.mesh.plane else float(z),
         angle_deg=float(np.degrees(angle)) % 360.0,
-        warning=warning_of(model.design, region, point),
+        warning=warning_of(model.geometry, region, point),
         in_root=in_root,
         root_spacing=root_spacing(body.layout.mesh),
     )

@@ -85,6 +85,12 @@ class DriveGeometry:
     housing: float
 
     @property
+    def cup_thickness(self) -> float:
+        """Thickness (mm) of the wall at the back of the teeth; that of the rim without a cup."""
+        share = 1.0 if self.cup is None else self.cup.thickness_coef
+        return share * self.gears["flexible_spline"].rim
+
+    @property
     def outer_radius(self) -> float:
         """Outer radius of the ring gear, mm, or of its housing."""
         return self.gears["ring_gear"].outer_radius + self.housing

@@ -3,6 +3,7 @@ factories."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,8 +11,7 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans, RadialGuide
-from swgpar.constraints.rigid_attachment import RigidAttachment, face_sides
+from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans
 from swgpar.constraints.supports import (
     RING_COUPLING,
     SPLINE_COUPLING,
@@ -20,19 +20,19 @@ from swgpar.constraints.supports import (
     Supports,
 )
 from swgpar.contact.contact import largest
-from swgpar.contact.flank_state import SearchRange
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
 from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.design.drive_design import DriveDesign
-from swgpar.fem.body import FLEXIBLE_SPLINE, OUTER_RACE, RING_GEAR, Body
+from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.body_layout import BodyLayout
-from swgpar.fem.condensed_parts import condense_sector, condense_tooth, relative_end_rotation
+from swgpar.fem.condensed_parts import relative_end_rotation
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.sectors_in_reach import RingSectors, WholeTeeth
 from swgpar.fem.stress import body_fields, part_maxima
-from swgpar.log import PhaseTimes, logger
+from swgpar.geometry.drive_geometry import DriveGeometry
+from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
 from swgpar.model.bearing_model import (
     build_ball_contact,
@@ -40,8 +40,11 @@ from swgpar.model.bearing_model import (
     build_race_contact,
     race_coupling,
 )
+from swgpar.model.contact_distances import contact_search, foot_reach
+from swgpar.model.couplings import ring_guide, spline_attachment
+from swgpar.model.layouts import build_gear, build_layout
 from swgpar.model.regions import sector_regions
-from swgpar.solve.discrete_problem import ContactSearch, DiscreteProblem
+from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
 from swgpar.solve.solve_state import NewtonSettings
 
@@ -49,31 +52,8 @@ PRESSURE_LIMIT = 0.02
 """Bound of contact pressures in the tangent's geometric terms, as a share of E: above any real
 pressure."""
 
-NEAR = 0.25
-REACH = 0.1
-TOUCH = 0.01
-TIP_MARGIN = 0.1
-"""Distances of the contact search over the module: faces that are evaluated, those of a flank one
-of which is closer than the second distance; faces with blocks in the tangent's pattern; radial
-distance of the tips."""
-
-FOOT_REACH = 0.5
-"""Largest gap over the module at which a foot point is looked for."""
-
 EDGE = 1.0 + 1e-9
 """Factor on the width of a rigid surface: points on its edge belong to it."""
-
-
-def search_distance(design: DriveDesign, share: float = NEAR) -> float:
-    """Distance (mm) within which flanks are followed: under torque all those that the backlash may
-    bring together.
-
-    share : of the module, at least
-    """
-    return max(
-        share * design.drive.module,
-        TOUCH * design.drive.module + max(0.0, *map(design.backlash_of, design.gears[1:])),
-    )
 
 
 @dataclass(eq=False, kw_only=True)
@@ -81,6 +61,7 @@ class DriveModel:
     """Everything that exists once per run; made by `build_drive_model`.
 
     design, comm : what is computed, and the communicator
+    geometry : sizes of the design from which the meshes were made
     meshes : one sector of each body by name
     partition, elements : ownership and elements
     problem, solver : discrete problem and its Newton solver
@@ -88,6 +69,7 @@ class DriveModel:
     """
 
     design: DriveDesign
+    geometry: DriveGeometry
     comm: MPI.Comm
     meshes: dict[str, SectorMesh]
     partition: Partition
@@ -139,7 +121,7 @@ class DriveModel:
         """Regions of the nodes of a sector of flexible spline and ring gear by name, see
         `sector_regions`."""
         return {
-            name: sector_regions(self.design, self.meshes[name])
+            name: sector_regions(self.geometry, self.meshes[name])
             for name in (FLEXIBLE_SPLINE, RING_GEAR)
         }
 
@@ -183,13 +165,11 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
 
     Raises InputError where the recipe gives no mesh of this design.
     """
-    phases = PhaseTimes()
+    phases, geometry = PhaseTimes(), design.geometry
     with phases("mesh"):
-        meshes = build_sector_meshes(design.geometry, recipe)
+        meshes = build_sector_meshes(geometry, recipe)
     with phases("elements"):
-        layouts = [build_layout(design, build_gear(design, mesh)) for mesh in meshes.values()]
-        if design.bearing is not None:
-            layouts.append(build_layout(design, build_race(design, meshes[FLEXIBLE_SPLINE])))
+        layouts = build_layouts(design, meshes)
     partition = Partition(layouts, comm)
     with phases("elements"):
         symmetric = design.contact.friction == 0.0
@@ -203,10 +183,15 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
         flanks=build_flank_contacts(
             design, partition=partition, elements=elements, supports=supports
         ),
-        contact_search=contact_search(design),
+        contact_search=contact_search(
+            design.drive.module,
+            design.largest_backlash,
+            outer_radius=0.5 * design.drive.teeth_rg * design.drive.module + design.deflection,
+            condensed_teeth=design.condenses_teeth,
+        ),
         module=design.drive.module,
         ring_sectors=RingSectors(partition.layouts[RING_GEAR].count)
-        if _leaves_out_sectors(design)
+        if design.leaves_out_sectors
         else None,
         whole_teeth=[
             WholeTeeth(layout.count, layout.name) for layout in layouts if layout.tooth is not None
@@ -216,6 +201,7 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
     solver = NewtonSolver(problem, newton_settings(design))
     return DriveModel(
         design=design,
+        geometry=geometry,
         comm=comm,
         meshes=meshes,
         partition=partition,
@@ -226,43 +212,23 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
     )
 
 
-def build_gear(design: DriveDesign, mesh: SectorMesh) -> Body:
-    """A gear, with its housing where the mesh has one."""
-    parts = (mesh.body, "housing")[: len(mesh.parts)]
-    return Body(mesh, tuple(design.materials[part] for part in parts), design.drive.face_width)
-
-
-def build_layout(design: DriveDesign, body: Body) -> BodyLayout:
-    """Modelled sectors of a body; a race has no sectors that are condensed."""
-    copies, mesh, race = design.copies, body.mesh, body.name == OUTER_RACE
-    standing = mesh.body == design.standing_gear != "flexible_spline"
-    clamped = standing and design.frame_is_rigid
-    fixed = mesh.node_sets["outer"] if clamped else np.zeros(0, dtype=np.int32)
-    condensed = tooth = None
-    if not race and design.solver.condensed_sectors:
-        condensed = condense_sector(mesh, body.elements)
-    elif not race and len(mesh.tooth) and _condenses_teeth(design):
-        tooth = condense_tooth(mesh, body.elements)
-    return BodyLayout(
-        body=body,
-        first_tooth=0,
-        count=mesh.n_sectors // copies,
-        closed=True,
-        copies=copies,
-        fixed=fixed,
-        condensed=condensed,
-        tooth=tooth,
-    )
-
-
-def _leaves_out_sectors(design: DriveDesign) -> bool:
-    # an elastic housing gives way all round
-    clamped = design.standing_gear == "ring_gear" and design.housing is None
-    return design.solver.far_teeth == "left_out" and clamped
-
-
-def _condenses_teeth(design: DriveDesign) -> bool:
-    return design.solver.far_teeth == "left_out" and design.drive.model != "plane"
+def build_layouts(design: DriveDesign, meshes: Mapping[str, SectorMesh]) -> list[BodyLayout]:
+    """Modelled sectors of the gears and of the outer race."""
+    held = design.standing_gear if design.frame_is_rigid else None
+    layouts = [
+        build_layout(
+            build_gear(mesh, design.materials, design.drive.face_width),
+            copies=design.copies,
+            clamped=name == held != FLEXIBLE_SPLINE,
+            condensed_sectors=design.solver.condensed_sectors,
+            condensed_teeth=design.condenses_teeth,
+        )
+        for name, mesh in meshes.items()
+    ]
+    if design.bearing is not None:
+        race = build_race(design, meshes[FLEXIBLE_SPLINE])
+        layouts.append(build_layout(race, copies=design.copies))
+    return layouts
 
 
 def build_supports(design: DriveDesign, *, partition: Partition, elements: Elements) -> Supports:
@@ -275,36 +241,17 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
     rotates, guide = design.output_gear != "flexible_spline", None
     couplings: list[NodeMeans] = []
     if design.has_attachment:
-        cup, penalty = design.cup, design.penalty("flexible_spline")
-        attachment = RigidAttachment(
-            partition,
-            spline,
-            "end",
-            cup.is_attached,
-            cup.attached_width,
-            penalty=penalty,
-            images=copies > 1,
-        )
+        penalty = design.penalty("flexible_spline")
+        attachment = spline_attachment(partition, spline, design.cup, penalty, images=copies > 1)
         couplings.append(attachment)
-        longest = float(face_sides(spline.layout.mesh, "end").max())
-        if design.is_bolted and longest > cup.washer_diameter:
-            logger.warning(
-                "elements of the closed end or flange are up to %.3g mm long, a washer is %.3g mm "
-                "wide: a mesh with "
-                "shorter elements there holds the bolts better",
-                longest,
-                cup.washer_diameter,
-            )
     else:
         couplings.append(DistributingCoupling(partition, spline, "bore", copies > 1, centred))
     if rotates or not design.frame_is_rigid:
         ring = elements.bodies[design.output_gear if rotates else RING_GEAR]
         couplings.append(DistributingCoupling(partition, ring, "outer", copies > 1))
     if rotates and design.frame_is_rigid:
-        outer = float(np.hypot(*couplings[-1].undeformed[:, :2].T).max(initial=0.0))
-        low, high = design.axial_range(design.output_gear)
-        area = 2.0 * np.pi * outer * (high - low) / copies
-        guide = RadialGuide(couplings[-1], area, design.penalty(design.output_gear))
+        ends = design.axial_range(design.output_gear)
+        guide = ring_guide(couplings[-1], ends, copies, design.penalty(design.output_gear))
     scale = design.modulus_of("flexible_spline") * design.drive.module
     race = None if design.bearing is None else race_coupling(partition, elements, couplings[0])
     spline_ratio = None
@@ -376,23 +323,12 @@ def build_flank_contacts(
                 order=design.contact.quadrature,
                 crowning=design.crowning,
                 penalty=design.penalty("flexible_spline", name),
-                max_gap=max(FOOT_REACH * design.drive.module, search_distance(design)),
+                max_gap=foot_reach(design.drive.module, design.largest_backlash),
                 pressure_limit=PRESSURE_LIMIT * design.modulus_of("flexible_spline", name),
                 friction_coefficient=design.contact.friction,
             )
         )
     return contacts
-
-
-def contact_search(design: DriveDesign) -> ContactSearch:
-    """Distances of the contact search."""
-    module = design.drive.module
-    reach = search_distance(design, REACH if _condenses_teeth(design) else NEAR)
-    return ContactSearch(
-        tip_margin=TIP_MARGIN * module,
-        distances=SearchRange(near=search_distance(design), reach=reach, touch=TOUCH * module),
-        outer_radius=0.5 * design.drive.teeth_rg * module + design.deflection,
-    )
 
 
 def newton_settings(design: DriveDesign) -> NewtonSettings:

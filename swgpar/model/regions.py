@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.sector import SectorMesh
 
 BACK = "fillet at the back"
@@ -33,40 +33,42 @@ EDGE = "at the edge of the wave generator: edge contact, no limit to converge to
 CLAMPED = "at the edge of a rigid attachment: no limit to converge to"
 
 
-def sector_regions(design: DriveDesign, mesh: SectorMesh) -> dict[bool, np.ndarray]:
+def sector_regions(geometry: DriveGeometry, mesh: SectorMesh) -> dict[bool, np.ndarray]:
     """Regions (n_node,) of the nodes of a sector, by whether a contact of flanks presses on
     them."""
     nodes = range(len(mesh.coords))
     return {
-        touched: np.array([region_of(design, mesh, node, touched) for node in nodes])
+        touched: np.array([region_of(geometry, mesh, node, touched) for node in nodes])
         for touched in (False, True)
     }
 
 
-def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -> str:
+def region_of(geometry: DriveGeometry, mesh: SectorMesh, node: int, touched: bool) -> str:
     """Region of a node of a tooth sector. touched : whether a contact of flanks presses on it, or
     close to it"""
     x, y, z = mesh.coords[node]
-    radius, half = float(np.hypot(x, y)), 0.5 * design.drive.face_width
-    if not mesh.plane and _at_the_back(design, mesh, radius, float(z)):
+    radius, half = float(np.hypot(x, y)), 0.5 * geometry.face_width
+    if not mesh.plane and _at_the_back(geometry, mesh, radius, float(z)):
         return BACK
     if not mesh.plane and z > half * (1.0 + 1e-9):
-        return _region_of_the_cup(design, mesh, node, radius, float(z))
+        return _region_of_the_cup(
+            geometry.cup, NEAR * geometry.module, mesh, node, radius, float(z)
+        )
     inner = (
         mesh.body == "flexible_spline"
-        and radius < design.inner_radius + 0.5 * design.flexible_spline.rim
+        and radius < geometry.inner_radius + 0.5 * geometry.gears["flexible_spline"].rim
     )
     if inner:
         return "rim inside"
     for grid in mesh.flanks:
         rows, _ = np.nonzero(grid.nodes == node)
         if len(rows):
-            return _region_of_the_flank(design, mesh, float(grid.s[rows[0]]), float(z), touched)
+            return _region_of_the_flank(geometry, mesh, float(grid.s[rows[0]]), float(z), touched)
     root = mesh.profile.r_root_circle
-    near = NEAR * design.drive.module
+    near = NEAR * geometry.module
     inside = UNDER_CONTACT if touched else "inside the tooth"
     if mesh.body == "ring_gear":
-        outer = root + design.ring_gear.rim
+        outer = geometry.gears["ring_gear"].outer_radius
         if radius < root - near:
             return "tip" if radius < mesh.profile.r_tip_circle + near else inside
         return (
@@ -76,38 +78,33 @@ def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -
             if radius > root + near
             else TOOTH_ROOT
         )
-    if design.has_cup and abs(z - half) < near and radius < root + near:
+    if geometry.cup is not None and abs(z - half) < near and radius < root + near:
         return "notch"
     if radius < root + near:
-        return (
-            TOOTH_END if abs(z) > END * design.drive.face_width and not mesh.plane else TOOTH_ROOT
-        )
+        return TOOTH_END if abs(z) > END * geometry.face_width and not mesh.plane else TOOTH_ROOT
     if radius > mesh.profile.r_tip_circle - near:
         return "tip"
-    at_end = abs(z) > END * design.drive.face_width and not mesh.plane
+    at_end = abs(z) > END * geometry.face_width and not mesh.plane
     return TOOTH_END if at_end and not touched else inside
 
 
-def _at_the_back(design: DriveDesign, mesh: SectorMesh, radius: float, z: float) -> bool:
+def _at_the_back(geometry: DriveGeometry, mesh: SectorMesh, radius: float, z: float) -> bool:
     """Whether a point (mm) lies on the fillet at the back of the teeth, or close below it."""
-    if mesh.body != "flexible_spline" or design.cup is None or design.cup.back_fillet == 0.0:
+    cup, near = geometry.cup, NEAR * geometry.module
+    if mesh.body != "flexible_spline" or cup is None or cup.back_fillet == 0.0:
         return False
-    fillet, wall, near = (
-        design.cup.back_fillet,
-        design.inner_radius + design.cup_thickness,
-        NEAR * design.drive.module,
-    )
-    back = 0.5 * design.drive.face_width
+    wall = geometry.inner_radius + geometry.cup_thickness
+    back = 0.5 * geometry.face_width
     return (
-        back - near < z < back + fillet + near
+        back - near < z < back + cup.back_fillet + near
         and wall - near < radius < mesh.profile.r_root_circle + near
     )
 
 
 def _region_of_the_flank(
-    design: DriveDesign, mesh: SectorMesh, s: float, z: float, touched: bool
+    geometry: DriveGeometry, mesh: SectorMesh, s: float, z: float, touched: bool
 ) -> str:
-    if abs(z) > END * design.drive.face_width and not mesh.plane and not touched:
+    if abs(z) > END * geometry.face_width and not mesh.plane and not touched:
         return TOOTH_END
     if s >= mesh.profile.breaks[-2]:
         return TOOTH_ROOT
@@ -115,31 +112,31 @@ def _region_of_the_flank(
 
 
 def _region_of_the_cup(
-    design: DriveDesign, mesh: SectorMesh, node: int, radius: float, z: float
+    cup: CupGeometry, near: float, mesh: SectorMesh, node: int, radius: float, z: float
 ) -> str:
-    wall = design.cup_sizes.wall
-    if _is_attached(design, radius) and z > min(wall.faces) - NEAR * design.drive.module:
+    """Region of a node of the wall, closed end or flange. near : mm"""
+    wall = cup.wall
+    if _is_attached(cup, radius, near) and z > min(wall.faces) - near:
         return ATTACHED
     if node in mesh.node_sets["bore"]:
         return "rim of the flange" if wall.outwards else "bore"
-    (r_center, z_center), near = wall.center, NEAR * design.drive.module
+    r_center, z_center = wall.center
     beyond = radius > r_center if wall.outwards else radius < r_center
     if beyond and z > min(wall.faces) - near:
         return "flange" if wall.outwards else "closed end"
     return "fillet" if z > z_center + near else "cup wall"
 
 
-def _is_attached(design: DriveDesign, radius: float) -> bool:
+def _is_attached(cup: CupGeometry, radius: float, near: float) -> bool:
     """Whether points at a radius (mm) of closed end or flange are clamped, or lie under bolts or
     between them."""
-    cup, near = design.cup, NEAR * design.drive.module
-    if cup.attachment == "bolted":
-        return abs(radius - 0.5 * cup.bolt_circle) < 0.5 * cup.washer_diameter + near
-    point = np.array([0.0, radius + near if cup.shape == "hat" else radius - near])
-    return bool(cup.is_attached(point))
+    if cup.attached_ring is None:
+        return False
+    low, high = cup.attached_ring
+    return low - near <= radius <= high + near
 
 
-def warning_of(design: DriveDesign, region: str, point: np.ndarray) -> str:
+def warning_of(geometry: DriveGeometry, region: str, point: np.ndarray) -> str:
     """Why a stress at a point (3,) mm of a region has no limit, or depends on the mesh; empty where
     it converges."""
     if region == UNDER_CONTACT:
@@ -148,8 +145,8 @@ def warning_of(design: DriveDesign, region: str, point: np.ndarray) -> str:
         return NOTCH
     if region == ATTACHED:
         return CLAMPED
-    edge = 0.5 * design.wave_generator.face_width
-    at_edge = region == "rim inside" and abs(abs(point[2]) - edge) < NEAR * design.drive.module
-    if design.drive.model != "plane" and at_edge:
+    edge = 0.5 * geometry.cam_width
+    at_edge = region == "rim inside" and abs(abs(point[2]) - edge) < NEAR * geometry.module
+    if geometry.model != "plane" and at_edge:
         return EDGE
     return ""

@@ -23,7 +23,8 @@ from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import load_recipe
 from swgpar.meshing.tooth_sector import build_sector
-from swgpar.model.drive_model import build_gear, build_layout, newton_settings
+from swgpar.model.drive_model import newton_settings
+from swgpar.model.layouts import build_gear, build_layout
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
 from swgpar.systems.drive import DRIVE
@@ -214,7 +215,8 @@ def test_a_housing_under_two_opposite_radial_loads(halved: bool) -> None:
     )
     mesh = build_sector(design.geometry, load_recipe(RECIPE), "ring_gear")
     width = design.drive.face_width
-    partition = Partition([build_layout(design, build_gear(design, mesh))], MPI.COMM_SELF)
+    layout = build_layout(build_gear(mesh, design.materials, width), copies=design.copies)
+    partition = Partition([layout], MPI.COMM_SELF)
     body_elements = Elements(partition)
     body = body_elements.bodies["ring_gear"]
     coupling = DistributingCoupling(partition, body, "outer", halved)

@@ -31,7 +31,8 @@ def cup() -> tuple[DriveDesign, SectorMesh]:
 def regions(
     cup: tuple[DriveDesign, SectorMesh], nodes: np.ndarray, touched: bool = False
 ) -> set[str]:
-    return {region_of(*cup, int(node), touched) for node in nodes}
+    geometry = cup[0].geometry
+    return {region_of(geometry, cup[1], int(node), touched) for node in nodes}
 
 
 def test_regions_of_the_cup(cup: tuple[DriveDesign, SectorMesh]) -> None:
@@ -74,14 +75,17 @@ def test_a_fillet_takes_the_place_of_the_notch() -> None:
     )
     assert len(on) > 10
     assert regions((design, mesh), on) == {BACK}
-    assert set(on) <= set(tooth_nodes(mesh, design, ends=True))
+    assert set(on) <= set(tooth_nodes(mesh, design.geometry, ends=True))
     assert "notch" not in regions((design, mesh), np.arange(len(z)))
 
 
 def test_regions_of_the_ring_gear() -> None:
     design = load_design(REFERENCE)
     mesh = build_sector(design.geometry, load_recipe("coarse"), "ring_gear")
-    found = {region_of(design, mesh, int(node), False) for node in np.unique(mesh.faces["outer"])}
+    found = {
+        region_of(design.geometry, mesh, int(node), False)
+        for node in np.unique(mesh.faces["outer"])
+    }
     assert found == {"outer surface"}
 
 
@@ -187,18 +191,18 @@ def test_nodes_inside_of_teeth_are_on_no_surface(
 ) -> None:
     design = cup[0]
     mesh = build_sector(design.geometry, load_recipe("coarse"), body)
-    inside = np.flatnonzero(inside_teeth(design, mesh))
+    inside = np.flatnonzero(inside_teeth(design.geometry, mesh))
     assert len(inside) > 50
     faces = {node for name in mesh.faces for node in np.unique(mesh.faces[name])}
     assert not faces & set(inside.tolist())
-    assert {region_of(design, mesh, int(node), False) for node in inside} <= {
+    assert {region_of(design.geometry, mesh, int(node), False) for node in inside} <= {
         "inside the tooth",
         "tooth end",
     }
 
 
 def test_roots_are_where_the_region_says_it(cup: tuple[DriveDesign, SectorMesh]) -> None:
-    assert regions(cup, root_nodes(*cup)) == {"tooth root"}
+    assert regions(cup, root_nodes(cup[0].geometry, cup[1])) == {"tooth root"}
 
 
 def test_a_start_on_a_coarser_mesh_gives_errors() -> None:

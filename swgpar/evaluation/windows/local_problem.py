@@ -16,7 +16,6 @@ import numpy as np
 from swgpar.constraints.boundary_conditions import DeadLoad, PrescribedDisplacement
 from swgpar.constraints.distributing_coupling import node_weights
 from swgpar.constraints.supports import Supports
-from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.torques import torques
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR, Body
@@ -25,6 +24,7 @@ from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.stress import principal
 from swgpar.fem.vectors import read_field, write_field
+from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.geometry.rotation import rotated
 from swgpar.half_space.flank_loads import flank_forces, line_loads, nodal_forces
 from swgpar.load.load_states import LoadState, Stage
@@ -78,19 +78,19 @@ class WindowStress:
     elements: int
 
 
-def window_mesh(design: DriveDesign, recipe: MeshRecipe) -> SectorMesh:
+def window_mesh(geometry: DriveGeometry, recipe: MeshRecipe) -> SectorMesh:
     """The sector of a window: the toothed part and the beginning of the cup's wall, which ends in
     the set ``cut``."""
-    mesh = build_sector(design.geometry, recipe, "flexible_spline")
+    mesh = build_sector(geometry, recipe, "flexible_spline")
     if mesh.plane:
         return mesh
-    end = 0.5 * design.drive.face_width + CUP_LENGTH * np.sqrt(
-        design.inner_radius * design.cup_thickness
+    end = 0.5 * geometry.face_width + CUP_LENGTH * np.sqrt(
+        geometry.inner_radius * geometry.cup_thickness
     )
     return trimmed(mesh, mesh.coords[mesh.hexes, 2].min(axis=1) < end)
 
 
-def tooth_nodes(mesh: SectorMesh, design: DriveDesign, ends: bool) -> np.ndarray:
+def tooth_nodes(mesh: SectorMesh, geometry: DriveGeometry, ends: bool) -> np.ndarray:
     """Nodes (n,) of the toothed part at the ends of its face width, or between them. The plane has
     no ends.
 
@@ -98,12 +98,12 @@ def tooth_nodes(mesh: SectorMesh, design: DriveDesign, ends: bool) -> np.ndarray
     """
     z, face_width = (
         np.zeros(len(mesh.coords)) if mesh.plane else np.abs(mesh.coords[:, 2]),
-        design.drive.face_width,
+        geometry.face_width,
     )
     if not ends:
         return np.flatnonzero(z <= END * face_width)
     return np.flatnonzero(
-        (z > END * face_width) & (z <= TOOTHED * face_width + design.cup.back_fillet)
+        (z > END * face_width) & (z <= TOOTHED * face_width + geometry.cup.back_fillet)
     )
 
 
@@ -120,7 +120,7 @@ class LocalProblem:
     def __init__(self, model: DriveModel, state: LoadState, tooth: int, recipe: MeshRecipe) -> None:
         self.model, self.state, design = model, state, model.design
         first = tooth - SECTORS // 2
-        mesh = window_mesh(design, recipe)
+        mesh = window_mesh(model.geometry, recipe)
         self.layout = BodyLayout(
             body=Body(mesh, (design.materials[mesh.body],), design.drive.face_width),
             first_tooth=first,
@@ -275,16 +275,16 @@ class LocalProblem:
         cuts; collective."""
         mesh = self.layout.mesh
         stress, sectors = self.stress()
-        toothed = tooth_nodes(mesh, self.model.design, ends)
+        toothed = tooth_nodes(mesh, self.model.geometry, ends)
         best = (-np.inf, 0, 0)
         if len(sectors):
             s1 = principal(stress[:, toothed])[0]
             k, i = np.unravel_index(s1.argmax(), s1.shape)
             best = (float(s1[k, i]), self.layout.first_tooth + int(sectors[k]), int(toothed[i]))
         value, tooth, node = max(self.model.comm.allgather(best), key=lambda found: found[0])
-        design = self.model.design
-        region = region_of(design, mesh, node, False)
-        warning = warning_of(design, region, mesh.coords[node])
+        geometry = self.model.geometry
+        region = region_of(geometry, mesh, node, False)
+        warning = warning_of(geometry, region, mesh.coords[node])
         return WindowStress(
             value, tooth, mesh.coords[node], region, warning, SECTORS * len(mesh.hexes)
         )

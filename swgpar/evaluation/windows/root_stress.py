@@ -273,7 +273,7 @@ def resolve_root_stress(
             error_at_ends(by_part, RATIO[kind]) if len(values[best]) >= LEVELS[kind] else math.inf
         )
     in_root = _largest_nodal(
-        model, root_nodes(model.design, model.partition.layouts[FLEXIBLE_SPLINE].mesh)
+        model, root_nodes(model.geometry, model.partition.layouts[FLEXIBLE_SPLINE].mesh)
     )
     known = _place(model, found[best], PARTS[best[1]], by_part, error, float(np.max(on_mesh)))
     return replace(known, in_root=float(in_root.max()))
@@ -387,7 +387,7 @@ def _largest_by_tooth(model: DriveModel, ends: bool) -> np.ndarray:
     """Largest s1 (n_modelled,) MPa of the teeth of all modelled sectors, at their ends or between
     them; collective."""
     return _largest_nodal(
-        model, tooth_nodes(model.partition.layouts[FLEXIBLE_SPLINE].mesh, model.design, ends)
+        model, tooth_nodes(model.partition.layouts[FLEXIBLE_SPLINE].mesh, model.geometry, ends)
     )
 
 

@@ -1,0 +1,52 @@
+"""Couplings of the flexible spline and of a rotating ring gear."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from swgpar.constraints.distributing_coupling import DistributingCoupling, RadialGuide
+from swgpar.constraints.rigid_attachment import RigidAttachment, face_sides
+from swgpar.design.cup_section import Cup
+from swgpar.fem.elements import BodyElements
+from swgpar.fem.partition import Partition
+from swgpar.log import logger
+
+
+def spline_attachment(
+    partition: Partition, spline: BodyElements, cup: Cup, penalty: float, images: bool
+) -> RigidAttachment:
+    """Attachment of closed end or flange, which is clamped or bolted.
+
+    penalty : MPa / mm;  images : whether the model is a part of the drive
+    """
+    longest = float(face_sides(spline.layout.mesh, "end").max())
+    if cup.attachment == "bolted" and longest > cup.washer_diameter:
+        logger.warning(
+            "elements of the closed end or flange are up to %.3g mm long, a washer is %.3g mm "
+            "wide: a mesh with "
+            "shorter elements there holds the bolts better",
+            longest,
+            cup.washer_diameter,
+        )
+    return RigidAttachment(
+        partition,
+        spline,
+        "end",
+        cup.is_attached,
+        cup.attached_width,
+        penalty=penalty,
+        images=images,
+    )
+
+
+def ring_guide(
+    coupling: DistributingCoupling, ends: tuple[float, float], copies: int, penalty: float
+) -> RadialGuide:
+    """Guide around a rotating ring gear.
+
+    ends : mm, of its teeth along z;  copies : how many times the model makes the whole drive
+    penalty : MPa / mm
+    """
+    outer = float(np.hypot(*coupling.undeformed[:, :2].T).max(initial=0.0))
+    area = 2.0 * np.pi * outer * (ends[1] - ends[0]) / copies
+    return RadialGuide(coupling, area, penalty)
