@@ -248,10 +248,11 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
         couplings.append(DistributingCoupling(partition, spline, "bore", copies > 1, centred))
     if rotates or not design.frame_is_rigid:
         ring = elements.bodies[design.output_gear if rotates else RING_GEAR]
-        couplings.append(DistributingCoupling(partition, ring, "outer", copies > 1))
-    if rotates and design.frame_is_rigid:
-        ends = design.axial_range(design.output_gear)
-        guide = ring_guide(couplings[-1], ends, copies, design.penalty(design.output_gear))
+        ring_coupling = DistributingCoupling(partition, ring, "outer", copies > 1)
+        couplings.append(ring_coupling)
+        if design.frame_is_rigid:
+            ends = design.axial_range(design.output_gear)
+            guide = ring_guide(ring_coupling, ends, copies, design.penalty(design.output_gear))
     scale = design.modulus_of("flexible_spline") * design.drive.module
     race = None if design.bearing is None else race_coupling(partition, elements, couplings[0])
     spline_ratio = None
