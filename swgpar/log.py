@@ -188,7 +188,7 @@ class IncrementProgress:
     def newton(self, step: str, angle_deg: float, iteration: int, residual: float) -> None:
         """Report one Newton iteration: relative residual; on the bar only, and in the log at DEBUG
         level."""
-        if self._bar:
+        if self._bar and self._task is not None:
             self._bar.update(
                 self._task,
                 description=f"{step} {angle_deg:.2f}° Newton {iteration} residual {residual:.1e}",
@@ -216,7 +216,7 @@ class IncrementProgress:
             residual,
             seconds,
         )
-        if self._bar:
+        if self._bar and self._task is not None:
             self._bar.update(self._task, completed=self._count)
 
 

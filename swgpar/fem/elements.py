@@ -144,12 +144,10 @@ class BodyElements:
         (n_local, 3) outside."""
         rows = np.flatnonzero(~self.whole_teeth)
         rows = rows[(rows >= self.owned.start) & (rows < self.owned.stop)]
-        if not len(rows):
+        tooth = self.layout.tooth
+        if tooth is None or not len(rows):
             return np.zeros(0, dtype=np.int64), np.zeros((0, 3))
-        tooth, angle = (
-            self.layout.tooth,
-            np.arctan2(self.sector_rotation[rows, 1], self.sector_rotation[rows, 0]),
-        )
+        angle = np.arctan2(self.sector_rotation[rows, 1], self.sector_rotation[rows, 0])
         inner = tooth.inner_displacement(angle, u[self.local[np.ix_(rows, tooth.outer)]])
         return self.local[np.ix_(rows, tooth.inner)].ravel(), inner.reshape(-1, 3)
 

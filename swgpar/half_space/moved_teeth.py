@@ -36,7 +36,8 @@ class MovedTooth:
         u: np.ndarray,
         crowned: FlankCrowning | None = None,
     ) -> None:
-        self.profile: ToothProfile = layout.mesh.profile
+        assert layout.mesh.profile is not None  # all gears have one
+        self.profile = layout.mesh.profile
         self.mirror = MIRROR if side < 0 else np.ones(2)
         self.angle = float(layout.sector_angle(np.array(tooth)))
         self.crowned = crowned

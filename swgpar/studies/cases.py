@@ -69,7 +69,7 @@ def _expand(study: Study) -> list[Job]:
             )
     _check_names(study, cases)
     return [
-        Job(case, mesh, recipes.get(mesh), max(len(case.meshes) - 1 - index, 0))
+        Job(case, mesh, recipes.get(mesh) if mesh else None, max(len(case.meshes) - 1 - index, 0))
         for case in cases
         for index, mesh in enumerate(case.meshes or (None,))
     ]

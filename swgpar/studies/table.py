@@ -80,8 +80,12 @@ def units_of_keys(results: Sequence[Result]) -> dict[str, str]:
 
 def estimate_of(case: Case, outcomes: Sequence[Outcome], name: str) -> Estimate | None:
     """Error estimate of a quantity from the last two meshes; None without two values."""
-    pair = [(o.values.get(name), o.elements) for o in outcomes[-2:]]
-    if len(pair) < 2 or any(value is None for value, _ in pair):
+    pair = [
+        (outcome.values[name], outcome.elements)
+        for outcome in outcomes[-2:]
+        if name in outcome.values and outcome.elements is not None
+    ]
+    if len(pair) < 2:
         return None
     (coarse, n_coarse), (fine, n_fine) = pair
     return estimate(coarse, fine, n_coarse, n_fine, case.system.dimensions(case.design))
