@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.constraints.distributing_coupling import DistributingCoupling, RadialGuide
+from swgpar.constraints.distributing_coupling import NodeMeans, RadialGuide
 from swgpar.constraints.rigid_attachment import RigidAttachment, face_sides
 from swgpar.design.cup_section import Cup
 from swgpar.fem.elements import BodyElements
@@ -40,7 +40,7 @@ def spline_attachment(
 
 
 def ring_guide(
-    coupling: DistributingCoupling, ends: tuple[float, float], copies: int, penalty: float
+    coupling: NodeMeans, ends: tuple[float, float], copies: int, penalty: float
 ) -> RadialGuide:
     """Guide around a rotating ring gear.
 
