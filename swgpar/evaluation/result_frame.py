@@ -33,7 +33,7 @@ def history_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
     return [
         {
             **row,
-            "output_angle_deg": shown_output(design, row),
+            "output_angle_deg": shown_output(design, row["wg_angle_deg"], row["output_angle_deg"]),
             "input_angle_deg": design.in_frame_of_result(0.0, row["wg_angle_deg"]),
             "input_torque_Nmm": row["tooth_torque_Nmm"],
         }
@@ -41,11 +41,10 @@ def history_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
     ]
 
 
-def shown_output(design: DriveDesign, row: Row) -> float:
-    """Angle of the output (degrees), within half a turn, of a row in the frame in which the drive
-    is computed."""
-    angle = design.in_frame_of_result(row["output_angle_deg"], row["wg_angle_deg"])
-    return float(wrapped(np.array(angle)))
+def shown_output(design: DriveDesign, wg_angle: float, output_angle: float) -> float:
+    """Angle of the output (degrees), within half a turn, from angles (degrees) in the frame in
+    which the drive is computed."""
+    return float(wrapped(np.array(design.in_frame_of_result(output_angle, wg_angle))))
 
 
 def nodal_fields(

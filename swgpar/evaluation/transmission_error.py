@@ -125,12 +125,8 @@ class TransmissionError(AnswerGroup):
 
 def turn_row(point: TurnPoint, design: DriveDesign) -> Row:
     """Row of transmission_error.csv; the output's angle lies between -180 and 180 degrees."""
-    wg_angle, output = float(np.degrees(point.wg_angle)), float(np.degrees(point.output_angle))
-    error = transmission_error(np.array([wg_angle]), np.array([output]), design.ratio)[0]
-    output = design.in_frame_of_result(output, wg_angle)
-    shown = output - 360.0 * np.round(output / 360.0)
-    values = (wg_angle, float(shown), float(error), point.wg_torque, point.iterations)
-    return dict(zip(COLUMNS, values, strict=True))
+    angles = float(np.degrees(point.wg_angle)), float(np.degrees(point.output_angle))
+    return _row(design, *angles, point.wg_torque, point.iterations)
 
 
 def period_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
@@ -138,24 +134,17 @@ def period_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
     none without one."""
     if not design.steps.samples or len(rows) < design.steps.samples or not design.load.torque:
         return []
-    period = of_period(design, list(rows))
-    angle, output = column(period, "wg_angle_deg"), column(period, "output_angle_deg")
-    error = transmission_error(angle, output, design.ratio)
-    return [
-        dict(
-            zip(
-                COLUMNS,
-                (
-                    row["wg_angle_deg"],
-                    shown_output(design, row),
-                    float(e),
-                    row["wg_torque_Nmm"],
-                    row["newton_iterations"],
-                ),
-            )
-        )
-        for row, e in zip(period, error)
-    ]
+    names = ("wg_angle_deg", "output_angle_deg", "wg_torque_Nmm", "newton_iterations")
+    return [_row(design, *(row[name] for name in names)) for row in of_period(design, list(rows))]
+
+
+def _row(
+    design: DriveDesign, wg_angle: float, output_angle: float, wg_torque: float, iterations: int
+) -> Row:
+    """Angles in degrees, in the frame in which the drive is computed; torque in N mm."""
+    error = transmission_error(np.array(wg_angle), np.array(output_angle), design.ratio)
+    shown = shown_output(design, wg_angle, output_angle)
+    return dict(zip(COLUMNS, (wg_angle, shown, float(error), wg_torque, iterations), strict=True))
 
 
 def spectrum(values: np.ndarray, turns: float) -> tuple[np.ndarray, np.ndarray]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.results.figure_set import panels
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -46,25 +47,21 @@ def draw_circumference(
     modelled
     wg_angle : rad, of the wave generator;  title : where in the run this is
     """
-    from matplotlib.figure import Figure
-
     middle = points.reshape(teeth, -1, 3).mean(axis=1)
     angle = np.degrees(np.arctan2(-middle[:, 0], middle[:, 1]) - wg_angle)
     copies = design.drive.teeth_fs // teeth  # the other half of a symmetric drive is alike
     angle = np.concatenate([angle + 360.0 * k / copies for k in range(copies)])
     angle = (angle + 180.0) % 360.0 - 180.0
     order = np.argsort(angle)
-    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
-    panels = list(figure.subplots(len(FIELDS), 1, sharex=True))
-    for axes, (name, label) in zip(panels, FIELDS.items()):
+    figure, rows = panels(len(FIELDS), 7.0, 6.0, shared=True)
+    for axes, (name, label) in zip(rows, FIELDS.items()):
         for part, chosen in parts(design, points).items():
             values = np.tile(largest_by_tooth(fields[name], chosen, teeth), copies)
             axes.plot(angle[order], values[order], lw=1.2, label=part)
         axes.set(ylabel=label, xlim=(-180.0, 180.0), xticks=range(-180, 181, 45))
-        axes.grid(alpha=0.3)
     figure.suptitle(f"flexible spline, largest of every tooth's sector\n{title}", fontsize=10)
     figure.legend(
-        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8
+        *rows[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8
     )
-    panels[-1].set_xlabel("tooth, from the major axis (degrees)")
+    rows[-1].set_xlabel("tooth, from the major axis (degrees)")
     return figure

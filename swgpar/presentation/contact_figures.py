@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swgpar.errors import InputError
+from swgpar.results.figure_set import panels
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,12 +32,9 @@ def _from_lobe(pairs: Columns, lobes: int) -> np.ndarray:
 def draw_pairs(pairs: Columns, lobes: int = 2) -> Figure:
     """Force and largest pressure of the pairs over the tooth's angle. pairs : columns of
     pairs.csv"""
-    from matplotlib.figure import Figure
-
     position = _from_lobe(pairs, lobes)
-    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
-    panels = list(figure.subplots(2, 1, sharex=True))
-    for axes, name in zip(panels, ("force_N", "pressure_MPa"), strict=True):
+    figure, (upper, lower) = panels(2, 7.0, 6.0, shared=True)
+    for axes, name in ((upper, "force_N"), (lower, "pressure_MPa")):
         for side, colour in (("clockwise", "tab:orange"), ("counter-clockwise", "tab:blue")):
             for edge, fill in ((0, colour), (1, "none")):
                 chosen = (pairs["flank"] == side) & (pairs["edge"] == edge)
@@ -52,13 +50,10 @@ def draw_pairs(pairs: Columns, lobes: int = 2) -> Figure:
                         label=label,
                     )
         axes.set_ylim(bottom=0.0)
-        axes.grid(alpha=0.3)
-    panels[0].set(
-        ylabel="normal force (N)", title="pairs of flanks in contact, at all computed angles"
-    )
-    panels[1].set(ylabel="largest pressure (MPa)", xlabel="tooth, from the major axis (degrees)")
+    upper.set(ylabel="normal force (N)", title="pairs of flanks in contact, at all computed angles")
+    lower.set(ylabel="largest pressure (MPa)", xlabel="tooth, from the major axis (degrees)")
     figure.legend(
-        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize=8
+        *upper.get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize=8
     )
     return figure
 
@@ -69,10 +64,7 @@ def draw_load_sharing(pairs: Columns, history: Columns, title: str, lobes: int =
     pairs, history : columns of these tables;  title : of the axis with the angle of the wave
     generator
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
-    upper, lower = figure.subplots(2, 1)
+    figure, (upper, lower) = panels(2, 7.0, 6.0)
     far = np.abs(pairs["angle_deg"]) > 180.0 / lobes
     angle, share = _from_lobe(pairs, lobes), 100.0 * pairs["force_share"]
     other = ", other end" if lobes == 2 else ", other lobes"
@@ -102,7 +94,6 @@ def draw_load_sharing(pairs: Columns, history: Columns, title: str, lobes: int =
     lower.set(xlabel=title, ylabel="pairs in contact")
     for axes in (upper, lower):
         axes.set_ylim(bottom=0.0)
-        axes.grid(alpha=0.3)
     return figure
 
 
@@ -191,7 +182,7 @@ def _draw_pressure_maps(figure: Figure, flanks: list[_Flank], along: str) -> Non
     columns = min(5 if len(flanks) > 8 else 4, len(flanks))
     rows = -(-len(flanks) // columns)
     figure.set_size_inches(12.0, max(5.0, 2.2 * rows + 1.0))
-    panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
+    maps = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
     width = max(np.abs(flank.z).max() for flank in flanks)
     low = min((flank.s - flank.half_width).min() for flank in flanks)
     high = max((flank.s + flank.half_width).max() for flank in flanks)
@@ -199,16 +190,16 @@ def _draw_pressure_maps(figure: Figure, flanks: list[_Flank], along: str) -> Non
     z = np.linspace(-1.05 * width, 1.05 * width, 240)
     s = np.linspace(max(0.0, low - margin), high + margin, 320)[:, None]
     top = max(flank.peak.max() for flank in flanks)
-    for axes, flank in zip(panels, flanks):
+    for axes, flank in zip(maps, flanks):
         pressure = _half_ellipse(s, *flank.at(z))
         image = axes.pcolormesh(
             z, s[:, 0], pressure, shading="nearest", vmin=0.0, vmax=top, cmap="magma"
         )
         axes.set_title(flank.name, fontsize=8 if rows == 1 else 7)
         axes.tick_params(labelsize=8)
-    panels[0].invert_yaxis()
-    for axes in panels[len(flanks) :]:
+    maps[0].invert_yaxis()
+    for axes in maps[len(flanks) :]:
         axes.set_axis_off()
     figure.supxlabel(along, fontsize=9)
     figure.supylabel("arc length from the tip (mm)", fontsize=9)
-    figure.colorbar(image, ax=list(panels), label="contact pressure (MPa)")
+    figure.colorbar(image, ax=list(maps), label="contact pressure (MPa)")

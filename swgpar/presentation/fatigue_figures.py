@@ -8,6 +8,7 @@ import numpy as np
 
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.presentation.off_screen import off_screen_plotter
+from swgpar.results.figure_set import panels
 from swgpar.results.sector_fields import SectorFields
 
 if TYPE_CHECKING:
@@ -26,11 +27,8 @@ def draw_haigh(
     summary : of a run with [fatigue];  angle : title of the axis with the angle of the wave
     generator
     """
-    from matplotlib.figure import Figure
-
     found, strengths = summary.fatigue, summary.design.fatigue
-    figure = Figure(figsize=(7.5, 7.5), layout="constrained")
-    axes, below = figure.subplots(2, 1, height_ratios=[1.6, 1.0])
+    figure, (axes, below) = panels(2, 7.5, 7.5, height_ratios=(1.6, 1.0))
     fields = sector.fields
     for number, region in enumerate(found.regions):
         here = fields["region"] == number
@@ -73,8 +71,6 @@ def draw_haigh(
     what = "point of the load program (step)" if of_program else angle
     below.set(xlabel=what, ylabel="normal stress (MPa)")
     below.set_title(f"cycle where the safety is the least: {worst.region}", fontsize=10)
-    for panel in (axes, below):
-        panel.grid(alpha=0.3)
     return figure
 
 

@@ -24,7 +24,7 @@ from swgpar.presentation.contact_figures import (
 from swgpar.presentation.deformed_figures import draw_cup_section, draw_deformed, draw_loaded_teeth
 from swgpar.presentation.fatigue_figures import draw_haigh, sector_picture
 from swgpar.presentation.program_figures import torque_against_rotation
-from swgpar.results.figure_set import Drawings, FigureSet
+from swgpar.results.figure_set import Drawings, FigureSet, panels
 from swgpar.results.history import COLUMNS
 from swgpar.results.sector_fields import SectorFields
 
@@ -125,15 +125,12 @@ class DriveFigures(FigureSet):
 
         Over whole turns with deviations, or over the sampled period of the ideal drive.
         """
-        from matplotlib.figure import Figure
-
         rows, found = self._result.transmission_error, self._result.summary.transmission_error
         if not rows or found is None:
             raise InputError(
                 "this run has no transmission error: allowed with steps.samples or [deviations]"
             )
-        figure = Figure(figsize=(7.0, 6.0), layout="constrained")
-        upper, lower = figure.subplots(2, 1)
+        figure, (upper, lower) = panels(2, 7.0, 6.0)
         error = rows["transmission_error_arcsec"]
         upper.plot(
             rows["wg_angle_deg"],
@@ -157,8 +154,6 @@ class DriveFigures(FigureSet):
         )
         if named:
             lower.legend(fontsize=7)
-        for axes in (upper, lower):
-            axes.grid(alpha=0.3)
         return figure
 
     def _draw_torque(self, axes: Axes) -> None:
@@ -252,14 +247,9 @@ class DriveFigures(FigureSet):
 
     def _panels(self, count: int) -> tuple[Figure, list[Axes]]:
         """A figure with panels above one another, over the angle of the wave generator."""
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(7.0, 4.2 if count == 1 else 3.0 * count), layout="constrained")
-        panels = list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])
-        for axes in panels:
-            axes.grid(alpha=0.3)
-        panels[-1].set_xlabel(self._angle)
-        return figure, panels
+        figure, found = panels(count, 7.0, 4.2 if count == 1 else 3.0 * count, shared=True)
+        found[-1].set_xlabel(self._angle)
+        return figure, found
 
     def _over_period(self) -> str:
         return ", over one period" if self._design.steps.samples else ""
@@ -267,15 +257,12 @@ class DriveFigures(FigureSet):
     def ball_loads(self) -> Figure:
         """Loads of a bearing's balls (N) over the angle from the major axis, and the largest during
         the rotation."""
-        from matplotlib.figure import Figure
-
         balls, bearing = self._result.balls, self._result.summary.bearing
         if not balls:
             raise InputError("this run has no balls: allowed with wave_generator.bearing")
         loaded = balls["step"] >= Stage.LOAD
         shown = {name: values[loaded] if loaded.any() else values for name, values in balls.items()}
-        figure = Figure(figsize=(7.0, 6.5), layout="constrained")
-        upper, lower = figure.subplots(2, 1)
+        figure, (upper, lower) = panels(2, 7.0, 6.5)
         increments = np.unique(shown["increment"])
         angles = []
         for increment in increments:
@@ -303,7 +290,6 @@ class DriveFigures(FigureSet):
         lower.set(xlabel=self._angle, ylabel="largest ball load (N)" + fixed)
         for axes in (upper, lower):
             axes.set_ylim(bottom=0.0)
-            axes.grid(alpha=0.3)
         return figure
 
     def contact_pattern(self, step: int | None = None) -> Figure:

@@ -9,6 +9,7 @@ import numpy as np
 
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.evaluation.stiffness import TorsionalStiffness
+from swgpar.results.figure_set import panels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,10 +22,7 @@ def torque_against_rotation(program: Mapping[str, np.ndarray], summary: DriveSum
 
     program : columns of program.csv;  summary : of the run
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.0, 5.0), layout="constrained")
-    axes = figure.subplots()
+    figure, (axes,) = panels(1, 7.0, 5.0)
     groups = program["wg_angle_deg"] if summary.stiffness else program["stage"]
     for value in dict.fromkeys(groups):
         here = groups == value
@@ -58,7 +56,6 @@ def torque_against_rotation(program: Mapping[str, np.ndarray], summary: DriveSum
         "torque against rotation, wave generator locked" if summary.stiffness else "load program"
     )
     axes.axhline(0.0, color="0.6", lw=0.6)
-    axes.grid(alpha=0.3)
     axes.legend(fontsize=8)
     return figure
 

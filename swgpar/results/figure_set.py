@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ from swgpar.log import logger
 from swgpar.results.atomic import agreed, raise_first, sentence
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 FOLDER = "figures"
@@ -39,6 +40,27 @@ def import_matplotlib() -> None:
     finally:
         os.fchdir(here)
         os.close(here)
+
+
+def panels(
+    count: int,
+    width: float,
+    height: float,
+    *,
+    shared: bool = False,
+    height_ratios: Sequence[float] | None = None,
+) -> tuple[Figure, list[Axes]]:
+    """A figure of a width and a height (inches) with panels with grids above one another.
+
+    shared : whether the panels share the horizontal axis;  height_ratios : of the panels
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), layout="constrained")
+    found = figure.subplots(count, sharex=shared, squeeze=False, height_ratios=height_ratios)[:, 0]
+    for axes in found:
+        axes.grid(alpha=0.3)
+    return figure, list(found)
 
 
 PICTURE = 6
