@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.results.figure_set import panels
 
 if TYPE_CHECKING:
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 FIELDS = {"s1": "tension s1 (MPa)", "vm": "von Mises stress (MPa)"}
 
 
-def parts(design: DriveDesign, points: np.ndarray) -> dict[str, np.ndarray]:
+def parts(geometry: DriveGeometry, points: np.ndarray) -> dict[str, np.ndarray]:
     """Whether nodes of the undeformed flexible spline at points (n, 3) mm belong to a part, by the
     name of the part."""
     radius, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
-    toothed = np.abs(z) <= 0.5 * design.drive.face_width * (1.0 + 1e-9)
-    inner = radius < design.inner_radius + 0.5 * design.flexible_spline.rim
+    toothed = np.abs(z) <= 0.5 * geometry.face_width * (1.0 + 1e-9)
+    inner = radius < geometry.inner_radius + 0.5 * geometry.gears["flexible_spline"].rim
     found = {"teeth": toothed & ~inner, "inside of the rim": toothed & inner}
     return found if toothed.all() else found | {"cup behind the teeth": ~toothed}
 
@@ -34,7 +34,7 @@ def largest_by_tooth(values: np.ndarray, chosen: np.ndarray, teeth: int) -> np.n
 
 
 def draw_circumference(
-    design: DriveDesign,
+    geometry: DriveGeometry,
     points: np.ndarray,
     fields: Mapping[str, np.ndarray],
     teeth: int,
@@ -49,13 +49,14 @@ def draw_circumference(
     """
     middle = points.reshape(teeth, -1, 3).mean(axis=1)
     angle = np.degrees(np.arctan2(-middle[:, 0], middle[:, 1]) - wg_angle)
-    copies = design.drive.teeth_fs // teeth  # the other half of a symmetric drive is alike
+    # the other half of a symmetric drive is alike
+    copies = geometry.gears["flexible_spline"].profile.n_teeth // teeth
     angle = np.concatenate([angle + 360.0 * k / copies for k in range(copies)])
     angle = (angle + 180.0) % 360.0 - 180.0
     order = np.argsort(angle)
     figure, rows = panels(len(FIELDS), 7.0, 6.0, shared=True)
     for axes, (name, label) in zip(rows, FIELDS.items()):
-        for part, chosen in parts(design, points).items():
+        for part, chosen in parts(geometry, points).items():
             values = np.tile(largest_by_tooth(fields[name], chosen, teeth), copies)
             axes.plot(angle[order], values[order], lw=1.2, label=part)
         axes.set(ylabel=label, xlim=(-180.0, 180.0), xticks=range(-180, 181, 45))

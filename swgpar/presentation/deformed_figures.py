@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.drive_geometry import DriveGeometry
+from swgpar.geometry.micro_geometry import WaveGeneratorSurface
 from swgpar.geometry.rotation import rotated
 from swgpar.presentation.off_screen import off_screen_plotter, without_margin
 
@@ -93,7 +94,8 @@ def draw_deformed(
 
 def draw_loaded_teeth(
     grids: Sequence[pyvista.UnstructuredGrid],
-    design: DriveDesign,
+    geometry: DriveGeometry,
+    cam: WaveGeneratorSurface | None,
     wg_angle: float,
     angle: float,
     z: float,
@@ -101,16 +103,18 @@ def draw_loaded_teeth(
 ) -> Figure:
     """Close-up of the deformed teeth and of the cam below them, across the axis.
 
+    cam : None where the spline lies on a race that the run models
     wg_angle : rad, of the wave generator;  angle : rad, of the middle of the close-up from +y,
     counter-clockwise
     z : mm, of the section;  title : where in the run this is
     """
-    limit, pitch = colour_limit(grids), np.pi * design.drive.module
+    limit, pitch = colour_limit(grids), np.pi * geometry.module
     half = PITCHES * pitch
-    low = design.inner_radius - 0.5 * pitch
-    high = design.profile("ring_gear").r_root_circle + min(design.ring_gear.rim, 0.5 * pitch)
+    low, ring_gear = geometry.inner_radius - 0.5 * pitch, geometry.gears["ring_gear"]
+    high = ring_gear.profile.r_root_circle + min(ring_gear.rim, 0.5 * pitch)
     figure, (axes,) = _figure(1, (9.0, 1.6 + 7.0 * (high - low) / (2.0 * half)))
-    _draw_cam(axes, design, wg_angle - angle, z, (-half, half, low, high))
+    if cam is not None:
+        _draw_cam(axes, cam, wg_angle - angle, z, (-half, half, low, high))
     for grid in deformed(grids, 1.0):
         cut = grid.slice(normal="z", origin=(0.0, 0.0, z))
         at = rotated(np.asarray(cut.points)[:, :2], -angle)
@@ -122,34 +126,37 @@ def draw_loaded_teeth(
         ylabel="radius (mm)",
     )
     _colour_bar(figure, [axes], limit)
-    ring = "ring gear" if design.dynamic_spline is None or z < 0.0 else "dynamic spline"
+    ring = "ring gear" if geometry.model != "pancake" or z < 0.0 else "dynamic spline"
     axes.text(0.0, high - 0.15 * pitch, ring, color="w", ha="center", va="top")
-    if design.bearing is None:
+    if cam is not None:
         axes.text(0.0, low + 0.1 * pitch, "wave generator", ha="center")
     place = f"teeth at {np.degrees(angle):.1f} degrees from +y"
-    where = place if design.drive.model == "plane" else f"{place}, section at z {z:.2f} mm"
+    where = place if geometry.model == "plane" else f"{place}, section at z {z:.2f} mm"
     _title(figure, f"{title}; {where}", "true to scale", limit)
     return figure
 
 
 def draw_cup_section(
-    grids: Sequence[pyvista.UnstructuredGrid], design: DriveDesign, wg_angle: float, title: str
+    grids: Sequence[pyvista.UnstructuredGrid],
+    geometry: DriveGeometry,
+    lobes: int,
+    wg_angle: float,
+    title: str,
 ) -> Figure:
     """Half sections of the deformed cup drive along its axis, through a lobe of the cam and between
     two lobes.
 
-    wg_angle : rad, of the wave generator;  title : where in the run this is
+    lobes : of the cam;  wg_angle : rad, of the wave generator;  title : where in the run this is
     """
-    limit = colour_limit(grids)
+    limit, wall = colour_limit(grids), geometry.cup.wall
     bodies = deformed(grids, 1.0)
-    length = design.drive.face_width + design.cup.length
-    outer = design.geometry.largest_radius
-    low = max(min(design.cup.edge, design.inner_radius) - 0.05 * outer, 0.0)
+    half = 0.5 * geometry.face_width
+    length, outer = half + wall.end, geometry.largest_radius
+    low = max(min(wall.edge, geometry.inner_radius) - 0.05 * outer, 0.0)
     height = min(8.0, max(3.0, 9.0 * (outer - low) / (2.0 * length)))
-    half = 0.5 * design.drive.face_width
-    box = (-1.6 * half, half + 1.05 * design.cup.length, low, 1.01 * outer)
+    box = (-1.6 * half, half + 1.05 * (wall.end - wall.back), low, 1.01 * outer)
     figure, panels = _figure(2, (9.5, 1.4 + height))
-    for axes, name, turn in zip(panels, ("major axis", "minor axis"), (0.0, np.pi / design.lobes)):
+    for axes, name, turn in zip(panels, ("major axis", "minor axis"), (0.0, np.pi / lobes)):
         angle = wg_angle + turn
         axis = np.array([-np.sin(angle), np.cos(angle), 0.0])
         for grid in bodies:
@@ -244,18 +251,16 @@ def _draw_cut(
 
 
 def _draw_cam(
-    axes: Axes, design: DriveDesign, turn: float, z: float, box: tuple[float, float, float, float]
+    axes: Axes,
+    cam: WaveGeneratorSurface,
+    turn: float,
+    z: float,
+    box: tuple[float, float, float, float],
 ) -> None:
     """Fill the cam at z (mm) where it is in the box. turn : rad, of its major axis from the middle
     of the figure"""
-    if design.bearing is not None:
-        return  # the spline lies on a race that the run models
     x, y = np.meshgrid(np.linspace(*box[:2], CAM_GRID), np.linspace(*box[2:], CAM_GRID))
     points = rotated(np.column_stack([x.ravel(), y.ravel()]), -turn)
-    distance = (
-        design.cam_surface()
-        .evaluate(np.column_stack([points, np.full(len(points), z)]))[0]
-        .reshape(x.shape)
-    )
+    distance = cam.evaluate(np.column_stack([points, np.full(len(points), z)]))[0].reshape(x.shape)
     axes.contourf(x, y, distance, levels=[-np.inf, 0.0], colors=[CAM_COLOUR])
     axes.contour(x, y, distance, levels=[0.0], colors="#222", linewidths=0.8)

@@ -337,7 +337,13 @@ class DriveFigures(FigureSet):
             angle = cam_angle + float(np.radians(pairs["angle_deg"][largest]))
             z = float(np.nan_to_num(pairs["z_mm"][largest]))
         return draw_loaded_teeth(
-            self._grids(increment), self._design, cam_angle, angle, z, self._when(increment)
+            self._grids(increment),
+            self._design.geometry,
+            self._design.cam_surface() if self._design.bearing is None else None,
+            cam_angle,
+            angle,
+            z,
+            self._when(increment),
         )
 
     def cup_section(self, increment: int = -1) -> Figure:
@@ -352,7 +358,11 @@ class DriveFigures(FigureSet):
             )
         cam_angle = self._cam_angle(self._row(increment))
         return draw_cup_section(
-            self._grids(increment), self._design, cam_angle, self._when(increment)
+            self._grids(increment),
+            self._design.geometry,
+            self._design.lobes,
+            cam_angle,
+            self._when(increment),
         )
 
     def stress_around(self, increment: int = -1) -> Figure:
@@ -362,12 +372,12 @@ class DriveFigures(FigureSet):
         increment : as in `DriveData.field`
         """
         result, body = self._result, SPLINE
-        sizes, design = result.summary.bodies[body], self._design
+        sizes = result.summary.bodies[body]
         return draw_circumference(
-            design,
+            self._design.geometry,
             result.mesh(body).points,
             {name: result.field(name, increment, body) for name in FIELDS},
-            sizes.elements // (sizes.elements_whole // design.drive.teeth_fs),
+            sizes.elements // (sizes.elements_whole // self._design.drive.teeth_fs),
             float(np.radians(result.history["wg_angle_deg"][self._row(increment)])),
             self._when(increment),
         )
