@@ -21,7 +21,7 @@ from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.geometry.cams import make_cam, taut_length
 from swgpar.geometry.cams.keys import Harmonic, Parabolic, Simplified
-from swgpar.geometry.profiles import RADII
+from swgpar.geometry.profiles.keys import DoubleArc, ProfileKeys, QuadrupleArc, RackInvolute
 from swgpar.input.quantities import Section
 from swgpar.input.toml_file import toml_value, with_value
 
@@ -74,6 +74,13 @@ LEAST_CLEARANCE = 0.0005
 
 GAP = 0.05
 """Between the ring gears of a pancake drive, over its face width."""
+
+PROFILE_KEYS: dict[Profile, type[ProfileKeys]] = {
+    "quadruple_arc": QuadrupleArc,
+    "double_arc": DoubleArc,
+    "involute": RackInvolute,
+}
+"""Their typical lengths are those of a starter design."""
 
 DYNAMIC_RADII = {
     "r_tip": 0.2,
@@ -298,7 +305,10 @@ def _gear(request: Request, gear: str, module: float, teeth: int, play: float) -
     """Section of a gear; the ring gear has the backlash."""
     profile, pitch, ring = request.profile, module * teeth, gear == "ring_gear"
     rim = min(RING_RIM * pitch, RING_RIM_MODULES * module) if ring else RIM[request.lobes] * pitch
-    radii = {name: _rounded(value * module) for name, value in RADII[profile].items()}
+    radii = {
+        name: _rounded(value * module)
+        for name, value in PROFILE_KEYS[profile].typical_lengths.items()
+    }
     section: dict[str, Any] = {"rim": _rounded(rim)}
     if profile == "involute":
         if ring:

@@ -235,7 +235,7 @@ def inside_teeth(geometry: DriveGeometry, mesh: SectorMesh) -> np.ndarray:
 
 def root_nodes(geometry: DriveGeometry, mesh: SectorMesh) -> np.ndarray:
     """Nodes (n,) on the roots of a sector's tooth, between its ends."""
-    nodes = [grid.nodes[grid.s >= mesh.profile.breaks[-2]].ravel() for grid in mesh.flanks]
+    nodes = [grid.nodes[grid.s >= mesh.profile.root_start].ravel() for grid in mesh.flanks]
     found = np.unique(np.concatenate(nodes))
     return (
         found if mesh.plane else found[np.abs(mesh.coords[found, 2]) <= END * geometry.face_width]
@@ -254,7 +254,7 @@ def near_contact(mesh: SectorMesh, touched: np.ndarray, distance: float) -> np.n
     flanks."""
     working = np.zeros(len(mesh.coords), dtype=bool)
     for grid in mesh.flanks:
-        working[grid.nodes[grid.s < mesh.profile.breaks[-2]]] = True
+        working[grid.nodes[grid.s < mesh.profile.root_start]] = True
     tree, near = cKDTree(mesh.coords), np.zeros(touched.shape, dtype=bool)
     for sector in np.flatnonzero((touched & working).any(axis=1)):
         nodes = np.flatnonzero(touched[sector] & working)
@@ -270,7 +270,7 @@ def near_contact(mesh: SectorMesh, touched: np.ndarray, distance: float) -> np.n
 def root_spacing(mesh: SectorMesh) -> float:
     """Mean length (mm) of the elements along the root of a tooth, on the flank's side."""
     s = mesh.flanks[0].s
-    begin = mesh.profile.breaks[-2]
+    begin = mesh.profile.root_start
     return float((s[-1] - begin) / max(np.count_nonzero(s > begin + 1e-9 * s[-1]), 1))
 
 

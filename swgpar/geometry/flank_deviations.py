@@ -83,7 +83,7 @@ class GearDeviations:
         half of it. The form is one wave of that height, high at both ends. Both fade out where
         crowning does.
         """
-        end = profile.breaks[-2]
+        end = profile.root_start
 
         def height(at: np.ndarray) -> np.ndarray:
             share = np.clip(at / end, 0.0, 1.0)

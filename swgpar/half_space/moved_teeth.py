@@ -101,5 +101,5 @@ class Sections:
 
 def _active(grid: FlankGrid, profile: ToothProfile, station: int) -> np.ndarray:
     """Nodes (n,) of the active part of a flank, above its root, at a station."""
-    above = grid.s <= profile.breaks[-2] * (1.0 + 1e-9)
+    above = grid.s <= profile.root_start * (1.0 + 1e-9)
     return grid.nodes[above if above.sum() > 2 else slice(None), station]

@@ -18,6 +18,7 @@ RANGE_FINDINGS = ("greater_than", "greater_than_equal", "less_than", "less_than_
 
 NOUNS: dict[Any, str] = {
     list[str]: "a list of texts",
+    list[list[float]]: "a list of lists of numbers",
     dict[str, float]: "a table of numbers",
     dict[str, Any]: "a table",
 }

@@ -106,7 +106,7 @@ def _region_of_the_flank(
 ) -> str:
     if abs(z) > END * geometry.face_width and not mesh.plane and not touched:
         return TOOTH_END
-    if s >= mesh.profile.breaks[-2]:
+    if s >= mesh.profile.root_start:
         return TOOTH_ROOT
     return UNDER_CONTACT if touched else "flank"
 

@@ -8,10 +8,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from pydantic import ValidationError
 
 from support.paths import DATA, DESIGN, REFERENCE
 from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
+from swgpar.input.quantities import Section, quantity
+from swgpar.input.refusals import sentence
 
 OVERRIDES = [
     ("drive.teeth_fs=-120", "drive.teeth_fs", "-120"),
@@ -272,3 +275,14 @@ def test_exit_code_and_no_traceback() -> None:
     assert done.returncode == 2
     assert "load.torque = -3" in done.stderr and "Traceback" not in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
+
+
+@pytest.mark.parametrize("value", [3, [1.0, 2.0], [[1.0, "x"]]])
+def test_a_key_of_points(value: object) -> None:
+    class Curve(Section):
+        points: list[list[float]] = quantity(unit="mm", text="points [x, y]")
+
+    with pytest.raises(ValidationError) as refused:
+        Curve.model_validate({"points": value})
+    words = "is not a list of lists of numbers: allowed points [x, y] (mm)"
+    assert words in sentence(Curve, refused.value)

@@ -85,7 +85,7 @@ def execute(folder: Path, script: str) -> None:
 def test_own_cam(tmp_path: Path) -> None:
     """Distances and normals are those to the nearest of many points, and a drive runs on the
     cam."""
-    curve, keys, branch = examples(HOWTO / "own_cam_or_profile.md", "python")
+    curve, keys, branch, *_ = examples(HOWTO / "own_cam_or_profile.md", "python")
     cams = copied_package(tmp_path) / "geometry" / "cams"
     (cams / "superelliptical.py").write_text(curve, encoding="utf-8")
     insert(cams / "keys.py", "class FourRoller(", f"{keys}\n\n")
@@ -112,6 +112,57 @@ step = 1e-4 * normal[:, ::-1] * [-1, 1]
 slope = cam.evaluate(points + step)[1] - cam.evaluate(points - step)[1]
 assert np.allclose(np.hypot(*slope.T) / 2e-4, np.abs(k), rtol=1e-4)
 assert np.isfinite(run({"wave_generator": keys}).history["fs_s1"]).all()
+""",
+    )
+
+
+def test_own_profile(tmp_path: Path) -> None:
+    """Flanks are straight with tangent roots, refusals name the keys, and a drive runs on them."""
+    *_, curve, keys, branch = examples(HOWTO / "own_cam_or_profile.md", "python")
+    profiles = copied_package(tmp_path) / "geometry" / "profiles"
+    (profiles / "straight_sided.py").write_text(curve, encoding="utf-8")
+    insert(profiles / "keys.py", "ExternalProfile = ", f"{keys}\n\n")
+    for involute in ("RackInvolute", "ShaperInvolute"):
+        insert(profiles / "keys.py", f"{involute} | Conjugate,", "StraightSided | ")
+    factory = profiles / "__init__.py"
+    insert(factory, "    else:\n        profile = involute(", branch)
+    insert(factory, "    ShaperInvolute,\n)\n", "    StraightSided,\n")
+    imported = "from swgpar.geometry.profiles.straight_sided import straight_sided\n"
+    insert(factory, "from swgpar.geometry.profiles.teeth ", imported)
+    execute(
+        tmp_path,
+        """
+from swgpar.errors import InputError
+
+section = {"type": "straight_sided", "flank_angle": 20.0, "r_root": 0.3}
+keys = {
+    "flexible_spline.profile": {**section, "thickness": 1.5},
+    "ring_gear.profile": {**section, "thickness": 1.4},
+}
+design = swgpar.load_design(plane, keys)
+for gear, thickness in (("flexible_spline", 1.5), ("ring_gear", 1.4)):
+    flank = design.profile(gear)
+    assert abs(flank.thickness(0.5 * flank.n_teeth) - thickness) < 1e-12
+    across, height = np.abs(flank.normal(np.linspace(0.0, flank.root_start, 9))).T
+    assert np.allclose(height / across, np.tan(np.radians(20.0)), rtol=1e-12)
+    assert abs(flank.tangent(flank.length)[0] @ flank.point(flank.length)[0]) < 1e-9
+    assert flank is design.profile(gear)  # kept
+
+
+def refusal(key, value):
+    try:
+        swgpar.load_design(plane, {**keys, key: value})
+    except InputError as error:
+        return str(error)
+
+
+root = refusal("ring_gear.profile", {**section, "thickness": 1.4, "r_root": 4.0})
+assert "leaves no straight flank above the root arc; make ring_gear.profile.r_root smaller" in root
+wide = refusal("ring_gear.profile", {**section, "thickness": 4.0})
+assert "cannot be built: the root end crosses" in wide and "c_P" not in wide
+assert "thickness follows from ring_gear.profile.thickness" in refusal("ring_gear.c_P", 0.95)
+assert "ring_gear.c_l = 0 is out of range: allowed 0.5" in refusal("ring_gear.c_l", 0.0)
+assert np.isfinite(run(keys).history["fs_s1"]).all()
 """,
     )
 

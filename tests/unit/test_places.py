@@ -55,7 +55,7 @@ def test_regions_of_a_tooth(cup: tuple[DriveDesign, SectorMesh]) -> None:
     design, mesh = cup
     grid = mesh.flanks[0]
     middle = len(grid.z) // 2
-    flank = np.flatnonzero(grid.s < mesh.profile.breaks[-2] - 1e-9)
+    flank = np.flatnonzero(grid.s < mesh.profile.root_start - 1e-9)
     assert regions(cup, grid.nodes[flank, middle]) == {"flank"}
     assert regions(cup, grid.nodes[flank, middle], touched=True) == {"flank under contact"}
     assert regions(cup, grid.nodes[-1:, middle]) == {"tooth root"}

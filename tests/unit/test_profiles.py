@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
 from swgpar.geometry.profiles.double_arc import double_arc, straight_length
-from swgpar.geometry.profiles.flank import ToothProfile, check_flank
+from swgpar.geometry.profiles.flank import Segment, ToothProfile, check_flank
 from swgpar.geometry.profiles.involute import Cutter, involute
 from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 from swgpar.geometry.profiles.quadruple_arc import quadruple_arc
@@ -263,6 +263,21 @@ FLANKS = {
     "external arcs": double_arc(frame(120, True), 0.0, 1.0, 0.6),
     "internal arcs": quadruple_arc(frame(122, False), 0.5, **INITIAL),
 }
+
+
+@pytest.mark.parametrize("name", FLANKS)
+def test_flanks_that_break_the_rules_of_their_segments(name: str) -> None:
+    p = FLANKS[name]
+    assert (p.tip_end > 0.0) == (p.segments[0].name == "tip")
+    assert 0.0 < p.root_start == pytest.approx(p.length - p.segments[-1].length, rel=1e-14)
+    check_flank(p)
+    for circle in ("r_tip_circle", "r_root_circle"):
+        with pytest.raises(InputError, match="end has the radius"):
+            check_flank(replace(p, **{circle: getattr(p, circle) + 1e-4}))
+    straight = Segment("straight", (0.5, 60.0), -1.5, 0.0, 0.5)
+    for wrong in ((straight, replace(straight, name="tip")), (replace(straight, name="root"),) * 2):
+        with pytest.raises(ValueError, match="allowed is the name tip for the first one only"):
+            replace(p, segments=wrong)
 
 
 @pytest.mark.parametrize("name", FLANKS)

@@ -1,7 +1,7 @@
 """Exact tooth profiles (section 3.3).
 
-A new profile is a module here that returns a `ToothProfile`, its keys in `keys.py` and an entry in
-`make_profile`.
+A new profile is a module here that returns a `ToothProfile`, its keys in `keys.py` and a branch in
+`_build` (docs/howto/own_cam_or_profile.md).
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def make_profile(
     try:
         return _build(keys, teeth, c_P, c_l, gear, partner)
     except InputError as error:
-        if isinstance(keys, Conjugate):  # no lengths of its own
+        if not keys.typical_lengths:
             raise
         reason = str(error)
     advice = _advice(keys, teeth, c_P, c_l, gear)
@@ -80,38 +80,22 @@ def _advice(
     name = f"{gear}.profile"
     if isinstance(keys, DoubleArc) and c_l >= 1.0:
         return ""
-    lengths = {key: value for key, value in keys if key in LENGTHS}
+    lengths = {key: getattr(keys, key) for key in keys.typical_lengths}
     if advice := advise(name, lengths, lambda key, value: builds(**{key: value}), teeth.module):
         return advice
-    radii = {key: float(f"{value * teeth.module:.4g}") for key, value in RADII[keys.type].items()}
-    if builds(**radii):
+    typical = {
+        key: float(f"{value * teeth.module:.4g}") for key, value in keys.typical_lengths.items()
+    }
+    if builds(**typical):
         return f"several keys of {name} do not fit: allowed are for example " + ", ".join(
-            f"{key} = {show(value)}" for key, value in radii.items()
+            f"{key} = {show(value)}" for key, value in typical.items()
         )
-    if isinstance(keys, RackInvolute | ShaperInvolute):
+    if keys.thickness_key:
         return ""  # the reason says what is allowed
     return (
         f"no other {' or '.join(lengths)} is allowed: change c_P, c_l, the pressure angle or the "
         f"height of the teeth"
     )
-
-
-LENGTHS = ("r_tip", "r_addendum", "straight_l", "r_dedendum", "r_root", "cutter_radius")
-"""Keys of profiles that are lengths, mm."""
-
-RADII: dict[str, dict[str, float]] = {
-    "quadruple_arc": {
-        "r_tip": 0.5,
-        "r_addendum": 1.0,
-        "straight_l": 0.0,
-        "r_dedendum": 20.0,
-        "r_root": 0.6,
-    },
-    "double_arc": {"r_addendum": 1.0, "r_dedendum": 0.6},
-    "involute": {"cutter_radius": 0.2},
-}
-"""Lengths that close for most tooth numbers, modules: of the reference drive, Table 6.12, the
-bottom clearance."""
 
 
 def _build(
@@ -124,6 +108,8 @@ def _build(
 ) -> ToothProfile:
     """Flank of a gear; raises InputError with the reason where there is none."""
     name = f"{gear}.profile"
+    if keys.thickness_key:
+        _refuse_direct_keys(keys, c_P, c_l, gear)
     if isinstance(keys, QuadrupleArc):
         frame = PitchPointFrame(**asdict(teeth), c_P=c_P)
         profile = quadruple_arc(
@@ -141,20 +127,8 @@ def _build(
             PitchPointFrame(**asdict(teeth), c_P=c_P), c_l, keys.r_addendum, keys.r_dedendum, name
         )
     elif isinstance(keys, Conjugate):
-        _refuse_direct_keys(
-            c_P,
-            c_l,
-            gear,
-            f"a conjugate profile, whose tooth thickness follows from {name}.backlash",
-        )
         profile = conjugate(keys, teeth, *partner, name)
     else:
-        _refuse_direct_keys(
-            c_P,
-            c_l,
-            gear,
-            f"an involute profile, whose tooth thickness follows from {gear}.profile.shift",
-        )
         profile = involute(_cutter(keys, teeth), name)
     try:
         check_flank(profile)
@@ -171,15 +145,20 @@ def _build(
     return profile
 
 
-def _refuse_direct_keys(c_P: float, c_l: float, gear: str, other: str) -> None:
-    """Refuse values of keys that shape directly defined profiles only. other : the profile, and
-    what replaces c_P"""
+def _refuse_direct_keys(
+    keys: ExternalProfile | InternalProfile, c_P: float, c_l: float, gear: str
+) -> None:
+    """Refuse values of keys that shape directly defined profiles only."""
     if c_P != 1.0:
-        raise InputError(f"{gear}.c_P = {c_P:g} is out of range: allowed 1 with {other}")
+        raise InputError(
+            f"{gear}.c_P = {c_P:g} is out of range: allowed 1 with {gear}.profile.type = "
+            f'"{keys.type}", whose tooth thickness follows from '
+            f"{gear}.profile.{keys.thickness_key}"
+        )
     if c_l != 0.5:
         raise InputError(
-            f"{gear}.c_l = {c_l:g} is out of range: allowed 0.5 with {other.partition(',')[0]} (no "
-            f"straight segment)"
+            f"{gear}.c_l = {c_l:g} is out of range: allowed 0.5 with {gear}.profile.type = "
+            f'"{keys.type}", which does not use it'
         )
 
 

@@ -421,7 +421,7 @@ def conjugate(
     maker = _Maker(envelope, keys, sign, tip, root, teeth.module, name)
     known = envelope.branch[0]
     # a rounded tip edge only touches at the major axis: the flank below it is what works
-    low = float(given.breaks[1]) if given.segments[0].name == "tip" else 0.0
+    low = given.tip_end
     if not known.size or known[0] > low + given.length / (STATIONS - 1):
         maker.undercut()
     segments = maker.build(max(low, float(known[0])), float(known[-1]))

@@ -108,7 +108,9 @@ class ToothProfile:
     Attributes
     ----------
     segments : tuple of FlankSegment
-        The chain, from T to R; segments of no length are left out.
+        The chain, from T to R; segments of no length are left out. The last one is the root: its
+        fillet, which is tangent to the dedendum circle. The flank that works ends where it begins.
+        A first segment with the name ``tip`` is a rounded tip edge; others have other names.
     external : bool
         True for teeth that point outwards (flexible spline), False for internal ones (ring gear).
     r_tip_circle, r_root_circle : float, mm
@@ -123,6 +125,14 @@ class ToothProfile:
     r_root_circle: float
     n_teeth: int
 
+    def __post_init__(self) -> None:
+        names = [segment.name for segment in self.segments]
+        if "tip" in names[1:] or "root" in names[:-1]:
+            raise ValueError(
+                f"the segments of a flank are {', '.join(names)}: allowed is the name tip for the "
+                f"first one only, and root for the last one only"
+            )
+
     @cached_property
     def breaks(self) -> Floats:
         """Arc lengths of all segment ends, 0 and the total length included: (k,) mm."""
@@ -132,6 +142,16 @@ class ToothProfile:
     def length(self) -> float:
         """Arc length from T to R, mm."""
         return float(self.breaks[-1])
+
+    @property
+    def root_start(self) -> float:
+        """Arc length at which the root begins, mm; 0 for a flank of one segment."""
+        return float(self.breaks[-2])
+
+    @property
+    def tip_end(self) -> float:
+        """Arc length at which the rounded tip edge ends, mm; 0 for a sharp edge."""
+        return float(self.breaks[1]) if self.segments[0].name == "tip" else 0.0
 
     @property
     def _side(self) -> float:
@@ -179,9 +199,9 @@ class ToothProfile:
     def crowning_weight(self, s: ArrayLike) -> Floats:
         """Return the share (n,) of the crowning that is applied at the arc lengths `s` : (n,) mm.
 
-        One on the active profile; it falls to zero along the last segment towards R, with
-        continuous slope, so that the root circle stays where it is, and along a rounded tip edge
-        towards T. A sharp edge is crowned in full.
+        One on the active profile; it falls to zero along the root towards R, with continuous slope,
+        so that the root circle stays where it is, and along a rounded tip edge towards T. A sharp
+        edge is crowned in full.
         """
         s, index, local = self._split(s)
         weight = np.ones_like(s)
@@ -255,14 +275,15 @@ class ToothProfile:
 
 
 def check_flank(profile: ToothProfile, tolerance: float = 1e-9) -> None:
-    """Refuse a flank that is no flank: broken tangents, folded back, or outside its half tooth
-    sector.
+    """Refuse a flank that is no flank: broken tangents, ends beside their circles, folded back, or
+    outside its half tooth sector.
 
     Parameters
     ----------
     profile : ToothProfile
     tolerance : float
-        Largest relative mismatch of points (to the tip radius) and of tangents (rad) at the joints.
+        Largest relative mismatch of points (to the tip radius) at joints and ends, and of tangents
+        (rad) at joints.
     """
     for before, after in zip(profile.segments, profile.segments[1:], strict=False):
         end, start = np.array([before.length]), np.zeros(1)
@@ -270,6 +291,16 @@ def check_flank(profile: ToothProfile, tolerance: float = 1e-9) -> None:
         kink = np.angle(np.exp(1j * (before.angle(end)[0] - after.angle(start)[0])))
         if np.hypot(*jump) > tolerance * profile.r_tip_circle or abs(kink) > tolerance:
             raise InputError(f"the {before.name} and {after.name} segments do not join smoothly")
+    for name, at, circle, radius in (
+        ("tip", 0.0, "addendum", profile.r_tip_circle),
+        ("root", profile.length, "dedendum", profile.r_root_circle),
+    ):
+        reached = float(np.hypot(*profile.point(at)[0]))
+        if abs(reached - radius) > tolerance * profile.r_tip_circle:
+            raise InputError(
+                f"the {name} end has the radius {reached:.10g} mm, that of the {circle} circle is "
+                f"{radius:.10g} mm"
+            )
     s = np.unique(np.concatenate((np.linspace(0.0, profile.length, 257), profile.breaks)))
     angle = profile.polar_angle(s)
     if angle[0] <= 0.0:

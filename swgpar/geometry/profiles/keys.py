@@ -3,15 +3,37 @@ of profile."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field
 
 from swgpar.input.quantities import Section, default_type, quantity
 
 
-class QuadrupleArc(Section):
-    """Section 3.3.3."""
+class ProfileKeys(Section):
+    """Keys of one type of profile. What refusals say of them is declared here.
+
+    typical_lengths : keys that are lengths, with values in modules that give a flank for most tooth
+        numbers; a refusal says which of them to change. Empty: the reason says what is allowed
+    thickness_key : the key that c_P and c_l of the gear are replaced by; other values than 1 and
+        0.5 are refused. Empty: c_P and c_l shape the flank
+    """
+
+    typical_lengths: ClassVar[Mapping[str, float]] = {}
+    thickness_key: ClassVar[str] = ""
+
+
+class QuadrupleArc(ProfileKeys):
+    """Section 3.3.3. The typical lengths are those of the reference drive."""
+
+    typical_lengths = {
+        "r_tip": 0.5,
+        "r_addendum": 1.0,
+        "straight_l": 0.0,
+        "r_dedendum": 20.0,
+        "r_root": 0.6,
+    }
 
     type: Literal["quadruple_arc"] = quantity("quadruple_arc", text="kind of profile")
     r_tip: float = quantity(unit="mm", text="radius of the tip arc", gt=0.0)
@@ -21,16 +43,21 @@ class QuadrupleArc(Section):
     r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
 
 
-class DoubleArc(Section):
-    """Section 3.3.2."""
+class DoubleArc(ProfileKeys):
+    """Section 3.3.2. The typical lengths are those of Table 6.12."""
+
+    typical_lengths = {"r_addendum": 1.0, "r_dedendum": 0.6}
 
     type: Literal["double_arc"] = quantity("double_arc", text="kind of profile")
     r_addendum: float = quantity(unit="mm", text="radius of the addendum arc", gt=0.0)
     r_dedendum: float = quantity(unit="mm", text="radius of the dedendum arc", gt=0.0)
 
 
-class _Involute(Section):
-    """Section 3.3.1."""
+class _Involute(ProfileKeys):
+    """Section 3.3.1. The typical radius is the bottom clearance."""
+
+    typical_lengths = {"cutter_radius": 0.2}
+    thickness_key = "shift"
 
     type: Literal["involute"] = quantity("involute", text="kind of profile")
     pressure_angle: float | None = quantity(
@@ -54,9 +81,11 @@ class ShaperInvolute(_Involute):
     cutter_teeth: int = quantity(text="teeth of the shaper-cutter", ge=8, le=2000)
 
 
-class Conjugate(Section):
+class Conjugate(ProfileKeys):
     """The envelope of the other gear's flank in the motion of its tooth
     (docs/theory/conjugate.md)."""
+
+    thickness_key = "backlash"
 
     type: Literal["conjugate"] = quantity("conjugate", text="kind of profile")
     r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
