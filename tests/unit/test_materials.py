@@ -4,6 +4,7 @@ documented."""
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -119,8 +120,9 @@ def test_a_law_is_added_as_the_page_says(tmp_path: Path) -> None:
     (package / "materials" / "transversely_isotropic.py").write_text(law, encoding="utf-8")
     added, chosen = registry.strip().split("\n\n")
     laws = (package / "materials" / "laws.py").read_text(encoding="utf-8")
-    assert "\nLaw = Isotropic\n" in laws
-    laws = laws.replace("\nLaw = Isotropic\n", f"\n{added}\n\n{chosen}\n")
+    extended = rf"{added}\n\nLaw = \1 | {chosen.rpartition(' | ')[2]}\n"
+    laws, count = re.subn(r'^Law = (.+?)\n(?=""")', extended, laws, flags=re.MULTILINE | re.DOTALL)
+    assert count == 1
     (package / "materials" / "laws.py").write_text(laws, encoding="utf-8")
     section = examples(PAGE, "toml")[-1]
     text = DESIGN.read_text(encoding="utf-8") + "\n" + section
