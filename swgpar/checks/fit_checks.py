@@ -13,10 +13,12 @@ from swgpar.checks.deviation_checks import check_deviations
 from swgpar.checks.pancake_checks import check_pancake
 from swgpar.checks.program_checks import check_program
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.linear_solvers import LINEAR_SOLVERS
 from swgpar.design.sections import OMITTED_BENDING
 from swgpar.errors import InputError
 from swgpar.geometry.cams import FourRoller
 from swgpar.geometry.cams.keys import Harmonic
+from swgpar.input.quantities import show
 
 UNIQUE = 0.25
 """1 less curvature of a concave cam times its distance from the bore, at least: at 0 foot points
@@ -64,12 +66,7 @@ def _check_sizes(design: DriveDesign) -> None:
             design.wave_generator.face_width,
             f"above 0 to {width:g} mm (drive.face_width)",
         )
-    if design.contact.friction > 0.0 and design.solver.linear == "iterative":
-        raise InputError(
-            f'solver.linear = "iterative" is not available with contact.friction = '
-            f"{design.contact.friction:g}: "
-            'allowed "direct" with friction'
-        )
+    _check_linear_solver(design)
     if design.drive.model == "plane":
         _check_plane(design)
     else:
@@ -79,6 +76,17 @@ def _check_sizes(design: DriveDesign) -> None:
 
 def _refuse(key: str, value: float, allowed: str) -> None:
     raise InputError(f"{key} = {value:g} is out of range: allowed {allowed}")
+
+
+def _check_linear_solver(design: DriveDesign) -> None:
+    """Friction makes the tangent unsymmetric."""
+    linear, friction = design.solver.linear, design.contact.friction
+    if friction > 0.0 and LINEAR_SOLVERS[linear].symmetric_only:
+        general = [name for name, entry in LINEAR_SOLVERS.items() if not entry.symmetric_only]
+        raise InputError(
+            f'solver.linear = "{linear}" is not available with contact.friction = {friction:g}: '
+            f"allowed {' or '.join(map(show, general))} with friction"
+        )
 
 
 def _check_teeth(design: DriveDesign) -> None:

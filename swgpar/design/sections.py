@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 
+from swgpar.design.linear_solvers import LINEAR_SOLVERS, LinearSolverName
 from swgpar.design.program_sections import ProgramStage
 from swgpar.geometry.profiles import ExternalProfile, InternalProfile, Teeth
 from swgpar.input.quantities import Section, quantity
@@ -217,8 +218,9 @@ class Steps(Section):
 class Solver(Section):
     """Section [solver]: linear solver, convergence and reductions of the model."""
 
-    linear: Literal["direct", "iterative"] = quantity(
-        "direct", text="linear solver: MUMPS, or GMRES with GAMG"
+    linear: LinearSolverName = quantity(
+        next(iter(LINEAR_SOLVERS)),
+        text=f"linear solver: {', or '.join(entry.meaning for entry in LINEAR_SOLVERS.values())}",
     )
     rtol: float = quantity(1e-9, text="residual over contact force at convergence", gt=0.0, le=1e-3)
     max_iterations: int = quantity(

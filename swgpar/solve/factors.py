@@ -46,11 +46,6 @@ class Factor(LinearSolver):
     is_factor = True
     ksp_type = "preonly"
 
-    @classmethod
-    def takes(cls, pc_type: str, package: str) -> bool:
-        """All packages."""
-        return pc_type in FACTORISATIONS or (not pc_type and bool(package))
-
     def set_preconditioner(self, pc: PETSc.PC) -> None:
         """LU."""
         pc.setType(PETSc.PC.Type.LU)

@@ -28,11 +28,6 @@ EXACT = ("redundant", "svd", "qr")
 class KrylovSolver(LinearSolver):
     """A Krylov method, GMRES unless options say, with any of PETSc's preconditioners."""
 
-    @classmethod
-    def takes(cls, pc_type: str, package: str) -> bool:
-        """All that is no factor."""
-        return bool(pc_type)
-
     def set_preconditioner(self, pc: PETSc.PC) -> None:
         """The options name it."""
 

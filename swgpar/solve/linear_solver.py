@@ -103,8 +103,8 @@ class LinearSolver(ABC):
 
     @classmethod
     def takes(cls, pc_type: str, package: str) -> bool:
-        """Whether this kind handles the preconditioner and the package of a factor that options
-        name."""
+        """Whether this kind, of the registry, handles the preconditioner and the package of a
+        factor that options name; what no kind takes is left to `Factor` and `KrylovSolver`."""
         return False
 
     @abstractmethod

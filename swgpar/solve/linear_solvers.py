@@ -1,22 +1,15 @@
-"""The registry of linear solvers, and which of them solves a run.
-
-A further kind is a class that extends `LinearSolver`, in a file of its own, and an entry here. A
-value of the key `solver.linear` (`swgpar/design/sections.py`) then names it.
-"""
+"""Which linear solver solves a run. Their registry is `swgpar/design/linear_solvers.py`."""
 
 from __future__ import annotations
 
+from importlib import import_module
+
+from swgpar.design.linear_solvers import LINEAR_SOLVERS
 from swgpar.errors import InputError
 from swgpar.petsc import PETSc
-from swgpar.solve.factors import Factor, MumpsFactor
-from swgpar.solve.krylov import KrylovSolver, SmoothedAggregation
+from swgpar.solve.factors import FACTORISATIONS, Factor
+from swgpar.solve.krylov import KrylovSolver
 from swgpar.solve.linear_solver import LinearSolver, MatrixKind
-
-LINEAR_SOLVERS: dict[str, type[LinearSolver]] = {
-    "direct": MumpsFactor,
-    "iterative": SmoothedAggregation,
-}
-"""By the names of `solver.linear`."""
 
 FOR_SYMMETRIC = {
     "pc_type": ("cholesky", "icc"),
@@ -58,8 +51,15 @@ def make_linear_solver(linear: str, kind: MatrixKind, options_prefix: str) -> Li
                 f"and friction "
                 "makes it unsymmetric: take gmres with lu or another preconditioner"
             )
-    chosen = LINEAR_SOLVERS[linear]
+    chosen = linear_solver(linear)
     if pc_type or package:
-        kinds = (MumpsFactor, Factor, SmoothedAggregation, KrylovSolver)
-        chosen = next(cls for cls in kinds if cls.takes(pc_type, package))
+        of_any = Factor if pc_type in (*FACTORISATIONS, "") else KrylovSolver
+        named = map(linear_solver, LINEAR_SOLVERS)
+        chosen = next((cls for cls in named if cls.takes(pc_type, package)), of_any)
     return chosen(kind, options_prefix)
+
+
+def linear_solver(name: str) -> type[LinearSolver]:
+    """The class of a name of `LINEAR_SOLVERS`."""
+    module, _, cls = LINEAR_SOLVERS[name].cls.rpartition(".")
+    return getattr(import_module(module), cls)

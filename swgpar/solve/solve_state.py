@@ -48,7 +48,7 @@ class NewtonSettings:
     rtol : residual over contact force at convergence
     max_iterations : before a solve fails, unless the residual still decreases
     max_augmentations : in one solve;  penetration_tolerance : mm
-    linear : "direct" (MUMPS) or "iterative" (GMRES with GAMG)
+    linear : name of the linear solver (`swgpar.design.linear_solvers`)
     reuse_factor : for later tangents, with the direct solver
     """
 

@@ -4,13 +4,13 @@ works there."""
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import swgpar
 from support.markdown import examples
+from support.page_steps import copied_package, patch
 from support.paths import DRIVERS, ROOT
 
 HOWTO = ROOT / "docs" / "howto"
@@ -33,26 +33,11 @@ def run(overrides={}):
 """What the scripts below begin with: a plane drive on a few elements."""
 
 
-def copied_package(folder: Path) -> Path:
-    """A copy of the package in a folder."""
-    ignored = shutil.ignore_patterns("__pycache__")
-    return Path(shutil.copytree(ROOT / "swgpar", folder / "swgpar", ignore=ignored))
-
-
 def insert(path: Path, before: str, text: str) -> None:
     """Put a text before another one, which the file has once."""
     content = path.read_text(encoding="utf-8")
     assert content.count(before) == 1, f"{path.name}: {before}"
     path.write_text(content.replace(before, text + before), encoding="utf-8")
-
-
-def patch(path: Path, difference: str) -> None:
-    """Add the lines with a plus to the place that the other lines show, which the file has once."""
-    lines = difference.splitlines(keepends=True)
-    before = "".join(line[1:] for line in lines if line[0] == " ")
-    content = path.read_text(encoding="utf-8")
-    assert content.count(before) == 1, f"{path.name}: {before}"
-    path.write_text(content.replace(before, "".join(line[1:] for line in lines)), encoding="utf-8")
 
 
 def small_run(folder: Path) -> None:

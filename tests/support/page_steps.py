@@ -1,0 +1,23 @@
+"""The steps of a how-to page about an own part, taken in a copy of the package."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+from support.paths import ROOT
+
+
+def copied_package(folder: Path) -> Path:
+    """A copy of the package in a folder."""
+    ignored = shutil.ignore_patterns("__pycache__")
+    return Path(shutil.copytree(ROOT / "swgpar", folder / "swgpar", ignore=ignored))
+
+
+def patch(path: Path, difference: str) -> None:
+    """Add the lines with a plus to the place that the other lines show, which the file has once."""
+    lines = difference.splitlines(keepends=True)
+    before = "".join(line[1:] for line in lines if line[0] == " ")
+    content = path.read_text(encoding="utf-8")
+    assert content.count(before) == 1, f"{path.name}: {before}"
+    path.write_text(content.replace(before, "".join(line[1:] for line in lines)), encoding="utf-8")
