@@ -22,23 +22,27 @@ from swgpar.evaluation.places import STRESSES, Place
 from swgpar.evaluation.result_frame import InputTorque, input_torque
 from swgpar.evaluation.windows.root_stress import RootStress
 from swgpar.load.load_states import Stage
-from swgpar.results.history import COLUMNS, Row, column, transmission_error
+from swgpar.results.history import DECLARED, Row, column, transmission_error
 
 GEAR_STRESSES = tuple(f"{body}_{stress}" for body in ("fs", "rg") for stress in STRESSES)
 """Columns of the history with the largest stresses of both bodies."""
 
 INPUT_TORQUE = "wg_torque_Nmm"
 
-MEAN_COLUMNS = (*GEAR_STRESSES, *(f"ds_{stress}" for stress in STRESSES), INPUT_TORQUE)
-"""Columns of the history whose means and maxima over the rotation are taken."""
+MEAN_COLUMNS = tuple(
+    sorted(
+        (declared for declared in DECLARED if declared.averaged),
+        key=lambda declared: declared.unit != "MPa",
+    )
+)
+"""Columns of the history whose means and maxima over the rotation are taken, stresses first."""
 
 
 def _by_column(group: str, field: str, words: str, *, detail: bool) -> Iterator[AnswerKind]:
     """Answers in a field by column of the history."""
-    for name in MEAN_COLUMNS:
-        column = COLUMNS[name]
-        text = f"{column.label}, {words} over the rotation"
-        yield AnswerKind(f"{group}.{name}", text, column.unit, f"{field}.{name}", detail)
+    for mean in MEAN_COLUMNS:
+        text = f"{mean.label or mean.name}, {words} over the rotation"
+        yield AnswerKind(f"{group}.{mean.name}", text, mean.unit, f"{field}.{mean.name}", detail)
 
 
 @evaluation
@@ -82,13 +86,17 @@ class Rotation(AnswerGroup):
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
         if design.has_program:
             return ()
-        left_out: tuple[str, ...] = ()
-        if design.dynamic_spline is None:
-            left_out += ("mean.ds_", "maximum.ds_")
-        if not design.wave_generator_is_fixed:
-            left_out += ("input.",)
+        has = {
+            "all": True,
+            "pancake": design.dynamic_spline is not None,
+            "wave generator fixed": design.wave_generator_is_fixed,
+        }
+        missing = [mean.name for mean in MEAN_COLUMNS if not has[mean.drives]]
         return tuple(
-            kind for kind in super().kinds(design) if not kind.name.startswith(tuple(left_out))
+            kind
+            for kind in super().kinds(design)
+            for group, _, name in [kind.name.partition(".")]
+            if name not in missing and (group != "input" or design.wave_generator_is_fixed)
         )
 
     def answers(self) -> Iterator[Answer]:
@@ -125,7 +133,8 @@ def evaluate_rotation(
     maxima: dict[str, float] = {}
     ripple = deviation = half = None
     if sampled:
-        names = [name for name in MEAN_COLUMNS if name in sampled[0]]
+        declared = [mean.name for mean in MEAN_COLUMNS]
+        names = [name for name in declared if all(name in row for row in sampled)]
         means = {name: float(np.mean([row[name] for row in sampled])) for name in names}
         maxima = {name: float(column(sampled, name).max()) for name in names}
         torque, mean = column(sampled, INPUT_TORQUE), means[INPUT_TORQUE]

@@ -40,6 +40,7 @@ class Column:
     label : short, for tables and figures; where it is empty, the name says it
     whole : whether the values are integers
     periodic : whether it is the same after one period, and smooth between
+    averaged : whether its mean and its maximum over the rotation are answers
     drives : which ones have it: "all", "pancake", or those with the "wave generator fixed"
     """
 
@@ -49,6 +50,7 @@ class Column:
     label: str = ""
     whole: bool = False
     periodic: bool = False
+    averaged: bool = False
     drives: str = "all"
 
 
@@ -58,7 +60,13 @@ def _stresses(
     """Columns of the largest stresses of a body."""
     return tuple(
         Column(
-            f"{prefix}_{name}", "MPa", meaning, f"{body}, {label}", periodic=periodic, drives=drives
+            f"{prefix}_{name}",
+            "MPa",
+            meaning,
+            f"{body}, {label}",
+            periodic=periodic,
+            averaged=True,
+            drives=drives,
         )
         for name, label, meaning in (
             ("s1", "tensile s1", f"largest tensile stress in the {body} (first principal stress)"),
@@ -94,6 +102,7 @@ DECLARED = (
         "torque of wave generator and pins on the flexible spline",
         "torque of the wave generator",
         periodic=True,
+        averaged=True,
     ),
     Column("tooth_torque_Nmm", "N·mm", "torque of the ring gear's teeth on the flexible spline"),
     Column("output_torque_Nmm", "N·mm", "load on the output"),
