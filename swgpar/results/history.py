@@ -166,9 +166,19 @@ def plain_row(row: Mapping[str, Any]) -> Row:
     }
 
 
+def names_of(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The columns that any of the rows has, in the order of the file; those that are not declared
+    come last. The rows before a restart may lack some."""
+    found = dict.fromkeys(name for row in rows for name in row)
+    return [*(name for name in COLUMNS if name in found), *(n for n in found if n not in COLUMNS)]
+
+
 def format_rows(rows: Iterable[Mapping[str, Any]]) -> bytes:
-    """The text of the whole file; floats as the shortest text that reads back the same."""
-    return format_csv([plain_row(row) for row in rows])
+    """The text of the whole file; floats as the shortest text that reads back the same, empty where
+    a row has no value."""
+    plain = [plain_row(row) for row in rows]
+    names = names_of(plain)
+    return format_csv([{name: row.get(name) for name in names} for row in plain])
 
 
 def format_description() -> bytes:
@@ -177,14 +187,24 @@ def format_description() -> bytes:
 
 
 def columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
-    """The history by columns, each (n,): int64 for `step` and for counts, else float64."""
-    names = rows[0] if rows else [column.name for column in columns_of("all")]
-    kinds = {column.name: np.int64 if column.whole else float for column in DECLARED}
-    return {name: np.array([row[name] for row in rows], dtype=kinds.get(name)) for name in names}
+    """The history by columns, each (n,): int64 for `step` and for counts, else float64; float64 too
+    for counts that a row lacks. NaN where a row has no value."""
+    names = names_of(rows) if rows else [column.name for column in columns_of("all")]
+    whole = {
+        column.name
+        for column in DECLARED
+        if column.whole and all(column.name in row for row in rows)
+    }
+    kinds = {name: np.int64 if name in whole else float for name in COLUMNS}
+    return {
+        name: np.array([row.get(name, np.nan) for row in rows], dtype=kinds.get(name))
+        for name in names
+    }
 
 
 def read_history(path: Path) -> list[Row]:
-    """Rows of a history.csv. Columns that are not declared, of other versions, come last.
+    """Rows of a history.csv. Columns that are not declared, of other versions, come last. A row
+    lacks the columns whose cells are empty.
 
     Raises ValueError for columns of a newer version, or without those of `REQUIRED`.
     """
@@ -203,7 +223,7 @@ def read_history(path: Path) -> list[Row]:
         raise ValueError(f"{NAME} has no column {missing[0]}")
     known = {name for name in found if name in COLUMNS}
     return [
-        plain_row({name: row[name] for name in known})
+        plain_row({name: float(row[name]) for name in known if row[name] != ""})
         | {n: v for n, v in row.items() if n not in known}
         for row in as_rows(found)
     ]
@@ -249,8 +269,8 @@ class Curves:
 
     angle, values : (n,) degrees of the wave generator, and columns by name, where they were
     computed
-    fine_angle, fine : (m,) and the periodic columns between them; the points where the rotation was
-    not sampled
+    fine_angle, fine : (m,) and the periodic columns between them, NaN for one that lacks values;
+    the points where the rotation was not sampled
     """
 
     angle: np.ndarray
@@ -291,6 +311,8 @@ def curves(
     }
     fine = {
         name: CubicSpline(knots, column, bc_type="periodic")(fine_angle)
+        if np.isfinite(column).all()
+        else np.full(FINE, np.nan)
         for name, column in closed.items()
     }
     return Curves(angle, values, fine_angle, fine)

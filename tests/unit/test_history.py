@@ -6,6 +6,7 @@ import json
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import swgpar
@@ -67,6 +68,34 @@ def test_without_steps_there_is_no_history(tmp_path: Path) -> None:
 def test_a_value_needs_a_declared_column() -> None:
     with pytest.raises(ValueError, match="strain_energy is not declared"):
         history.plain_row({"step": 3, "strain_energy": 2.5})
+
+
+def test_rows_before_a_restart_may_lack_a_column(tmp_path: Path) -> None:
+    """The file has the columns of all rows, with empty cells that read as NaN."""
+    later = {
+        "step": 4,
+        "wg_angle_deg": 1.5,
+        "output_angle_deg": 0.1,
+        "fs_s1": 2.5,
+        "pairs_in_contact": 8,
+    }
+    rows = [
+        {"step": 3, "wg_angle_deg": 0.0, "output_angle_deg": 0.0},
+        later,
+        {**later, "wg_angle_deg": 3.0},
+    ]
+    path = tmp_path / history.NAME
+    path.write_bytes(history.format_rows(rows))
+    assert path.read_text(encoding="utf-8").splitlines()[1] == "3,0.0,0.0,,"
+    read = history.read_history(path)
+    assert read == rows
+    found = history.columns(read)
+    assert list(found) == list(later) and found["step"].dtype == np.int64
+    for name, value in (("fs_s1", 2.5), ("pairs_in_contact", 8.0)):
+        np.testing.assert_array_equal(found[name], [np.nan, value, value])
+    curves = history.curves(found, 3, 3, 8.57, -20.0)
+    assert np.isnan(curves.fine["fs_s1"]).all()
+    assert np.isfinite(curves.fine[history.TRANSMISSION_ERROR]).all()
 
 
 @pytest.fixture(scope="module")
