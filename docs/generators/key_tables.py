@@ -202,6 +202,7 @@ def file_tables(design: type[Section], alike: dict[str, str]) -> str:
 
 def main(folder: Path) -> None:
     """Write all pages."""
+    folder.mkdir(parents=True, exist_ok=True)
     for name, (design, alike) in FILES.items():
         (folder / f"keys_{name}.md").write_text(file_tables(design, alike), encoding="utf-8")
     sections = {"study": StudySection, "study_case": CaseSection, "optimise": OptimiseSection}
