@@ -35,6 +35,7 @@ import json
 import math
 import sys
 import tempfile
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -60,6 +61,9 @@ MOST = 200
 
 DEPTH = 2
 """Levels of lists, dictionaries and dataclasses that are searched."""
+
+LOOKS = 200
+"""Calls of a function that are searched: a search costs more than most functions."""
 
 Holds = Callable[[Any], bool]
 """Whether a value is, or has, what is followed."""
@@ -119,6 +123,7 @@ class Watch:
         self.package, self.holds, self.asked = package, holds, asked
         self.entries, self.open = 0, [0]
         self.first: dict[CodeType, tuple[int, str]] = {}
+        self.looks: Counter[CodeType] = Counter()
 
     def __call__(self, frame: FrameType, event: str, result: Any) -> None:
         """Called at the beginning and at the end of every function (`sys.setprofile`)."""
@@ -136,6 +141,9 @@ class Watch:
         ):
             return
         if code in self.first and self.first[code][0] <= entry:
+            return
+        self.looks[code] += 1
+        if self.looks[code] > LOOKS:
             return
         values = dict(frame.f_locals)
         if self.asked and self.holds(values.get("self")):
