@@ -78,7 +78,8 @@ def file_graph(package: Path) -> Graph:
 
     def defined_in(name: str) -> str:
         """The module that a full name is, or in which it is defined."""
-        while name not in modules and name in handed_on:
+        # an installed package has compiled modules without their sources: they hand on themselves
+        while name not in modules and handed_on.get(name, name) != name:
             name = handed_on[name]
         while name not in modules:
             name = name.rpartition(".")[0]
