@@ -1,4 +1,5 @@
-// Signals and a sign of life, beside the interpreter: it may be in a long call of a library and answers no signal then.
+// Signals and a sign of life, beside the interpreter: it may be in a long call of a library and
+// answers no signal then.
 #pragma once
 #include <signal.h>
 #include <time.h>
@@ -14,7 +15,8 @@ namespace swgpar {
 
 constexpr int LONGEST = 6000;  // bytes of a text
 
-// A text that is set by the interpreter and read by a signal handler or another thread: one of two buffers is complete.
+// A text that is set by the interpreter and read by a signal handler or another thread: one of two
+// buffers is complete.
 struct Text {
   char letters[2][LONGEST] = {};
   int length[2] = {0, 0};
@@ -39,7 +41,8 @@ struct Text {
 inline Text before_name, after_name, sign_of_life;
 inline std::atomic<pid_t> owner{0};
 
-// Ends the process: what is on the disk is complete at any moment. Only functions that a signal handler may call.
+// Ends the process: what is on the disk is complete at any moment. Only functions that a signal
+// handler may call.
 inline void end(int number) {
   if (getpid() == owner.load() && after_name.length[after_name.current.load()] > 0) {
     before_name.put(2);
@@ -61,7 +64,9 @@ inline void arm(int number) {
 
 using Clock = std::chrono::steady_clock;
 
-inline double seconds() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
+inline double seconds() {
+  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+}
 
 inline std::atomic<double> last_output{0.0};
 inline std::atomic<bool> beating{false};
@@ -73,7 +78,8 @@ inline void note_output() { last_output.store(seconds()); }
 inline void beat(double interval) {
   double quiet_since = last_output.load(), written = quiet_since;
   while (beating.load()) {
-    std::this_thread::sleep_for(std::chrono::duration<double>(interval < 2.0 ? interval / 20.0 : 0.1));
+    std::this_thread::sleep_for(
+        std::chrono::duration<double>(interval < 2.0 ? interval / 20.0 : 0.1));
     const double now = seconds(), last = last_output.load();
     if (last != quiet_since) quiet_since = written = last;
     if (now - written < interval) continue;
@@ -84,8 +90,9 @@ inline void beat(double interval) {
     char line[LONGEST + 100];
     const int text = sign_of_life.current.load();
     const int count =
-        std::snprintf(line, sizeof line, "%02d:%02d:%02d  %.*s, no news for %.0f s\n", local.tm_hour, local.tm_min,
-                      local.tm_sec, sign_of_life.length[text], sign_of_life.letters[text], now - quiet_since);
+        std::snprintf(line, sizeof line, "%02d:%02d:%02d  %.*s, no news for %.0f s\n",
+                      local.tm_hour, local.tm_min, local.tm_sec, sign_of_life.length[text],
+                      sign_of_life.letters[text], now - quiet_since);
     ssize_t ignored = ::write(1, line, count);
     (void)ignored;
   }
