@@ -4,16 +4,17 @@ flange."""
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.cup_wall import with_station
 from swgpar.geometry.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.cross_section import CrossSection
-from swgpar.meshing.recipe import CupRecipe
-from swgpar.meshing.sweep import sweep_line, sweep_quads, symmetric_steps
+from swgpar.meshing.recipe import CupRecipe, MeshRecipe
+from swgpar.meshing.spacing import polar
+from swgpar.meshing.sweep import grid_quads, sweep_line, sweep_quads, symmetric_steps
 
 GROWTH = 1.6
 """Ratio of the lengths of successive elements between the fillet at the back of the teeth and the
@@ -36,12 +37,11 @@ def cylinder_stations(length: float, recipe: CupRecipe, fillet: float, layers: i
         step *= GROWTH
         behind = usual[usual > stations[-1] + 0.5 * step]
         if len(behind) < 2 or step > behind[1] - behind[0] or stations[-1] + 1.5 * step > length:
-            return (
-                np.array([*stations, *behind])
-                if len(behind)
-                else np.array([*stations[:-1], length])
-            )
+            break
         stations.append(stations[-1] + step)
+    if not len(behind):
+        stations[-1] = length
+    return np.array([*stations, *behind])
 
 
 def fillet_points(share: Floats, radius: float) -> tuple[Floats, Floats]:
@@ -109,12 +109,6 @@ def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
     return Meridian(lines[0], lines[1], len(s) - 1, len(s) - 1 + recipe.fillet)
 
 
-def attached_quads(section: CrossSection, root_too: bool) -> NDArray[np.bool_]:
-    """Return the mask (n_quad,) of the quadrilaterals of the cross-section that the cup
-    continues."""
-    return section.rim_layer | section.root_layer if root_too else section.rim_layer
-
-
 def depth_fractions(section: CrossSection, grid: Ints, r_inner: float, thickness: float) -> Floats:
     """Return the fraction (n_node,) of the wall at the nodes of a `wall_grid`: 0 at its inner, 1 at
     its outer surface.
@@ -152,19 +146,20 @@ class CupSlice:
     end: Ints
 
 
-def wall_grid(section: CrossSection, attached: NDArray[np.bool_]) -> Ints:
+def wall_grid(section: CrossSection, root_too: bool) -> Ints:
     """Return the nodes (n_layer + 1, n_column + 1) of the cross-section that the cup continues.
 
     Rows go from the free surface outwards, columns from the clockwise to the counter-clockwise
-    side.
+    side. root_too : whether the layers below the root belong to it
     """
+    continued = section.rim_layer | section.root_layer if root_too else section.rim_layer
     opposite = {}
-    for quad in section.quads[attached].tolist():
+    for quad in section.quads[continued].tolist():
         for k in range(4):
             opposite[quad[(k + 1) % 4], quad[k]] = quad[(k + 2) % 4], quad[(k + 3) % 4]
     rows = [section.free.tolist()]
     while (rows[-1][0], rows[-1][1]) in opposite:
-        pairs = [opposite[a, b] for a, b in zip(rows[-1][:-1], rows[-1][1:], strict=True)]
+        pairs = [opposite[edge] for edge in pairwise(rows[-1])]
         rows.append([pairs[0][0], *(last for _, last in pairs)])
     return np.array(rows, dtype=np.int32)
 
@@ -176,15 +171,13 @@ def rounded_back(drive: DriveGeometry, section: CrossSection, back: Floats) -> F
     The layer of nodes below the root that is nearest to the end of the fillet becomes its end.
     Without such a layer the fillet has a node in its middle only.
     """
-    cup, rim_thickness = drive.cup, drive.gears["flexible_spline"].rim
-    thickness = cup.thickness_coef * rim_thickness
+    cup, thickness = drive.cup, drive.cup_thickness
     if cup.back_fillet == 0.0:
         return back
-    rows = wall_grid(section, attached_quads(section, root_too=True))
-    rim = (
-        len(wall_grid(section, attached_quads(section, root_too=False))) - 1
-    )  # the row of the corner
-    step, under = rim_thickness - thickness, len(rows) - 1 - rim
+    rows = wall_grid(section, root_too=True)
+    rim = len(wall_grid(section, root_too=False)) - 1  # the row of the corner
+    step = drive.gears["flexible_spline"].rim - thickness
+    under = len(rows) - 1 - rim
     last = under
     if cup.back_fillet < step * (1.0 - 1e-9):
         last = min(max(1, round(under * cup.back_fillet / step)), under - 1)
@@ -194,9 +187,8 @@ def rounded_back(drive: DriveGeometry, section: CrossSection, back: Floats) -> F
     moved, z = radius.copy(), back[rows, 2]
     moved[rim : rim + len(up)] = (drive.inner_radius + thickness + up)[:, None]
     z[rim : rim + len(up)] += along[:, None]
-    inside = (
-        radius[:rim] - drive.inner_radius
-    ) / thickness  # in the rim in proportion to the distance from inside
+    # in the rim in proportion to the distance from inside
+    inside = (radius[:rim] - drive.inner_radius) / thickness
     moved[:rim] += inside * up[0]
     z[:rim] += inside * along[0]
     new = back.copy()
@@ -236,103 +228,76 @@ def transition(below: Ints, above: Ints, between: Ints, groups: list[int]) -> In
             ]
             inside += 2
         column += width
-    faces = np.array(quads).transpose(
-        2, 0, 1
-    )  # (n_layer + 1, n_quad, 4), counter-clockwise seen from outside
+    # (n_layer + 1, n_quad, 4), counter-clockwise seen from outside
+    faces = np.array(quads).transpose(2, 0, 1)
     return np.concatenate((faces[:-1], faces[1:]), axis=-1).reshape(-1, 8).astype(np.int32)
 
 
-def transition_station(drive: DriveGeometry, recipe: CupRecipe, layers: int) -> int:
-    """Station after which columns are joined: of the cylinder, a pitch or more behind the teeth if
-    there is one."""
-    lines = meridian(drive.cup, recipe, layers)
+def last_full_station(lines: Meridian, recipe: CupRecipe, module: float) -> int:
+    """Station behind which columns are joined: of the cylinder, a pitch or more behind the teeth if
+    there is one. The last one where none are joined."""
+    if not recipe.joined_columns:
+        return len(lines.inner) - 1
     z = lines.inner[: lines.wall, 1]
-    behind = np.flatnonzero(z - z[0] >= np.pi * drive.module)
+    behind = np.flatnonzero(z - z[0] >= np.pi * module)
     return int(behind[0]) if len(behind) else len(z) - 1
 
 
 def cup_slice(
-    drive: DriveGeometry,
-    recipe: CupRecipe,
-    section: CrossSection,
-    root_too: bool,
-    back: Ints,
-    first: int,
-    layers: int,
+    drive: DriveGeometry, recipe: MeshRecipe, section: CrossSection, back: Ints, first: int
 ) -> CupSlice:
     """Return the cup beyond the back of the teeth.
 
-    Parameters
-    ----------
-    root_too : whether the cup continues the layers below the root as well
     back : (n_section,) nodes at the back of the teeth;  first : number that the first new node gets
-    layers : elements along the half of the fillet at the back of the teeth that belongs to the wall
     """
-    attached = attached_quads(section, root_too)
-    grid = wall_grid(section, attached)
-    lines = meridian(drive.cup, recipe, layers)
+    grid = wall_grid(section, drive.cup.continues_root)
+    lines = meridian(drive.cup, recipe.cup, recipe.flexible_spline.under)
     inner, outer = lines.inner, lines.outer
-    spline = drive.gears["flexible_spline"]
-    fraction = depth_fractions(
-        section, grid, drive.inner_radius, drive.cup.thickness_coef * spline.rim
-    )
+    fraction = depth_fractions(section, grid, drive.inner_radius, drive.cup_thickness)
     angle = np.arctan2(*section.coords.T)
-    if recipe.joined_columns:
+    if recipe.cup.joined_columns:
         angle[grid] = angle[grid[0]]  # radial columns, below the root too
+    coords: list[Floats] = []
 
-    def positions(rz_inner: Floats, rz_outer: Floats, columns: Ints) -> Floats:
-        """Nodes (n_station, n, 3) mm on the lines between points (n_station, 2) of the inner and
-        outer surface."""
-        rz = rz_inner[:, None] + fraction[None, columns, None] * (rz_outer - rz_inner)[:, None]
-        return np.stack(
-            (rz[..., 0] * np.sin(angle[columns]), rz[..., 0] * np.cos(angle[columns]), rz[..., 1]),
-            axis=-1,
-        )
+    def new_nodes(rz_inner: Floats, rz_outer: Floats, columns: Ints) -> Ints:
+        """Numbers (n_station, n) of nodes on the lines between points (n_station, 2) of the inner
+        and outer surface."""
+        rz = rz_inner[:, None] + fraction[columns, None] * (rz_outer - rz_inner)[:, None]
+        points = np.concatenate((polar(rz[..., 0], angle[columns]), rz[..., 1:]), axis=-1)
+        number = first + sum(map(len, coords)) + np.arange(rz[..., 0].size, dtype=np.int32)
+        coords.append(points.reshape(-1, 3))
+        return number.reshape(rz.shape[:2])
 
     number = np.full((len(inner), len(section.coords)), -1, dtype=np.int32)
     number[0] = back
     columns = np.unique(grid)
-    last = (
-        len(inner) - 1 if not recipe.joined_columns else transition_station(drive, recipe, layers)
-    )
-    number[1 : last + 1, columns] = first + np.arange(last * len(columns)).reshape(last, -1)
-    coords = [positions(inner[1 : last + 1], outer[1 : last + 1], columns).reshape(-1, 3)]
-    hexes = [sweep_quads(section.quads[attached], number[: last + 1])]
-    if last < len(inner) - 1:
-        first += last * len(columns)
+    last = last_full_station(lines, recipe.cup, drive.module)
+    full, joined = slice(1, last + 1), slice(last + 1, None)
+    number[full, columns] = new_nodes(inner[full], outer[full], columns)
+    hexes = [sweep_quads(grid_quads(grid), number[: last + 1])]
+    if recipe.cup.joined_columns:
         groups = joined_columns(grid.shape[1] - 1)
         ends = np.concatenate(([0], np.cumsum(groups)))
-        coarse = grid[:, ends]
-        dropped = np.setdiff1d(np.arange(grid.shape[1]), ends)
-        kept = np.unique(coarse)
-        between = first + np.arange(grid[:, dropped].size, dtype=np.int32).reshape(len(grid), -1)
+        coarse, dropped = grid[:, ends], np.delete(grid, ends, axis=1)
         # as far from the joined columns as a column is wide, where the elements are long
         length = inner[last + 1, 1] - inner[last, 1]
-        width = 2.0 * np.pi * drive.inner_radius / spline.profile.n_teeth / (grid.shape[1] - 1)
-        share = 1.0 - min(0.5, width / length)
-        on_inner, on_outer = (
-            line[last : last + 1] + share * (line[last + 1] - line[last]) for line in (inner, outer)
-        )
-        coords.append(positions(on_inner, on_outer, grid[:, dropped].ravel()).reshape(-1, 3))
-        first += between.size
-        number[last + 1 :, kept] = first + np.arange((len(inner) - 1 - last) * len(kept)).reshape(
-            -1, len(kept)
-        )
-        coords.append(positions(inner[last + 1 :], outer[last + 1 :], kept).reshape(-1, 3))
+        pitch = 2.0 * np.pi * drive.inner_radius / drive.gears["flexible_spline"].profile.n_teeth
+        share = 1.0 - min(0.5, pitch / (grid.shape[1] - 1) / length)
+        at = ((1.0 - share) * line[[last]] + share * line[[last + 1]] for line in (inner, outer))
+        between = new_nodes(*at, dropped.ravel()).reshape(dropped.shape)
+        kept = np.unique(coarse)
+        number[joined, kept] = new_nodes(inner[joined], outer[joined], kept)
         hexes.append(transition(number[last][grid], number[last + 1][coarse], between, groups))
-        quads = np.stack(
-            (coarse[:-1, 1:], coarse[:-1, :-1], coarse[1:, :-1], coarse[1:, 1:]), axis=-1
-        ).reshape(-1, 4)
-        hexes.append(sweep_quads(quads, number[last + 1 :]))
+        hexes.append(sweep_quads(grid_quads(coarse), number[joined]))
+        grid = coarse
     edge = section.edge[np.isin(section.edge, columns)]
-    lines_behind = grid if last == len(inner) - 1 else coarse
     at_end = number[lines.end :]
-    end = [sweep_line(lines_behind[0], at_end), sweep_line(lines_behind[-1][::-1], at_end)]
+    end = [sweep_line(grid[0], at_end), sweep_line(grid[-1][::-1], at_end)]
     return CupSlice(
-        np.concatenate(coords),
-        np.concatenate(hexes),
-        number[1:, edge].ravel(),
-        number[1:, section.mirror[edge]].ravel(),
-        np.sort(number[-1][number[-1] >= 0]),
-        np.concatenate(end),
+        coords=np.concatenate(coords),
+        hexes=np.concatenate(hexes),
+        cw=number[1:, edge].ravel(),
+        ccw=number[1:, section.mirror[edge]].ravel(),
+        bore=np.sort(number[-1][number[-1] >= 0]),
+        end=np.concatenate(end),
     )

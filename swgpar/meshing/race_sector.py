@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.meshing.quality import hex_quality
+from swgpar.meshing.quality import element_quality
 from swgpar.meshing.sector import SectorMesh
 from swgpar.meshing.sweep import grid_quads, sweep_line, sweep_quads
 
@@ -99,6 +99,6 @@ def annular_sector(
         node_sets={"bore": surface[:, 0].ravel(), "outer": surface[:, -1].ravel()},
         flanks=(),
         profile=None,
-        quality=hex_quality(coords, hexes),
+        quality=element_quality(coords, hexes),
         lower_nodes=np.tile(rows[0], 2) if plane else None,
     )

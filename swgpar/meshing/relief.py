@@ -10,17 +10,7 @@ from scipy.sparse.linalg import splu
 from swgpar.geometry.arrays import Floats
 from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.meshing.cross_section import CrossSection
-
-# dN/dxi of the bilinear quadrilateral at the 2x2 Gauss points: (point, node, direction)
-_CORNERS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)
-_POINTS = _CORNERS / np.sqrt(3.0)
-_GRADIENT = 0.25 * np.stack(
-    (
-        _CORNERS[:, 0] * (1.0 + _POINTS[:, None, 1] * _CORNERS[:, 1]),
-        _CORNERS[:, 1] * (1.0 + _POINTS[:, None, 0] * _CORNERS[:, 0]),
-    ),
-    axis=-1,
-)
+from swgpar.meshing.quality import GAUSS, PLANE_CORNERS, jacobian_matrices, shape_gradients
 
 
 def boundary_nodes(section: CrossSection) -> np.ndarray:
@@ -35,14 +25,14 @@ def boundary_nodes(section: CrossSection) -> np.ndarray:
 
 def laplacian(section: CrossSection) -> coo_matrix:
     """Return the finite-element Laplace matrix (n_node, n_node) of the cross-section."""
-    x = section.coords[section.quads]
-    jacobian = np.einsum("eai,qak->eqik", x, _GRADIENT)
-    gradient = np.einsum("qak,eqki->eqai", _GRADIENT, np.linalg.inv(jacobian))
-    local = np.einsum("eqai,eqbi,eq->eab", gradient, gradient, np.linalg.det(jacobian))
+    natural = shape_gradients(PLANE_CORNERS, GAUSS * PLANE_CORNERS)
+    jacobian = jacobian_matrices(section.coords, section.quads, GAUSS)
+    gradient = np.einsum("qak,eqki->eqai", natural, np.linalg.inv(jacobian))
+    stiffness = np.einsum("eqai,eqbi,eq->eab", gradient, gradient, np.linalg.det(jacobian))
     rows = np.repeat(section.quads, 4, axis=1).ravel()
     columns = np.tile(section.quads, (1, 4)).ravel()
     n = len(section.coords)
-    return coo_matrix((local.ravel(), (rows, columns)), shape=(n, n)).tocsc()
+    return coo_matrix((stiffness.ravel(), (rows, columns)), shape=(n, n)).tocsc()
 
 
 def relief_field(section: CrossSection, profile: ToothProfile) -> Floats:

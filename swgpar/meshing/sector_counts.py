@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from swgpar.geometry.drive_geometry import DriveGeometry
-from swgpar.meshing.cup import joined_columns, meridian, transition_station
+from swgpar.meshing.cup import joined_columns, last_full_station, meridian
 from swgpar.meshing.housing import housing_radii
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
 from swgpar.meshing.tooth_sector import gap_elements, require_sections, tooth_recipe
@@ -58,11 +58,9 @@ def _counts(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> SectorCounts
     n_sectors = drive.gears[gear].profile.n_teeth
     if gear == "ring_gear":
         housing = len(housing_radii(drive.gears[gear], drive.housing, teeth)) - 1
-        quads, nodes, side = (
-            quads + housing * around,
-            nodes + housing * (around + 1),
-            side + housing,
-        )
+        quads += housing * around
+        nodes += housing * (around + 1)
+        side += housing
     if drive.model == "plane":
         return SectorCounts(n_sectors, quads, nodes, side, 0 if external else around)
     layers = recipe.face_width.elements
@@ -70,21 +68,16 @@ def _counts(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> SectorCounts
         layers = 2 * layers + gap_elements(drive, recipe)
     elements, nodes, side = quads * layers, nodes * (layers + 1), side * (layers + 1)
     if external and drive.cup is not None:
-        cup = recipe.cup
-        stations = len(meridian(drive.cup, cup, teeth.under).inner) - 1
+        lines = meridian(drive.cup, recipe.cup, teeth.under)
+        stations = len(lines.inner) - 1
+        full = last_full_station(lines, recipe.cup, drive.module)
         depth = teeth.rim + (teeth.under if drive.cup.continues_root else 0)
-        with_all, joined, threes = stations, around, 0
-        if cup.joined_columns:
+        elements += around * full * depth
+        nodes += (around + 1) * full * (depth + 1)
+        if behind := stations - full:
             groups = joined_columns(around)
-            with_all, joined, threes = (
-                transition_station(drive, cup, teeth.under),
-                len(groups),
-                groups.count(3),
-            )
-            elements += (around + threes) * depth  # of the transition
-            nodes += 2 * threes * (depth + 1)
-        behind = stations - with_all
-        elements += (around * with_all + joined * max(behind - 1, 0)) * depth
-        nodes += ((around + 1) * with_all + (joined + 1) * behind) * (depth + 1)
+            joined, threes = len(groups), groups.count(3)
+            elements += (around + threes + joined * (behind - 1)) * depth
+            nodes += (2 * threes + (joined + 1) * behind) * (depth + 1)
         side += (depth + 1) * stations
     return SectorCounts(n_sectors, elements, nodes, side, 0 if external else around * (layers + 1))

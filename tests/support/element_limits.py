@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 from support.contact_blocks import block
 from support.element_mesh import ElementMesh
 from swgpar.materials import Isotropic
-from swgpar.meshing.quality import hex_quality, quad_quality
+from swgpar.meshing.quality import element_quality
 
 YOUNG, STRAIN = 210e3, 1e-8
 """MPa; strain of the patch, so small that the terms of second order stay below the errors that are
@@ -48,7 +48,7 @@ def patch(dims: int, amount: float, seed: int, stretch: float = 1.0, poisson: fl
     rng = np.random.default_rng(seed)
     points, elements, inner = distorted_grid(dims, amount, rng)
     points[:, 1] *= stretch
-    quality = (hex_quality if dims == 3 else quad_quality)(points, elements)
+    quality = element_quality(points, elements)
     try:
         mesh = ElementMesh(points, elements, Isotropic(E=YOUNG, nu=poisson))
     except ValueError:

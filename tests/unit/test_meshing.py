@@ -19,7 +19,7 @@ from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes, load_rec
 from swgpar.meshing.cross_section import cross_section
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.export import mesh_report, whole_body, whole_drive, write_mesh
-from swgpar.meshing.quality import hex_quality, hex_volumes, quad_quality
+from swgpar.meshing.quality import element_quality, hex_volumes
 from swgpar.meshing.recipe import make_recipe
 from swgpar.meshing.sweep import axial_stations
 from swgpar.meshing.tooth_sector import build_sector
@@ -173,7 +173,7 @@ def test_jacobians_are_positive_and_elements_are_good(
     recipe: Path, overrides: tuple[str, ...]
 ) -> None:
     for mesh in meshes(recipe, *overrides).values():
-        assert mesh.quality == hex_quality(mesh.coords, mesh.hexes)
+        assert mesh.quality == element_quality(mesh.coords, mesh.hexes)
         assert mesh.quality["min_jacobian"] > 0.0
         assert mesh.quality["min_scaled_jacobian"] > 0.5
         assert np.unique(mesh.hexes).size == len(mesh.coords)
@@ -611,11 +611,11 @@ def test_plane_sectors(recipe: Path, overrides: tuple[str, ...]) -> None:
             section_area(case, gear), rel=5e-3
         )  # chords: 4e-3
         quality = mesh.quality
-        assert quality == quad_quality(mesh.coords, mesh.elements)
+        assert quality == element_quality(mesh.coords, mesh.elements)
         assert quality["min_jacobian"] > 0.0 and quality["min_scaled_jacobian"] > 0.5
         # of the section: the thickness does not enter
         assert 1.0 <= quality["max_aspect_ratio"] < 15.0
-        solid = hex_quality(mesh.coords, mesh.hexes)
+        solid = element_quality(mesh.coords, mesh.hexes)
         assert 0.5 * case.drive.face_width * quality["min_jacobian"] == pytest.approx(
             solid["min_jacobian"], rel=1e-9
         )
@@ -626,13 +626,13 @@ def test_plane_sectors(recipe: Path, overrides: tuple[str, ...]) -> None:
 
 def test_quality_of_a_trapezium() -> None:
     points = np.array([(0, 0, 0), (4, 0, 0), (3, 1, 0), (0, 1, 0)], dtype=float)
-    quality = quad_quality(points, np.array([[0, 1, 2, 3]], dtype=np.int32))
+    quality = element_quality(points, np.array([[0, 1, 2, 3]], dtype=np.int32))
     # half the height times half the width at eta = -+1 / sqrt(3)
     low, high = (0.25 * (3.5 - 0.5 * eta) for eta in (1.0 / np.sqrt(3.0), -1.0 / np.sqrt(3.0)))
     assert (quality["min_jacobian"], quality["max_jacobian"]) == pytest.approx((low, high))
     assert quality["max_aspect_ratio"] == pytest.approx(4.0)
     assert quality["min_scaled_jacobian"] == pytest.approx(np.sin(0.25 * np.pi))
-    assert quad_quality(points, np.array([[3, 2, 1, 0]], dtype=np.int32))["min_jacobian"] < 0.0
+    assert element_quality(points, np.array([[3, 2, 1, 0]], dtype=np.int32))["min_jacobian"] < 0.0
 
 
 @pytest.mark.parametrize("rim", [0.2, 1.0, 5.0, 20.0, 100.0])
