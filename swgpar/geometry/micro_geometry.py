@@ -33,40 +33,21 @@ def crowning(
     return radius - root, z / root, radius**2 / root**3
 
 
-Waves = tuple[np.ndarray, tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
-"""A function of x and y, (n,), its derivatives by x and y, and those by xx, xy and yy."""
-
-
-def _two_waves(x: np.ndarray, y: np.ndarray) -> Waves:
-    """cos 2 theta = (y^2 - x^2) / r^2."""
+def wave(x: np.ndarray, y: np.ndarray, order: int) -> tuple[np.ndarray, ...]:
+    """q = cos(order theta), theta = atan2(-x, y), and its derivatives by x, y, xx, xy and yy; all
+    (n,)."""
     r2 = x * x + y * y
-    q = (y * y - x * x) / r2
-    qx, qy = -2.0 * x * (1.0 + q) / r2, 2.0 * y * (1.0 - q) / r2
-    qxx = (-2.0 * (1.0 + q) - 4.0 * x * qx) / r2
-    qyy = (2.0 * (1.0 - q) - 4.0 * y * qy) / r2
-    qxy = (-2.0 * x * qy - 2.0 * y * qx) / r2
-    return q, (qx, qy), (qxx, qxy, qyy)
-
-
-def _three_waves(x: np.ndarray, y: np.ndarray) -> Waves:
-    """cos 3 theta = cos theta (2 cos 2 theta - 1), cos theta = y / r."""
-    q, (qx, qy), (qxx, qxy, qyy) = _two_waves(x, y)
-    r = np.hypot(x, y)
-    p, px, py = y / r, -x * y / r**3, x * x / r**3
-    pxx, pxy, pyy = (
-        y * (2.0 * x * x - y * y) / r**5,
-        x * (2.0 * y * y - x * x) / r**5,
-        -3.0 * x * x * y / r**5,
-    )
-    f = 2.0 * q - 1.0
+    turned = (y - 1j * x) ** order / np.sqrt(r2) ** order
+    q, slope, bend = turned.real, order * turned.imag, order**2 * turned.real
+    a, b = -y / r2, x / r2  # derivatives of theta
+    square, product = a * a - b * b, a * b
     return (
-        p * f,
-        (px * f + 2.0 * p * qx, py * f + 2.0 * p * qy),
-        (
-            pxx * f + 4.0 * px * qx + 2.0 * p * qxx,
-            pxy * f + 2.0 * (px * qy + py * qx + p * qxy),
-            pyy * f + 4.0 * py * qy + 2.0 * p * qyy,
-        ),
+        q,
+        -slope * a,
+        -slope * b,
+        2.0 * slope * product - bend * a * a,
+        -slope * square - bend * product,
+        -2.0 * slope * product - bend * b * b,
     )
 
 
@@ -114,18 +95,14 @@ class WaveGeneratorSurface:
         gradient[:, 2] += dc
         hessian[:, 2, 2] += ddc
         if self.slope:
-            q, (qx, qy), (qxx, qxy, qyy) = (_two_waves if self.lobes == 2 else _three_waves)(x, y)
+            q, qx, qy, qxx, qxy, qyy = wave(x, y, self.lobes)
             rate = 2.0 * self.slope / self.width
             level = level + rate * z * q
-            gradient[:, 0] += rate * z * qx
-            gradient[:, 1] += rate * z * qy
-            gradient[:, 2] += rate * q
+            for k, value in enumerate((z * qx, z * qy, q)):
+                gradient[:, k] += rate * value
             hessian[:, 0, 0] += rate * z * qxx
             hessian[:, 1, 1] += rate * z * qyy
-            hessian[:, 0, 1] += rate * z * qxy
-            hessian[:, 1, 0] += rate * z * qxy
-            hessian[:, 0, 2] += rate * qx
-            hessian[:, 2, 0] += rate * qx
-            hessian[:, 1, 2] += rate * qy
-            hessian[:, 2, 1] += rate * qy
+            for (i, j), value in (((0, 1), z * qxy), ((0, 2), qx), ((1, 2), qy)):
+                hessian[:, i, j] += rate * value
+                hessian[:, j, i] = hessian[:, i, j]
         return level, gradient, hessian

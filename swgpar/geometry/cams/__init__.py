@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from swgpar.geometry.arrays import SignedDistance
 from swgpar.geometry.cams.arcs import arcs
 from swgpar.geometry.cams.bearing_keys import Bearing
 from swgpar.geometry.cams.elliptical import EllipticalCam
@@ -35,16 +36,15 @@ class Cam(Protocol):
     A turn by one lobe leaves it as it is.
     """
 
-    def evaluate(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Signed distance (n,), outward unit normal (n, 2) and k (n,), Hessian = k t t^T, at points
-        (n, 2)."""
+    def evaluate(self, xy: np.ndarray) -> SignedDistance:
+        """Signed distance, outward normal and Hessian factor at points (n, 2), mm, near the
+        curve."""
 
     def outline(self, n: int) -> np.ndarray:
         """About n points of the surface (n, 2), mm.
 
-        Checks take the largest of the points: they lie all around the curve, with steps of about
-        the same size. Figures join them: neighbours follow each other, in either direction.
-        Separate parts follow one after the other.
+        They lie all around the curve, with steps of about the same size. Neighbours follow each
+        other, in either direction; separate parts follow one after the other.
         """
 
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.geometry.cams.piecewise import Circle, SignedDistance
+from swgpar.geometry.arrays import SignedDistance
+from swgpar.geometry.cams.piecewise import Circle
 
 
 @dataclass(frozen=True)

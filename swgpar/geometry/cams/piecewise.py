@@ -7,9 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-SignedDistance = tuple[np.ndarray, np.ndarray, np.ndarray]
-"""Signed distance (n,) mm, outward unit normal (n, 2), and k (n,) 1/mm with the distance's Hessian
-k t t^T."""
+from swgpar.geometry.arrays import SignedDistance
 
 
 class Piece(Protocol):

@@ -8,8 +8,8 @@ found by building the flank, so that it is the range that passes.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,25 +22,12 @@ SPAN, SAMPLES = 100.0, 61
 """Lengths are tried from the value over `SPAN` to the value times `SPAN`, in equal ratios."""
 
 
-@dataclass(frozen=True)
-class WorkingRange:
-    """Values of a key that work, nearest to the one that is given; those at the ends work as well.
+class WorkingRange(NamedTuple):
+    """Values of a key that work, those at the ends as well.  example : a round value inside"""
 
-    key : name;  value : that is given;  low, high : ends;  example : a round value inside
-    """
-
-    key: str
-    value: float
     low: float
     high: float
     example: float
-
-    @property
-    def change(self) -> float:
-        """How far the value is from the range: ratio of lengths, as a logarithm."""
-        if self.value <= 0.0:
-            return np.inf
-        return float(np.abs(np.log(np.clip(self.value, self.low, self.high) / self.value)))
 
 
 def advise(
@@ -55,53 +42,54 @@ def advise(
     builds : whether the flank can be built with another value of a key
     unit : module, mm; a length of zero is varied up to it
     """
-    ranges = []
-    for key, value in lengths.items():
-        working = working_range(key, value, partial(builds, key), unit)
-        if working is not None:
-            ranges.append(working)
+    tried = {
+        key: working_range(value, partial(builds, key), unit) for key, value in lengths.items()
+    }
+    ranges = {key: working for key, working in tried.items() if working is not None}
     if not ranges:
         return ""
-    best = min(ranges, key=lambda working: working.change)
-    direction = "larger" if best.example > best.value else "smaller"
+
+    def change(key: str) -> float:
+        """Ratio of the nearest length that works to the one that is given, as a logarithm."""
+        value = lengths[key]
+        nearest = np.clip(value, ranges[key].low, ranges[key].high)
+        return abs(np.log(nearest / value)) if value > 0.0 else np.inf
+
+    key = min(ranges, key=change)
+    low, high, example = ranges[key]
     return (
-        f"make {name}.{best.key} {direction}: allowed {show(best.low)} to {show(best.high)} mm "
-        f"with the other keys as "
-        f"they are, for example {show(best.example)}"
+        f"make {name}.{key} {'larger' if example > lengths[key] else 'smaller'}: allowed "
+        f"{show(low)} to {show(high)} mm with the other keys as they are, for example "
+        f"{show(example)}"
     )
 
 
-def working_range(key: str, value: float, builds: Builds, unit: float) -> WorkingRange | None:
+def working_range(value: float, builds: Builds, unit: float) -> WorkingRange | None:
     """The range nearest to `value` in which `builds` holds; None where no sample of it works."""
-    samples = (
-        value * np.geomspace(1.0 / SPAN, SPAN, SAMPLES)
-        if value > 0.0
-        else unit * np.linspace(0.0, 2.0, SAMPLES)
-    )
+    if value > 0.0:
+        samples, at = value * np.geomspace(1.0 / SPAN, SPAN, SAMPLES), SAMPLES // 2
+    else:
+        samples, at = unit * np.linspace(0.0, 2.0, SAMPLES), 0
     works = np.array([builds(float(x)) for x in samples])
     if not works.any():
         return None
-    middle = int(np.abs(samples - value).argmin()) if value <= 0.0 else SAMPLES // 2
-    nearest = int(np.flatnonzero(works)[np.abs(np.flatnonzero(works) - middle).argmin()])
+    good, bad = np.flatnonzero(works), np.flatnonzero(~works)
+    nearest = good[np.abs(good - at).argmin()]
     # the samples around it that all work
-    bad = np.flatnonzero(~works)
-    first, last = (
-        bad[bad < nearest].max(initial=-1) + 1,
-        bad[bad > nearest].min(initial=SAMPLES) - 1,
-    )
+    first = bad[bad < nearest].max(initial=-1) + 1
+    last = bad[bad > nearest].min(initial=SAMPLES) - 1
     low = samples[0] if first == 0 else _end(builds, samples[first - 1], samples[first])
     high = samples[-1] if last == SAMPLES - 1 else _end(builds, samples[last + 1], samples[last])
-    # a few digits, rounded into the range
-    low, high = _inward(low, low, high, up=True), _inward(high, low, high, up=False)
+    # a few digits, inside of the range
+    low, high = float(f"{1.001 * low:.4g}"), float(f"{0.999 * high:.4g}")
     if not (low < high and builds(low) and builds(high)):
         low, high = float(samples[first]), float(samples[last])
-    # inside the range, near the end that is nearer to the value
+    # near the end that is nearer to the value
     near, far = (low, high) if value <= low else (high, low)
-    example = near * (far / near) ** 0.1 if min(near, far) > 0.0 else near + 0.1 * (far - near)
-    example = _inward(example, low, high, up=far > near)
-    return WorkingRange(
-        key, value, low, high, example if builds(example) else float(samples[nearest])
-    )
+    example = near * (far / near) ** 0.1 if low > 0.0 else near + 0.1 * (far - near)
+    example = float(f"{example:.3g}")
+    inside = low <= example <= high and builds(example)
+    return WorkingRange(low, high, example if inside else float(samples[nearest]))
 
 
 def _end(builds: Builds, bad: float, good: float) -> float:
@@ -110,13 +98,3 @@ def _end(builds: Builds, bad: float, good: float) -> float:
         middle = 0.5 * (bad + good)
         bad, good = (bad, middle) if builds(middle) else (middle, good)
     return float(good)
-
-
-def _inward(value: float, low: float, high: float, *, up: bool) -> float:
-    """`value` with three digits, rounded up or down; with more where that leaves the range."""
-    for digits in range(3, 12):
-        scale = 10.0 ** (digits - 1 - np.floor(np.log10(abs(value)))) if value else 1.0
-        rounded = float((np.ceil if up else np.floor)(value * scale) / scale)
-        if low <= rounded <= high:
-            return float(f"{rounded:.12g}")
-    return value
