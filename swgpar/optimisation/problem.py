@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,12 +16,12 @@ from swgpar.errors import InputError
 from swgpar.input.quantities import unit_of_key
 from swgpar.input.toml_file import apply_overrides, read_toml, with_value
 from swgpar.meshing import MeshRecipe, load_recipe
-from swgpar.meshing.recipe import is_recipe_name
-from swgpar.optimisation.spec import OptimiseSection, Specification
+from swgpar.optimisation.spec import OptimiseSection, Screen, Specification
 from swgpar.results.quantity import Quantity
 from swgpar.run_options import RunOptions
-from swgpar.studies.case import PlannedRun, not_known
-from swgpar.studies.job import run_planned
+from swgpar.studies.case import not_known
+from swgpar.studies.job import run_one
+from swgpar.studies.run_file import refusals_of, refuse_mesh
 from swgpar.systems import System, system_of_table
 
 FAILED = 100.0
@@ -30,14 +29,21 @@ FAILED = 100.0
 value is twice one."""
 
 
+SOUGHT = {"set", "screen", "variable", "objective", "constraint"}
+"""Keys that say what is sought; a search is continued with others of the rest."""
+
+
+STATUS = ("feasible", "infeasible", "failed")
+"""Of evaluations, the best first: a constraint is violated, the design is refused or its run ended
+in an error."""
+
+
 @dataclass(frozen=True)
 class Evaluation:
     """What became of a design.
 
     values : of the variables, by name
-    status : "feasible", "infeasible" (a constraint is violated) or "failed" (refused, or the run
-    ended in an error)
-    reason : one sentence, empty when feasible
+    status : one of `STATUS`;  reason : one sentence, empty when feasible
     quantities : those of objectives and constraints by name, as far as they are known
     violations : of the constraints, by their description; 0 and less is allowed
     wall_s : seconds
@@ -74,33 +80,15 @@ class Problem:
     derived: frozenset[str]
 
     @property
-    def names(self) -> list[str]:
-        """Quantities of objectives and constraints."""
-        return self.section.quantities
-
-    @property
     def identity(self) -> str:
         """A number that stands for what is computed: a search is only continued with the same."""
-        kept = {
-            "evaluations",
-            "storage",
-            "parallel",
-            "title",
-            "remarks",
-            "first",
-            "sampler",
-            "seed",
-            "design",
-            "mesh",
-        }
         content = (
-            self.section.model_dump(exclude=kept),
+            self.section.model_dump(include=SOUGHT),
             self.run_table,
             self.recipe and self.recipe.model_dump(),
         )
-        return hashlib.sha256(
-            json.dumps(content, sort_keys=True, default=str).encode()
-        ).hexdigest()[:16]
+        text = json.dumps(content, sort_keys=True, default=str)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     def applied(self, table: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
         """The content of a design file with the values of the variables, by name."""
@@ -110,85 +98,75 @@ class Problem:
                     table = with_value(table, key, values[variable.name])
         return table
 
-    def evaluate(
-        self,
-        values: dict[str, Any],
-        comm: MPI.Comm,
-        on_increment: Callable[[], None] = lambda: None,
-    ) -> Evaluation:
+    def evaluate(self, values: dict[str, Any], comm: MPI.Comm) -> Evaluation:
         """Run a design; collective. A design that is refused or fails is an outcome."""
-        design, refusal, quantities = None, "", {}
+        quantities: dict[str, float] = {}
         try:
             design = self.system.load(self.applied(self.run_table, values))
             if self.derived:
                 derived = self.system.check(design)
                 quantities = {name: float(derived[name]) for name in self.derived}
         except InputError as error:
-            refusal = str(error)
-        violations = self._violations(quantities)
-        if refusal or any(amount > 0.0 for amount in violations.values()):
-            return self._ended(values, refusal, quantities, 0.0)
-        planned = PlannedRun(self.system, design, self.recipe, str(self.mesh or ""))
-        outcome = run_planned(planned, RunOptions(comm=comm, on_increment=on_increment))
+            return self._ended(values, str(error), quantities)
+        if any(amount > 0.0 for amount in self._violations(quantities).values()):
+            return self._ended(values, "", quantities)
+        mesh = str(self.mesh or "")
+        options = RunOptions(recipe=self.recipe, recipe_name=mesh, comm=comm)
+        outcome = run_one(self.system, design, options)
+        names = self.section.quantities
         quantities |= {
-            name: float(outcome.values[name]) for name in self.names if name in outcome.values
+            name: float(outcome.values[name]) for name in names if name in outcome.values
         }
-        reason = outcome.reason
-        missing = [name for name in self.names if not np.isfinite(quantities.get(name, np.nan))]
-        if not reason and missing:
-            reason = f"the run has no value of {missing[0]}"
-        return self._ended(values, reason, quantities, outcome.wall_s or 0.0)
+        missing = [name for name in names if not np.isfinite(quantities.get(name, np.nan))]
+        failure = outcome.reason or (f"the run has no value of {missing[0]}" if missing else "")
+        return self._ended(values, failure, quantities, outcome.wall_s or 0.0)
 
     def _violations(self, quantities: dict[str, float]) -> dict[str, float]:
-        found: dict[str, float] = {}
+        violations: dict[str, float] = {}
         for constraint in self.section.constraint:
-            if np.isfinite(quantities.get(constraint.quantity, np.nan)):
-                found |= constraint.violations(quantities[constraint.quantity])
-        return found
+            value = quantities.get(constraint.quantity, np.nan)
+            if np.isfinite(value):
+                violations |= constraint.violations(value)
+        return violations
 
     def _ended(
-        self, values: dict[str, Any], failure: str, quantities: dict[str, float], wall_s: float
+        self,
+        values: dict[str, Any],
+        failure: str,
+        quantities: dict[str, float],
+        wall_s: float = 0.0,
     ) -> Evaluation:
-        violations = self._violations(quantities)
+        violations, status, reason = self._violations(quantities), "feasible", ""
         broken = [text for text, amount in violations.items() if amount > 0.0]
         if failure:
-            return Evaluation(
-                values, "failed", failure, quantities, violations | {"failed": FAILED}, wall_s
-            )
-        reason = f"{', '.join(broken)} is not kept" if broken else ""
-        return Evaluation(
-            values, "infeasible" if broken else "feasible", reason, quantities, violations, wall_s
-        )
+            status, reason = "failed", failure
+            violations["failed"] = FAILED
+        elif broken:
+            status, reason = "infeasible", f"{', '.join(broken)} is not kept"
+        return Evaluation(values, status, reason, quantities, violations, wall_s)
 
 
 def make_problem(spec: Specification, screen: bool = False) -> Problem:
     """The checked problem of a file, or that of its screen; every problem of the file is an
     InputError."""
-    section = spec.section
-    try:
-        return _make(section, spec.folder, screen)
-    except InputError as error:
-        raise InputError(f"{spec.name}: {error}") from None
+    with refusals_of(spec.name):
+        return _make(spec, spec.section, spec.section.screen if screen else None)
 
 
-def _make(section: OptimiseSection, folder: Path, screen: bool) -> Problem:
-    table = apply_overrides(read_toml(folder / section.design), section.set)
-    cheaper = section.screen if screen else None
-    run_table = apply_overrides(table, cheaper.set) if cheaper else table
+def _make(spec: Specification, section: OptimiseSection, screen: Screen | None) -> Problem:
+    table = apply_overrides(read_toml(spec.folder / section.design), section.set)
+    cheaper = screen.set if screen else []
     system = system_of_table(table)
     # what the file does not ask for itself is left out, as in studies
-    quiet = apply_overrides(
-        system.without_output(run_table), [*section.set, *(cheaper.set if cheaper else ())]
-    )
-    mesh, recipe = None, None
-    named = (cheaper.mesh if cheaper else "") or section.mesh
-    if "mesh" in system.options:
-        if not named:
-            raise InputError("optimise.mesh is missing: give a mesh recipe")
-        mesh = Path(named) if is_recipe_name(named) else folder / named
-        recipe = load_recipe(mesh)
-    elif named:
-        raise InputError(f"optimise.mesh has no meaning for {system.noun}: leave it out")
+    quiet = system.without_output(apply_overrides(table, cheaper))
+    quiet = apply_overrides(quiet, [*section.set, *cheaper])
+    mesh, recipe = (screen.mesh if screen else "") or section.mesh, None
+    if "mesh" not in system.options:
+        refuse_mesh("optimise.mesh", mesh, system)
+    elif not mesh:
+        raise InputError("optimise.mesh is missing: give a mesh recipe")
+    else:
+        recipe = load_recipe(spec.mesh(mesh))
     design = system.load(quiet)
     known, derived = dict(system.quantities(design)), set()
     for name in section.quantities:
@@ -197,8 +175,17 @@ def _make(section: OptimiseSection, folder: Path, screen: bool) -> Problem:
                 raise not_known("optimise: ", known, system, name)
             known[name] = Quantity("by swgpar check", "")
             derived.add(name)
-    units = {variable.name: unit_of_key(design, variable.name) for variable in section.variable}
-    problem = Problem(section, system, table, quiet, mesh, recipe, units, known, frozenset(derived))
+    problem = Problem(
+        section=section,
+        system=system,
+        table=table,
+        run_table=quiet,
+        mesh=spec.mesh(mesh) if mesh else None,
+        recipe=recipe,
+        units={variable.name: unit_of_key(design, variable.name) for variable in section.variable},
+        known=known,
+        derived=frozenset(derived),
+    )
     for variable in section.variable:
         value = variable.choices[0] if variable.choices else variable.low
         _require_key(problem, variable.name, int(value) if variable.integer else value)

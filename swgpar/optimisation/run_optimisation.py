@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
+from typing import Any
 
 from mpi4py import MPI
 
-from swgpar import log, watch
-from swgpar.errors import OutputError
+from swgpar import watch
 from swgpar.input.toml_file import to_toml
 from swgpar.optimisation.problem import Problem, make_problem
 from swgpar.optimisation.report import make_report
@@ -19,13 +19,15 @@ from swgpar.optimisation.spec import Specification, load_specification
 from swgpar.optimisation.terminal import OptimiseProgress
 from swgpar.results.atomic import agreed, on_all, write_from_root
 from swgpar.results.folder import given_folder
-from swgpar.results.lock import acquire, releasing
+from swgpar.results.lock import releasing
 from swgpar.results.table import format_csv
+from swgpar.studies.many_runs import claim_folder
 
-TABLE, REPORT, BEST = "optimise.csv", "optimise.html", "best"
-"""Names in the folder: all evaluations, the report, and the folder of the winning design files."""
+TABLE, REPORT, BEST, DESIGNS = "optimise.csv", "optimise.html", "best", "evaluation_*.toml"
+"""Names in the folder: all evaluations, the report, the folder of the winning design files, and
+these."""
 
-SCREEN = "screen"
+SCREEN = " screen"
 """End of the name of the search on the cheaper model."""
 
 
@@ -39,87 +41,66 @@ def run_optimisation(
     terminal: bool = False,
     comm: MPI.Comm = MPI.COMM_WORLD,
 ) -> OptimisationResult:
-    """Search for the best design; collective.
+    """Search for the best design; collective. Parameters and errors are those of `swgpar.optimise`.
 
-    Parameters
-    ----------
-    source : an optimisation file (TOML)
-    out : folder of the results
-    restart : continue the search in the folder, with more evaluations if the file asks for them
-    overwrite : replace a search that the folder already holds; one in a database is never removed
     terminal : whether rank 0 reports on the terminal
-
-    Raises
-    ------
-    InputError
-        A file that cannot be used.
-    OutputError
-        A folder or a database that cannot be used. A design that fails is an outcome.
     """
     begin, folder = time.perf_counter(), given_folder(out)
     spec = on_all(comm, lambda: load_specification(source))
     problem = on_all(comm, lambda: make_problem(spec))
-    screen = on_all(comm, lambda: make_problem(spec, screen=True)) if spec.section.screen else None
-    _prepare(folder, comm, restart, overwrite)
-    url, name = spec.section.storage, Path(spec.name).stem
-    storage = open_storage(url, folder, comm)
-    first = spec.section.first
-    with log.session(
-        comm if spec.section.parallel == "ranks" else MPI.COMM_SELF, terminal=False, shown=False
-    ):
-        if screen is not None:
-            search = Search(screen, storage, f"{name} {SCREEN}", comm, first, not url)
-            _search(search, screen, spec.section.screen.evaluations, comm, terminal)
-            found = search.evaluations()
-            first = [
-                *first,
-                *(found[n].values for n in search.ranked()[: spec.section.screen.best]),
-            ]
-        search = Search(problem, storage, name, comm, first, not url)
-        _search(search, problem, spec.section.evaluations, comm, terminal)
+    section, screen = spec.section, spec.section.screen
+    cheaper = on_all(comm, lambda: make_problem(spec, screen=True)) if screen else None
+    _claim(folder, comm, restart, overwrite)
+    storage = open_storage(section.storage, folder, comm)
+
+    def searched(problem: Problem, end: str, first: list[dict[str, Any]], wanted: int) -> Search:
+        name = f"{Path(spec.name).stem}{end}"
+        search = Search(problem, storage, name, comm, first, own=not section.storage)
+        receive = None
+        if comm.rank == 0:
+            known = search.evaluations()
+            receive = OptimiseProgress(name, section, known, wanted, terminal).receive
+        search.run(wanted, receive)
+        comm.Barrier()
+        if comm.rank == 0:
+            watch.saved("evaluations", len(search.evaluations()), wanted)
+        return search
+
+    first = section.first
+    if screen:
+        search = searched(cheaper, SCREEN, first, screen.evaluations)
+        evaluations = search.evaluations()
+        first = first + [evaluations[n].values for n in search.ranked()[: screen.best]]
+    search = searched(problem, "", first, section.evaluations)
     content = None
     if comm.rank == 0:
-        best, every = search.best(), search.evaluations()
-        designs = {n: problem.applied(problem.table, every[n].values) for n in best}
-        content = (
-            every,
-            best,
-            search.importance(),
-            designs,
-            folder.absolute(),
-            time.perf_counter() - begin,
+        best, evaluations = search.best(), search.evaluations()
+        designs = {n: problem.applied(problem.table, evaluations[n].values) for n in best}
+        seconds = time.perf_counter() - begin
+        content = OptimisationResult(
+            evaluations, best, search.importance(), designs, folder.absolute(), seconds
         )
-    result = OptimisationResult(*comm.bcast(content))
+    result = comm.bcast(content)
     _write(spec, problem, result, comm)
     return result
 
 
-def _search(search: Search, problem: Problem, wanted: int, comm: MPI.Comm, terminal: bool) -> None:
-    """Run a search with its lines on the terminal of rank 0."""
-    if comm.rank == 0:
-        known = search.evaluations()
-        progress = OptimiseProgress(search.name, problem.section, known, wanted, terminal)
-    search.run(wanted, progress.receive if comm.rank == 0 else lambda _: None)
-    comm.Barrier()
-    if comm.rank == 0:
-        watch.saved("evaluations", len(search.evaluations()), wanted)
+def _claim(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
+    kept = out / JOURNAL, out / TABLE
 
+    def remove() -> None:
+        for path in (*kept, out / REPORT, *(out / BEST).glob(DESIGNS)):
+            path.unlink(missing_ok=True)
 
-def _prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
-    with agreed(comm, out):
-        if comm.rank == 0:
-            out.mkdir(parents=True, exist_ok=True)
-            acquire(out)
-            present = [path for path in (out / JOURNAL, out / TABLE) if path.exists()]
-            if present and not restart and not overwrite:
-                raise OutputError(
-                    f"{out} already holds an optimisation: continue it with restart = true "
-                    f"(--restart), replace it "
-                    "with overwrite = true (--overwrite), or choose another folder"
-                )
-            if overwrite and not restart:
-                for path in (*present, out / REPORT, *(out / BEST).glob("evaluation_*.toml")):
-                    path.unlink(missing_ok=True)
+    claim_folder(
+        comm,
+        out,
+        "an optimisation",
+        lambda: any(path.exists() for path in kept),
+        remove,
+        restart=restart,
+        overwrite=overwrite,
+    )
 
 
 def _write(
@@ -129,7 +110,7 @@ def _write(
     with agreed(comm, result.folder):
         if comm.rank == 0:
             (result.folder / BEST).mkdir(exist_ok=True)
-            for old in (result.folder / BEST).glob("evaluation_*.toml"):
+            for old in (result.folder / BEST).glob(DESIGNS):
                 old.unlink()
     texts = {number: to_toml(table) for number, table in result.designs.items()}
     for number, text in texts.items():

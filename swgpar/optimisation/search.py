@@ -11,14 +11,18 @@ from mpi4py import MPI
 from swgpar.errors import InputError, OutputError, SwgparError
 from swgpar.optimisation.problem import Evaluation, Problem
 from swgpar.optimisation.spec import OptimiseSection, Variable
-from swgpar.results.atomic import on_all, sentence
-from swgpar.tasks import Send, share_tasks
+from swgpar.results.atomic import on_all, on_root, sentence
+from swgpar.studies.many_runs import do_runs
+from swgpar.tasks import Send
 
 if TYPE_CHECKING:
     import optuna
 
 JOURNAL = "optimise.journal"
 """The embedded storage: a file to which every rank appends, also on network file systems."""
+
+KEPT = ("status", "reason", "quantities", "wall_s")
+"""What a trial keeps of an `Evaluation` beside its values and violations."""
 
 T = TypeVar("T")
 
@@ -71,24 +75,20 @@ def open_storage(url: str, folder: Path, comm: MPI.Comm) -> optuna.storages.Base
 
 
 def _sampler(section: OptimiseSection, rank: int) -> optuna.samplers.BaseSampler:
-    samplers, seed = import_optuna().samplers, section.seed + rank
-    if section.sampler == "tpe":
-        return samplers.TPESampler(seed=seed)
-    return (
-        samplers.NSGAIISampler(seed=seed)
-        if section.sampler == "nsga2"
-        else samplers.RandomSampler(seed=seed)
-    )
+    names = {"tpe": "TPESampler", "nsga2": "NSGAIISampler", "random": "RandomSampler"}
+    sampler = getattr(import_optuna().samplers, names[section.sampler])
+    return sampler(seed=section.seed + rank)
 
 
 def distribution(variable: Variable) -> optuna.distributions.BaseDistribution:
     """The values that a variable may take."""
-    found = import_optuna().distributions
+    distributions = import_optuna().distributions
     if variable.choices:
-        return found.CategoricalDistribution(variable.choices)
+        return distributions.CategoricalDistribution(variable.choices)
     if variable.integer:
-        return found.IntDistribution(int(variable.low), int(variable.high), log=variable.log)
-    return found.FloatDistribution(variable.low, variable.high, log=variable.log)
+        low, high = int(variable.low), int(variable.high)
+        return distributions.IntDistribution(low, high, log=variable.log)
+    return distributions.FloatDistribution(variable.low, variable.high, log=variable.log)
 
 
 class Search:
@@ -117,17 +117,17 @@ class Search:
         self._distributions = {
             variable.name: distribution(variable) for variable in problem.section.variable
         }
-        sampler = _sampler(problem.section, comm.rank)
-        _stored(
-            comm,
-            f"of {name}",
-            lambda: self._create(storage, first, own) if comm.rank == 0 else None,
-        )
-        self.study = _stored(
-            comm,
-            f"of {name}",
-            lambda: import_optuna().load_study(study_name=name, storage=storage, sampler=sampler),
-        )
+
+        def load() -> optuna.Study:
+            sampler = _sampler(problem.section, comm.rank)
+            return import_optuna().load_study(study_name=name, storage=storage, sampler=sampler)
+
+        def create() -> None:
+            if comm.rank == 0:
+                self._create(storage, first, own)
+
+        _stored(comm, f"of {name}", create)
+        self.study = _stored(comm, f"of {name}", load)
 
     def _create(
         self, storage: optuna.storages.BaseStorage, first: list[dict[str, Any]], own: bool
@@ -148,75 +148,65 @@ class Search:
         elif identity != problem.identity:
             raise InputError(
                 f"the storage holds a search {self.name} of another problem: allowed are the same "
-                f"variables, "
-                "objectives, constraints, design and mesh, or overwrite = true (--overwrite)"
+                "variables, objectives, constraints, design and mesh, or overwrite = true "
+                "(--overwrite)"
             )
         state = optuna.trial.TrialState
         for trial in study.get_trials(deepcopy=False, states=(state.RUNNING,)) if own else ():
             study.tell(trial.number, state=state.FAIL)  # interrupted: tried once more
             study.enqueue_trial(trial.params)
 
+    def _complete(self) -> list[optuna.trial.FrozenTrial]:
+        complete = import_optuna().trial.TrialState.COMPLETE
+        return self.study.get_trials(deepcopy=False, states=(complete,))
+
     def evaluations(self) -> dict[int, Evaluation]:
         """All that have ended, by number; not collective."""
-        complete = import_optuna().trial.TrialState.COMPLETE
-        trials = self.study.get_trials(deepcopy=False, states=(complete,))
-        return {trial.number: _evaluation(trial) for trial in trials}
+        return {trial.number: _evaluation(trial) for trial in self._complete()}
 
-    def run(self, wanted: int, receive: Receive) -> None:
-        """Try designs until `wanted` have ended. receive : called on rank 0"""
-        left = self.comm.bcast(wanted - len(self.evaluations()) if self.comm.rank == 0 else None)
-        if self.problem.section.parallel == "ranks":
-            for _ in range(max(left, 0)):
-                self._together(receive)
-            return
-        share_tasks(self.comm, max(left, 0), self._alone, receive)
+    def run(self, wanted: int, receive: Receive | None) -> None:
+        """Try designs until `wanted` have ended. receive : called on rank 0, None on other ranks"""
+        left = on_root(self.comm, lambda: max(wanted - len(self.evaluations()), 0))
+        do_runs(self.comm, self.problem.section.parallel, left, self._try, receive)
 
-    def _alone(self, _: int, send: Send) -> None:
-        """Try one design on this rank."""
-        trial = self.study.ask(self._distributions)
-        found = self.problem.evaluate(trial.params, MPI.COMM_SELF)
-        self._tell(trial, found)
-        send((trial.number, found))
-
-    def _together(self, receive: Receive) -> None:
-        """Try one design on all ranks."""
-        trial = self.study.ask(self._distributions) if self.comm.rank == 0 else None
-        found = self.problem.evaluate(self.comm.bcast(trial.params if trial else None), self.comm)
+    def _try(self, _: int, comm: MPI.Comm, send: Send) -> None:
+        """Try one design on the ranks of `comm`."""
+        trial = self.study.ask(self._distributions) if comm.rank == 0 else None
+        evaluation = self.problem.evaluate(comm.bcast(trial.params if trial else None), comm)
         if trial:
-            self._tell(trial, found)
-            receive((trial.number, found))
+            self._tell(trial, evaluation)
+            send((trial.number, evaluation))
 
-    def _tell(self, trial: optuna.Trial, found: Evaluation) -> None:
+    def _tell(self, trial: optuna.Trial, evaluation: Evaluation) -> None:
         """Store an evaluation. A failed design is one of the worst values that violates a
         constraint."""
-        for key in ("status", "reason", "quantities", "wall_s"):
-            trial.set_user_attr(key, getattr(found, key))
-        for text, amount in found.violations.items():
+        for key in KEPT:
+            trial.set_user_attr(key, getattr(evaluation, key))
+        for text, amount in evaluation.violations.items():
             trial.set_constraint(text, amount)
-        values = []
-        for objective in self.problem.section.objective:
-            worst = float("inf") if objective.goal == "minimise" else -float("inf")
-            values.append(found.quantities.get(objective.quantity, worst))
+        values = [
+            evaluation.quantities.get(objective.quantity, objective.sign * float("inf"))
+            for objective in self.problem.section.objective
+        ]
         self.study.tell(trial, values)
 
     def best(self) -> list[int]:
         """Numbers of the best feasible design, or of those of the Pareto front; not collective."""
-        feasible = {
-            number for number, found in self.evaluations().items() if found.status == "feasible"
-        }
-        if not feasible:
-            return []
-        if len(self.problem.section.objective) > 1:
-            return [trial.number for trial in self.study.best_trials if trial.number in feasible]
-        return self.ranked()[:1]
+        ranked = self.ranked()
+        if len(self.problem.section.objective) == 1:
+            return ranked[:1]
+        return [trial.number for trial in self.study.best_trials if trial.number in ranked]
 
     def ranked(self) -> list[int]:
         """Numbers of the feasible designs by their first objective, the best one first; not
         collective."""
-        objective = self.problem.section.objective[0]
-        sign = 1.0 if objective.goal == "minimise" else -1.0
-        found = {n: each for n, each in self.evaluations().items() if each.status == "feasible"}
-        return sorted(found, key=lambda number: sign * found[number].quantities[objective.quantity])
+        first = self.problem.section.objective[0]
+        values = {
+            number: first.sign * each.quantities[first.quantity]
+            for number, each in self.evaluations().items()
+            if each.status == "feasible"
+        }
+        return sorted(values, key=values.__getitem__)
 
     def importance(self) -> dict[str, dict[str, float]]:
         """Share of every variable in the best values of an objective, by PED-ANOVA; not collective.
@@ -224,40 +214,21 @@ class Search:
         Empty with less than ten feasible designs, or one variable.
         """
         optuna = import_optuna()
-        complete = optuna.trial.TrialState.COMPLETE
-        trials = [
-            trial
-            for trial in self.study.get_trials(deepcopy=False, states=(complete,))
-            if trial.user_attrs["status"] == "feasible"
-        ]
+        trials = [each for each in self._complete() if each.user_attrs["status"] == "feasible"]
         if len(trials) < 10 or len(self._distributions) < 2:
             return {}
-        found = {}
+        shares = {}
         for index, objective in enumerate(self.problem.section.objective):
-            direction = objective.goal.replace("ise", "ize")
-            study = optuna.create_study(direction=direction)
+            study = optuna.create_study(direction=self.study.directions[index])
             for trial in trials:
-                study.add_trial(
-                    optuna.trial.create_trial(
-                        params=trial.params,
-                        distributions=trial.distributions,
-                        value=trial.values[index],
-                    )
-                )
-            evaluator = optuna.importance.PedAnovaImportanceEvaluator()
-            found[objective.quantity] = optuna.importance.get_param_importances(
-                study, evaluator=evaluator
+                one = {"distributions": trial.distributions, "value": trial.values[index]}
+                study.add_trial(optuna.trial.create_trial(params=trial.params, **one))
+            shares[objective.quantity] = optuna.importance.get_param_importances(
+                study, evaluator=optuna.importance.PedAnovaImportanceEvaluator()
             )
-        return found
+        return shares
 
 
 def _evaluation(trial: optuna.trial.FrozenTrial) -> Evaluation:
-    kept = trial.user_attrs
-    return Evaluation(
-        dict(trial.params),
-        kept["status"],
-        kept["reason"],
-        kept["quantities"],
-        dict(trial.constraints),
-        kept["wall_s"],
-    )
+    stored = {key: trial.user_attrs[key] for key in KEPT}
+    return Evaluation(values=dict(trial.params), violations=dict(trial.constraints), **stored)

@@ -3,14 +3,13 @@ searched."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 from swgpar.errors import InputError
 from swgpar.input.quantities import Section, quantity, show, show_key
 from swgpar.input.toml_file import read_toml, split_override, validate
-from swgpar.studies.spec import flat
+from swgpar.studies.run_file import RunFile, RunsSection, flat, refusals_of, require_only
 
 
 class Variable(Section):
@@ -35,6 +34,11 @@ class Objective(Section):
     goal: Literal["minimise", "maximise"] = quantity("minimise", text="what is sought")
     quantity: str = quantity(text="quantity of a run, or of swgpar check")
 
+    @property
+    def sign(self) -> float:
+        """Its product with a value is sought as small as possible."""
+        return 1.0 if self.goal == "minimise" else -1.0
+
 
 class Constraint(Section):
     """One `[[optimise.constraint]]`."""
@@ -45,18 +49,22 @@ class Constraint(Section):
     at_least: float | None = quantity(None, text="least value allowed")
     quantity: str = quantity(text="quantity of a run, or of swgpar check")
 
+    @property
+    def limits(self) -> dict[str, tuple[float, float]]:
+        """Limit by its description, and the sign of a violation."""
+        limits = {"at most": (self.at_most, 1.0), "at least": (self.at_least, -1.0)}
+        return {
+            f"{words} {limit:g}": (limit, sign)
+            for words, (limit, sign) in limits.items()
+            if limit is not None
+        }
+
     def violations(self, value: float) -> dict[str, float]:
         """How far a value is beyond the limits, over their sizes; 0 and less is allowed."""
-        found = {}
-        if self.at_most is not None:
-            found[f"{self.quantity} at most {self.at_most:g}"] = (value - self.at_most) / (
-                abs(self.at_most) or 1.0
-            )
-        if self.at_least is not None:
-            found[f"{self.quantity} at least {self.at_least:g}"] = (self.at_least - value) / (
-                abs(self.at_least) or 1.0
-            )
-        return found
+        return {
+            f"{self.quantity} {words}": sign * (value - limit) / (abs(limit) or 1.0)
+            for words, (limit, sign) in self.limits.items()
+        }
 
 
 class Screen(Section):
@@ -73,14 +81,10 @@ class Screen(Section):
     )
 
 
-class OptimiseSection(Section):
+class OptimiseSection(RunsSection):
     """The `[optimise]` without its lists of tables."""
 
-    title: str = quantity("", text="title of the report")
-    remarks: str = quantity("", text="text for the report; a blank line ends a paragraph")
-    design: str = quantity(text="the design file, relative to this file")
     mesh: str = quantity("", text="mesh recipe of a drive, relative to this file")
-    set: list[str] = quantity([], text='"section.key=value" for all designs')
     evaluations: int = quantity(
         text="designs that are tried, refused and failed ones included", ge=1, le=100_000
     )
@@ -89,9 +93,6 @@ class OptimiseSection(Section):
     )
     seed: int = quantity(1, text="of the random numbers", ge=0, le=2**31)
     storage: str = quantity("", text="URL of a database; else a file in the folder of the results")
-    parallel: Literal["cases", "ranks"] = quantity(
-        "cases", text="every rank tries designs of its own, or all ranks one design after the other"
-    )
     first: list[dict[str, Any]] = quantity([], text="designs that are tried first: values by key")
     screen: Screen | None = None
     variable: list[Variable] = quantity([], text="the variables")
@@ -109,20 +110,8 @@ class _File(Section):
     optimise: OptimiseSection
 
 
-@dataclass(frozen=True)
-class Specification:
-    """The checked content of an optimisation file. folder : paths are relative to it;  text : for
-    the report"""
-
-    name: str
-    folder: Path
-    text: str
-    section: OptimiseSection
-
-    @property
-    def title(self) -> str:
-        """Title of the report; without one the name of the file."""
-        return self.section.title or Path(self.name).stem
+Specification = RunFile[OptimiseSection]
+"""The checked content of an optimisation file."""
 
 
 def load_specification(path: str | Path) -> Specification:
@@ -130,18 +119,11 @@ def load_specification(path: str | Path) -> Specification:
     names the file."""
     path = Path(path)
     table = read_toml(path)
-    try:
-        for key, value in table.items():
-            if key != "optimise" or not isinstance(value, dict):
-                raise InputError(
-                    f"{show_key(key)} = {show(value)} is no section of this file: allowed "
-                    f"[optimise]"
-                )
+    with refusals_of(str(path)):
+        require_only("optimise", table, "an optimisation file")
         section = validate(_File, table).optimise
         section = section.model_copy(update={"first": [flat(entry) for entry in section.first]})
         _check(section)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from None
     return Specification(str(path), path.parent, path.read_text(encoding="utf-8-sig"), section)
 
 

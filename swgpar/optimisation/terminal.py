@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
-from contextlib import suppress
 
-from rich import box
-from rich.table import Table
-
-from swgpar import watch
 from swgpar.log import console
-from swgpar.optimisation.problem import Evaluation
+from swgpar.optimisation.problem import STATUS, Evaluation
 from swgpar.optimisation.result import OptimisationResult
 from swgpar.optimisation.spec import OptimiseSection
+from swgpar.results.page import number
+from swgpar.studies.many_runs import note_ended, print_line
+from swgpar.studies.terminal import folded_table
 
 
 class OptimiseProgress:
@@ -29,10 +28,8 @@ class OptimiseProgress:
         wanted: int,
         terminal: bool,
     ) -> None:
-        self._name = name
-        self._objectives = section.objective
-        self._wanted = wanted
-        self._shown = terminal
+        self._name, self._objectives = name, section.objective
+        self._wanted, self._shown = wanted, terminal
         self._done = 0
         self._best: dict[str, float] = {}
         for evaluation in known.values():
@@ -40,61 +37,42 @@ class OptimiseProgress:
 
     def _take(self, evaluation: Evaluation) -> None:
         self._done += 1
-        if evaluation.status == "feasible":
-            for objective in self._objectives:
-                name, choose = objective.quantity, min if objective.goal == "minimise" else max
-                value = evaluation.quantities[name]
-                self._best[name] = choose(value, self._best.get(name, value))
+        for objective in self._objectives if evaluation.status == "feasible" else ():
+            name, choose = objective.quantity, min if objective.sign > 0.0 else max
+            value = evaluation.quantities[name]
+            self._best[name] = choose(value, self._best.get(name, value))
 
     def receive(self, message: tuple[int, Evaluation]) -> None:
         """An evaluation has ended."""
-        number, evaluation = message
+        index, evaluation = message
         self._take(evaluation)
-        watch.saved("evaluations", self._done, self._wanted)
-        watch.doing(f"{self._done} of {self._wanted} evaluations have ended")
+        note_ended("evaluations", self._done, self._wanted)
         if not self._shown:
             return
-        words = [
-            f"{self._name}  {self._done}/{self._wanted}  evaluation {number}",
-            f"{evaluation.wall_s:.1f} s",
-        ]
+        words = [f"{self._name}  {self._done}/{self._wanted}  evaluation {index}"]
+        words.append(f"{evaluation.wall_s:.1f} s")
         for objective in self._objectives:
             name = objective.quantity
-            value, best = evaluation.quantities.get(name), self._best.get(name)
-            if value is not None:
-                words.append(
-                    f"{name} {value:.5g}" + (f" (best {best:.5g})" if best is not None else "")
-                )
-        words.append(
-            evaluation.status
-            if not evaluation.reason
-            else f"{evaluation.status}: {evaluation.reason}"
-        )
-        with suppress(
-            OSError, SystemExit
-        ):  # the reader of our output has gone: the others are at work
-            console.print("  ".join(words), markup=False)
-            watch.note_output()
+            if name in evaluation.quantities:
+                best = f" (best {self._best[name]:.5g})" if name in self._best else ""
+                words.append(f"{name} {evaluation.quantities[name]:.5g}{best}")
+        print_line([*words, ": ".join(filter(None, (evaluation.status, evaluation.reason)))])
 
 
 def print_result(result: OptimisationResult) -> None:
     """Print the best designs."""
-    counts = {
-        s: sum(e.status == s for e in result.evaluations.values())
-        for s in ("feasible", "infeasible", "failed")
+    counts = Counter(each.status for each in result.evaluations.values())
+    console.print(", ".join(f"{counts[status]} {status}" for status in STATUS))
+    best = {
+        index: {**result.evaluations[index].values, **result.evaluations[index].quantities}
+        for index in result.best[:20]
     }
-    console.print(", ".join(f"{count} {status}" for status, count in counts.items()))
-    if not result.best:
+    if not best:
         return
-    first = result.evaluations[result.best[0]]
-    table = Table(title="best", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    names = [*first.values, *first.quantities]
+    table = folded_table(title="best")
+    names = list(best[result.best[0]])
     for name in ("evaluation", *names):
         table.add_column(name, justify="right", overflow="fold")
-    for number in result.best[:20]:
-        row = {**result.evaluations[number].values, **result.evaluations[number].quantities}
-        texts = [
-            f"{row[name]:.5g}" if isinstance(row[name], float) else str(row[name]) for name in names
-        ]
-        table.add_row(str(number), *texts)
+    for index, values in best.items():
+        table.add_row(str(index), *(number(values[name]) for name in names))
     console.print(table)

@@ -32,11 +32,6 @@ def sentence(error: BaseException) -> str:
     return str(error).splitlines()[0] if str(error) else type(error).__name__
 
 
-def first_reason(comm: MPI.Comm, reason: str | None) -> str | None:
-    """The reason of the first rank that has one, None where all went well; collective."""
-    return next((r for r in comm.allgather(reason) if r is not None), None)
-
-
 def raise_first(comm: MPI.Comm, error: SwgparError | None) -> None:
     """Raise on all ranks the error of the first rank that has one; collective."""
     found = next((e for e in comm.allgather(error) if e is not None), None)
@@ -57,6 +52,11 @@ def on_all(comm: MPI.Comm, task: Callable[[], T]) -> T:
         failure = error
     raise_first(comm, failure)
     return value
+
+
+def on_root(comm: MPI.Comm, task: Callable[[], T]) -> T:
+    """What `task` returns on rank 0, on every rank; its error is raised on all. Collective."""
+    return comm.bcast(on_all(comm, lambda: task() if comm.rank == 0 else None))
 
 
 @contextmanager

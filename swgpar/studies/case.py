@@ -16,7 +16,7 @@ from swgpar.input.quantities import show_key
 from swgpar.meshing import MeshRecipe
 from swgpar.results.quantity import Quantity
 from swgpar.studies.spec import CaseSection, folder_name
-from swgpar.systems import Measured, System
+from swgpar.systems import System
 
 
 @dataclass(frozen=True)
@@ -24,48 +24,18 @@ class Outcome:
     """What became of a job.
 
     status : "finished" or "failed";  reason : one sentence, empty when finished
-    values : all quantities by name, without those that the run does not have; empty when failed
-    elements, newton_mean : of a drive: of its mesh, and Newton iterations of an increment
-    wall_s : seconds;  history : columns of the history of a drive
+    values, wall_s, elements, newton_mean, history : as in `Measured`; empty and None when failed
     kept : whether an earlier call of the study had finished it
     """
 
     status: str
     reason: str = ""
     values: dict[str, float] = field(default_factory=dict)
+    wall_s: float | None = None
     elements: int | None = None
     newton_mean: float | None = None
-    wall_s: float | None = None
     history: Mapping[str, np.ndarray] = field(default_factory=dict)
     kept: bool = False
-
-    @classmethod
-    def finished(cls, measured: Measured, *, kept: bool = False) -> Outcome:
-        """Outcome of a finished run."""
-        return cls(
-            "finished",
-            values=measured.values,
-            elements=measured.elements,
-            newton_mean=measured.newton_mean,
-            wall_s=measured.wall_s,
-            history=measured.history,
-            kept=kept,
-        )
-
-
-@dataclass(frozen=True)
-class PlannedRun:
-    """A design that is to be run on a mesh: by a study, or by a search.
-
-    design : None when it is refused, for the reason in `refusal`
-    recipe, recipe_name : of a drive
-    """
-
-    system: System[Any, Any]
-    design: Design | None
-    recipe: MeshRecipe | None = None
-    recipe_name: str = ""
-    refusal: str = ""
 
 
 @dataclass(frozen=True)
@@ -74,10 +44,9 @@ class Case:
 
     varied : value of every varied key as the study file has it
     design : None when it is refused, for the reason in `refusal`
-    known : its quantities by name, empty when refused;  shown : names of those in tables and
-    figures
-    meshes : recipes, coarse to fine, none of a gear train;  compared : index of the one for
-    published values
+    known : its quantities by name, empty when refused;  shown : those in tables and figures
+    meshes : recipes, coarse to fine, none of a gear train
+    compared : index of the one for published values
     section : its part of the study file;  system : the kind of its design
     """
 
@@ -101,12 +70,6 @@ class Job:
     mesh: Path | None
     recipe: MeshRecipe | None
     finer: int
-
-    @property
-    def planned(self) -> PlannedRun:
-        """What is to be run."""
-        case = self.case
-        return PlannedRun(case.system, case.design, self.recipe, str(self.mesh or ""), case.refusal)
 
     @property
     def mesh_name(self) -> str:
@@ -136,8 +99,7 @@ def named(name: str, known: Mapping[str, Quantity]) -> list[str]:
 def not_known(
     where: str, known: Mapping[str, Quantity], system: System[Any, Any], name: str
 ) -> InputError:
-    """The refusal of a name that is no quantity, with the one most likely meant. where : text in
-    front of the name"""
+    """The refusal of a name that is no quantity. where : text in front of the name"""
     near = difflib.get_close_matches(name, known, n=1)
     hint = f"did you mean {near[0]}?" if near else f"allowed {system.describe_names(known)}"
     return InputError(f"{where}{show_key(name)} is not a quantity of a run: {hint}")

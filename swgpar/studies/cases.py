@@ -11,11 +11,11 @@ from typing import Any
 
 from swgpar.errors import InputError
 from swgpar.input.quantities import show
-from swgpar.input.toml_file import apply_overrides, read_toml, with_value
+from swgpar.input.toml_file import apply_overrides, read_toml
 from swgpar.meshing import MeshRecipe, load_recipe
-from swgpar.meshing.recipe import is_recipe_name
 from swgpar.results.quantity import Quantity
 from swgpar.studies.case import Case, Job, named, not_known
+from swgpar.studies.run_file import refusals_of, refuse_mesh
 from swgpar.studies.spec import CaseSection, Study, folder_name
 from swgpar.systems import System, system_of_table
 
@@ -26,12 +26,10 @@ def expand(study: Study) -> list[Job]:
     Raises InputError when the study file cannot be used; a refused design is a case with a
     `refusal`, and only when there is no other case a reason to raise.
     """
-    try:
+    with refusals_of(study.name):
         jobs = _expand(study)
-    except InputError as error:
-        raise InputError(f"{study.name}: {error}") from None
-    if all(job.case.design is None for job in jobs):
-        raise InputError(f"{study.name}: every case is refused: {jobs[0].case.refusal}")
+        if all(job.case.design is None for job in jobs):
+            raise InputError(f"every case is refused: {jobs[0].case.refusal}")
     return jobs
 
 
@@ -49,21 +47,17 @@ def _expand(study: Study) -> list[Job]:
         compared = stems.index(wanted) if wanted in stems else len(stems) - 1
         recipes.update({mesh: load_recipe(mesh) for mesh in meshes if mesh not in recipes})
         for varied, suffix in combinations(section.vary, section.mode):
-            name = (
-                "_".join(part for part in (entry.name, suffix) if part) or Path(section.design).stem
-            )
-            name = folder_name(name)
+            name = "_".join(filter(None, (entry.name, suffix))) or Path(section.design).stem
             design, refusal, known = None, "", {}
             try:
                 table = apply_overrides({**base, **entry.section}, entry.set)
-                for key, value in varied.items():
-                    table = with_value(table, key, value)
-                design = system.load(table)
+                design = system.load(apply_overrides(table, varied))
                 system.check_published(design, entry.published)
                 known = system.quantities(design)
             except InputError as error:
                 design, refusal = None, str(error)
             shown = _shown(section.quantities, known, system)
+            name = folder_name(name)
             cases.append(
                 Case(name, varied, design, refusal, known, shown, meshes, compared, entry, system)
             )
@@ -88,9 +82,8 @@ def _check_number(study: Study) -> None:
         )
 
 
-def _meshes(study: Study, case: CaseSection, system: System) -> tuple[Path, ...]:
-    """Recipes of a case, coarse to fine: names in the package, or paths relative to the study
-    file."""
+def _meshes(study: Study, case: CaseSection, system: System[Any, Any]) -> tuple[Path, ...]:
+    """Recipes of a case, coarse to fine."""
     section = study.section
     if "mesh" not in system.options:
         for key, given in (
@@ -98,10 +91,7 @@ def _meshes(study: Study, case: CaseSection, system: System) -> tuple[Path, ...]
             ("study.compared", section.compared),
             (f"study.case {show(case.name)}: meshes", case.meshes),
         ):
-            if given:
-                raise InputError(
-                    f"{key} = {show(given)} has no meaning for {system.noun}: leave it out"
-                )
+            refuse_mesh(f"{key} = {show(given)}", given, system)
         return ()
     if not section.meshes:
         given = " = [] is empty" if "meshes" in section.model_fields_set else " is missing"
@@ -113,8 +103,7 @@ def _meshes(study: Study, case: CaseSection, system: System) -> tuple[Path, ...]
             f"study.compared = {show(section.compared)} is none of study.meshes = "
             f"{show(section.meshes)}"
         )
-    wanted = case.meshes or section.meshes
-    meshes = tuple(Path(mesh) if is_recipe_name(mesh) else study.folder / mesh for mesh in wanted)
+    meshes = tuple(map(study.mesh, case.meshes or section.meshes))
     stems = [folder_name(mesh.stem) for mesh in meshes]
     if len(set(stems)) < len(stems):
         raise InputError(
@@ -142,12 +131,8 @@ def _check_names(study: Study, cases: list[Case]) -> None:
     for case in designed:
         for name in case.section.published:
             if name not in case.known:
-                raise not_known(
-                    f"study.case {show(case.section.name)}: published.",
-                    case.known,
-                    case.system,
-                    name,
-                )
+                where = f"study.case {show(case.section.name)}: published."
+                raise not_known(where, case.known, case.system, name)
     together = {name: quantity for case in designed for name, quantity in case.known.items()}
     for name in study.section.quantities if designed else ():
         if not named(name, together):
@@ -164,9 +149,8 @@ def combinations(vary: dict[str, list[Any]], mode: str) -> list[tuple[dict[str, 
     for key, values in vary.items():
         short = key.rpartition(".")[2]
         title = short if last[short] == 1 else key
-        columns.append(
-            [(key, value, f"{title}={label}") for value, label in zip(values, labels(values))]
-        )
+        texts = [f"{title}={label}" for label in labels(values)]
+        columns.append(list(zip(itertools.repeat(key), values, texts)))
     chosen = itertools.product(*columns) if mode == "grid" else zip(*columns)
     return [
         ({key: value for key, value, _ in row}, "_".join(text for *_, text in row))
@@ -180,13 +164,11 @@ def labels(values: list[Any]) -> list[str]:
     texts = []
     for number, value in enumerate(values, start=1):
         text = value.get("type", str(number)) if isinstance(value, dict) else value
-        text = ",".join(show(item) for item in text) if isinstance(text, list) else text
-        texts.append(
-            re.sub(r"[^A-Za-z0-9_.,+=-]", "-", text if isinstance(text, str) else show(text))
-        )
+        text = ",".join(map(show, text)) if isinstance(text, list) else text
+        text = text if isinstance(text, str) else show(text)
+        texts.append(re.sub(r"[^A-Za-z0-9_.,+=-]", "-", text))
     count = Counter(texts)
-    of_tables = [isinstance(value, dict) for value in values]
     return [
-        f"{text}-{number}" if count[text] > 1 and table else text
-        for number, (text, table) in enumerate(zip(texts, of_tables), start=1)
+        f"{text}-{number}" if count[text] > 1 and isinstance(value, dict) else text
+        for number, (text, value) in enumerate(zip(texts, values), start=1)
     ]

@@ -7,6 +7,8 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from swgpar.results.history import COLUMNS, loaded_increments
 from swgpar.results.quantity import with_unit
 from swgpar.studies.case import Case, Outcome
@@ -46,25 +48,17 @@ def over_angle(results: Sequence[Result]) -> Iterator[bytes]:
         if columns and len(loaded_increments(columns)) > 1:
             lines.append((case.name, columns))
     for part in _parts(lines):
-        figure, axes = _axes(len(OVER_ANGLE))
+        figure, axes = axes_grid(len(OVER_ANGLE))
         for name, panel in zip(OVER_ANGLE, axes):
             for k, (label, columns) in enumerate(part):
                 loaded = loaded_increments(columns)
                 if name in columns:
-                    panel.plot(
-                        columns["wg_angle_deg"][loaded],
-                        columns[name][loaded],
-                        label=label,
-                        **_style(k),
-                    )
-            column = COLUMNS[name]
-            _name(
-                panel,
-                column.label,
-                f"stress ({column.unit})",
-                "angle of the wave generator (degrees)",
-            )
-        yield _png(figure, axes)
+                    angle, values = columns["wg_angle_deg"][loaded], columns[name][loaded]
+                    panel.plot(angle, values, label=label, **_style(k))
+            stress = f"stress ({COLUMNS[name].unit})"
+            _name(panel, COLUMNS[name].label, stress, "angle of the wave generator (degrees)")
+        _add_legend(figure, axes)
+        yield as_png(figure)
 
 
 def over_key(results: Sequence[Result], key: str, *, in_step: bool) -> Iterator[bytes]:
@@ -85,20 +79,19 @@ def over_key(results: Sequence[Result], key: str, *, in_step: bool) -> Iterator[
     if not any(len(points) > 1 for _, points in drawn):
         return
     values = [x for _, points in drawn for x, _ in points]
-    unit = units_of_keys(results).get(key, "")
+    title = with_unit(key, units_of_keys(results).get(key, ""))
     scale = "log" if min(values) > 0.0 and max(values) >= DECADES * min(values) else "linear"
     for panels in _parts(list(shown_quantities(results).items()), PANELS):
         for part in _parts(drawn):
-            figure, axes = _axes(len(panels))
+            figure, axes = axes_grid(len(panels))
             for (name, quantity), panel in zip(panels, axes):
                 for k, (label, points) in enumerate(part):
                     known = [(x, o.values[name]) for x, o in points if name in o.values]
-                    panel.plot(
-                        [x for x, _ in known], [y for _, y in known], label=label, **_style(k)
-                    )
-                _name(panel, quantity.meaning, with_unit(name, quantity.unit), with_unit(key, unit))
+                    panel.plot(*np.reshape(known, (-1, 2)).T, label=label, **_style(k))
+                _name(panel, quantity.meaning, with_unit(name, quantity.unit), title)
                 panel.set_xscale(scale)
-            yield _png(figure, axes)
+            _add_legend(figure, axes)
+            yield as_png(figure)
 
 
 def single(value: Any) -> float | None:
@@ -120,20 +113,19 @@ def _parts(items: Sequence[Any], size: int = LINES) -> Iterator[Sequence[Any]]:
 
 
 def _style(k: int) -> dict[str, Any]:
-    return {
-        "color": f"C{k % 10}",
-        "marker": MARKERS[k % len(MARKERS)],
-        "ms": 3,
-        "ls": "-" if k < 10 else "--",
-    }
+    marker, line = MARKERS[k % len(MARKERS)], "-" if k < 10 else "--"
+    return {"color": f"C{k % 10}", "marker": marker, "ms": 3, "ls": line}
 
 
-def _axes(count: int) -> tuple[Figure, list[Axes]]:
+def axes_grid(
+    count: int, width: float = 4.2, height: float = 3.6, columns: int = 3
+) -> tuple[Figure, list[Axes]]:
+    """A figure with panels of a width and height (inches), so many side by side."""
     from matplotlib.figure import Figure
 
-    columns = min(3, count)
+    columns = min(columns, count)
     rows = -(-count // columns)
-    figure = Figure(figsize=(4.2 * columns, 3.6 * rows), layout="constrained")
+    figure = Figure(figsize=(width * columns, height * rows), layout="constrained")
     return figure, [figure.add_subplot(rows, columns, k + 1) for k in range(count)]
 
 
@@ -144,12 +136,17 @@ def _name(axes: Axes, title: str, ylabel: str, xlabel: str) -> None:
     axes.ticklabel_format(axis="y", useOffset=False)
 
 
-def _png(figure: Figure, axes: Sequence[Axes]) -> bytes:
+def _add_legend(figure: Figure, axes: Sequence[Axes]) -> None:
+    """That of the first panel, below all."""
     handles, labels = axes[0].get_legend_handles_labels()
     if any(labels):
         columns = max(1, min(4, len(labels), LETTERS // max(map(len, labels))))
         figure.set_figheight(figure.get_figheight() + 0.2 * -(-len(labels) // columns))
         figure.legend(handles, labels, loc="outside lower center", ncols=columns, fontsize=8)
+
+
+def as_png(figure: Figure) -> bytes:
+    """The picture of a figure in a page."""
     file = io.BytesIO()
     figure.savefig(file, format="png", dpi=110)
     return file.getvalue()

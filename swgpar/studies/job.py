@@ -13,12 +13,14 @@ from mpi4py import MPI
 
 from swgpar import log
 from swgpar.errors import InputError, SwgparError, printable
+from swgpar.input.design import Design
 from swgpar.log import logger
 from swgpar.petsc import PETSc
-from swgpar.results.atomic import agreed, sentence, to_json, write_file, write_from_root
+from swgpar.results.atomic import agreed, on_root, sentence, to_json, write_file, write_from_root
 from swgpar.results.figure_set import save_figures
+from swgpar.results.folder import SUMMARY
 from swgpar.run_options import RunOptions
-from swgpar.studies.case import Outcome, PlannedRun
+from swgpar.studies.case import Outcome
 from swgpar.systems import System
 
 STATUS = "status.json"
@@ -35,28 +37,36 @@ def read_status(folder: Path) -> dict[str, Any]:
     return {}
 
 
-def run_planned(planned: PlannedRun, options: RunOptions) -> Outcome:
+def run_one(
+    system: System[Any, Any], design: Design | None, options: RunOptions, refusal: str = ""
+) -> Outcome:
     """Run a design without shortcuts; collective. Failures are returned, and recorded in the folder
     of the options.
 
     Only an error that swgpar does not know is raised when several ranks share the run: one rank may
     have met it alone, and the others then wait for it.
+
+    design : None when it is refused, for the reason in `refusal`
     """
     record: dict[str, Any] = {"identity": ""}
     folder, comm = options.out, options.comm
-    options = replace(options, recipe=planned.recipe, recipe_name=planned.recipe_name, plain=True)
+    options = replace(options, plain=True)
     try:
-        if planned.design is None:
-            raise InputError(planned.refusal)
-        record = planned.system.identity(planned.design, planned.recipe)
+        if design is None:
+            raise InputError(refusal)
+        record = system.identity(design, options.recipe)
         if folder is not None:
-            outcome, same = _earlier(planned.system, folder, comm, record, options.restart)
-            if outcome is not None:
-                return outcome
-            options = replace(
-                options, restart=options.restart and same, overwrite=options.overwrite or not same
-            )
-        outcome = _compute(planned, options)
+            old = on_root(comm, lambda: read_status(folder))
+            same = old.get("identity", record["identity"]) == record["identity"]
+            if options.restart and old.get("status") == "finished":
+                outcome = _finished_before(system, folder, comm, record, old)
+                if outcome is not None:
+                    return outcome
+            _make(folder, comm)
+            write_from_root(comm, folder / STATUS, to_json({"status": "started", **record}))
+            restart = options.restart and same
+            options = replace(options, restart=restart, overwrite=options.overwrite or not same)
+        outcome = _compute(system, design, options)
     except SwgparError as error:
         if getattr(error, "alone", False) and comm.size > 1:
             raise
@@ -67,83 +77,63 @@ def run_planned(planned: PlannedRun, options: RunOptions) -> Outcome:
         outcome = Outcome("failed", printable(f"{type(error).__name__}: {sentence(error)}"))
         if comm.size > 1:
             if folder is not None:
+                status = {"status": "failed", **record, "reason": outcome.reason}
                 with suppress(OSError):
-                    write_file(
-                        folder / STATUS,
-                        to_json({"status": "failed", **record, "reason": outcome.reason}),
-                    )
+                    write_file(folder / STATUS, to_json(status))
             raise
     log.close_file()
-    _release(comm)
+    gc.collect()
+    PETSc.garbage_cleanup(comm)  # the model of this run: PETSc keeps what Python lets go of
     if folder is not None:
         with suppress(SwgparError):  # the table has it
             _record(folder, comm, {"status": outcome.status, **record, "reason": outcome.reason})
     return outcome
 
 
-def _earlier(
-    system: System[Any, Any], folder: Path, comm: MPI.Comm, record: dict[str, Any], restart: bool
-) -> tuple[Outcome | None, bool]:
-    """Outcome of a run that an earlier call finished, else None; and whether the folder holds this
-    design's results.
-
-    Marks the run as started unless there is an outcome; collective.
-    """
-    old = comm.bcast(read_status(folder) if comm.rank == 0 else None)
-    same = old.get("identity", record["identity"]) == record["identity"]
-    if restart and old.get("status") == "finished":
-        if not same:
-            reason = (
-                f"{folder} holds results of another design: rename the case, or overwrite = true "
-                f"(--overwrite)"
-            )
-            return Outcome("failed", reason), same
-        complete = comm.bcast((folder / "summary.json").exists() if comm.rank == 0 else None)
-        if complete and all(old.get(key) == value for key, value in record.items()):
-            return _kept(system, folder, comm), same
-    if comm.rank == 0:
-        with suppress(
-            OSError
-        ):  # whether the folder can be written is found out below, by all ranks
-            folder.mkdir(parents=True, exist_ok=True)
-    write_from_root(comm, folder / STATUS, to_json({"status": "started", **record}))
-    return None, same
-
-
-def _compute(planned: PlannedRun, options: RunOptions) -> Outcome:
-    system = planned.system
-    if (
-        "restart" not in system.options
-    ):  # an interrupted run begins anew, and may have left its first tables
-        options = replace(options, restart=False, overwrite=options.overwrite or options.restart)
-    result = system.run(planned.design, options)
-    if options.out is not None and system.draws_figures(planned.design):
-        save_figures(result.plot, options.out)
-    return Outcome.finished(system.measure(result))
-
-
-def _record(folder: Path, comm: MPI.Comm, status: dict[str, Any]) -> None:
+def _make(folder: Path, comm: MPI.Comm) -> None:
+    """Whether the folder can be written is found out by all ranks afterwards."""
     if comm.rank == 0:
         with suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
-    earlier = comm.bcast(read_status(folder) if comm.rank == 0 else None)
-    if status["status"] == "finished" or earlier.get("status") != "finished":
-        write_from_root(comm, folder / STATUS, to_json(status))
 
 
-def _kept(system: System[Any, Any], folder: Path, comm: MPI.Comm) -> Outcome:
-    """Outcome from the files of a finished run; collective."""
+def _finished_before(
+    system: System[Any, Any],
+    folder: Path,
+    comm: MPI.Comm,
+    record: dict[str, Any],
+    old: dict[str, Any],
+) -> Outcome | None:
+    """Outcome of a run that an earlier call finished, unless it has to be computed again;
+    collective. old : its status file"""
+    if old.get("identity", record["identity"]) != record["identity"]:
+        return Outcome(
+            "failed",
+            f"{folder} holds results of another design: rename the case, or overwrite = true "
+            "(--overwrite)",
+        )
+
     outcome = None
-    with agreed(comm, folder / "summary.json", "read"):
-        if comm.rank == 0:
-            outcome = Outcome.finished(
-                system.measure(system.open(folder, MPI.COMM_SELF)), kept=True
-            )
+    with agreed(comm, folder / SUMMARY, "read"):
+        complete = comm.rank == 0 and (folder / SUMMARY).exists()
+        if complete and all(old.get(key) == value for key, value in record.items()):
+            measured = system.measure(system.open(folder, MPI.COMM_SELF))
+            outcome = Outcome("finished", **vars(measured), kept=True)
     return comm.bcast(outcome)
 
 
-def _release(comm: MPI.Comm) -> None:
-    """Free the model of the last case; PETSc keeps what Python lets go of until this collective
-    call."""
-    gc.collect()
-    PETSc.garbage_cleanup(comm)
+def _compute(system: System[Any, Any], design: Design, options: RunOptions) -> Outcome:
+    if "restart" not in system.options:
+        # an interrupted run begins anew, and may have left its first tables
+        options = replace(options, restart=False, overwrite=options.overwrite or options.restart)
+    result = system.run(design, options)
+    if options.out is not None and system.draws_figures(design):
+        save_figures(result.plot, options.out)
+    return Outcome("finished", **vars(system.measure(result)))
+
+
+def _record(folder: Path, comm: MPI.Comm, status: dict[str, Any]) -> None:
+    _make(folder, comm)
+    earlier = on_root(comm, lambda: read_status(folder))
+    if status["status"] == "finished" or earlier.get("status") != "finished":
+        write_from_root(comm, folder / STATUS, to_json(status))

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from swgpar.results.figure_set import import_matplotlib
-from swgpar.results.page import RANK, Picture, Row, Table, page
+from swgpar.results.page import Picture, Row, Table
 from swgpar.results.quantity import with_unit
 from swgpar.studies import figures
+from swgpar.studies.runs_page import HEADINGS, FigureSection, runs_page, table_of_runs
 from swgpar.studies.spec import Study
 from swgpar.studies.table import (
     Comparison,
@@ -23,16 +22,6 @@ from swgpar.studies.table import (
     study_rows,
     units_of_keys,
 )
-from swgpar.version import __version__
-
-HEADINGS = {
-    "newton_mean": "Newton iterations, mean",
-    "wall_s": "time (s)",
-    "difference_percent": "difference (%)",
-    "tolerance_percent": "tolerance (%)",
-    "error_estimate": "error estimate",
-}
-"""Of columns of study.csv and published.csv whose names are not those of keys or quantities."""
 
 LOG_LINES = 12
 """Of a failed run, in the report."""
@@ -47,14 +36,6 @@ class Failure:
     log: str
 
 
-@dataclass(frozen=True)
-class FigureSection:
-    """Figures below a heading."""
-
-    title: str
-    pictures: Sequence[Picture]
-
-
 def make_report(
     study: Study,
     results: Sequence[Result],
@@ -66,61 +47,45 @@ def make_report(
 
     missing : number of runs that have not ended; their report has no figures
     """
-    sections: list[FigureSection] = []
-    failed_figures = ""
-    try:
-        if not missing:
-            import_matplotlib()
-            sections = _figures(study, results)
-    except Exception as error:  # a picture that fails must not cost the report
-        failed_figures = str(error)
-    return page(
+    return runs_page(
         "studies/study.html.j2",
-        study.title,
-        scripts=(RANK,),
-        version=__version__,
+        "Study",
+        study,
+        lambda: [] if missing else _figures(study, results),
+        [outcome.wall_s for _, outcome in results],
         runs=len(results),
         failed=sum(outcome.status == "failed" for _, outcome in results),
-        seconds=sum(outcome.wall_s or 0.0 for _, outcome in results),
-        section=study.section,
         missing=missing,
         published=_comparisons(comparisons) if comparisons else None,
         cases=_cases(results),
         meanings=_meanings(results),
         extremes=_extremes(results),
         estimates=_estimates(complete(results)),
-        estimated=any(comparison.estimate for comparison in comparisons),
+        estimated=any(comparison.converged is not None for comparison in comparisons),
         failures=_failures(results, out),
-        sections=sections,
-        failed_figures=failed_figures,
-        text=study.text,
     )
 
 
 def _cases(results: Sequence[Result]) -> Table:
-    rows: Sequence[Mapping[str, Any]] = study_rows(results)
-    header = [name for name in rows[0] if name != "reason"]
     notes = {job.case.name: job.case.section.note for job, _ in results}
-    if any(notes.values()):
-        header.append("note")
-        rows = [{**row, "note": notes[row["case"]]} for row in rows]
-    units = units_of_keys(results) | {
-        name: quantity.unit for name, quantity in shown_quantities(results).items()
-    }
-    heads = [HEADINGS.get(name) or with_unit(name, units.get(name, "")) for name in header]
-    shown = [Row([row[name] for name in header], row["status"] == "failed") for row in rows]
-    return Table(heads, shown, ranked=True)
+    rows = []
+    for row in study_rows(results):
+        del row["reason"]  # below the table
+        rows.append(row | {"note": notes[row["case"]]} if any(notes.values()) else row)
+    quantities = shown_quantities(results).items()
+    units = units_of_keys(results) | {name: quantity.unit for name, quantity in quantities}
+    return table_of_runs(rows, units, ranked=True)
 
 
 def _extremes(results: Sequence[Result]) -> Table:
     """Which case has the smallest and the largest value of every quantity, each case on its finest
     mesh."""
-    found = [(case.name, outcomes[-1].values) for case, outcomes in by_case(results)]
+    finest = [(case.name, outcomes[-1].values) for case, outcomes in by_case(results)]
     rows = []
     for name, quantity in shown_quantities(results).items():
-        values = sorted((values[name], case) for case, values in found if name in values)
-        if len(values) > 1:
-            (low, of_low), (high, of_high) = values[0], values[-1]
+        ordered = sorted((values[name], case) for case, values in finest if name in values)
+        if len(ordered) > 1:
+            (low, of_low), (high, of_high) = ordered[0], ordered[-1]
             rows.append(Row([with_unit(name, quantity.unit), low, of_low, high, of_high]))
     return Table(["quantity", "smallest", "of case", "largest", "of case"], rows)
 
@@ -140,33 +105,15 @@ def _estimates(results: Sequence[Result]) -> Table:
     rows = []
     for case, outcomes in by_case(results):
         for name in case.shown:
-            found = estimate_of(case, outcomes, name)
-            if found:
-                values = [outcome.values[name] for outcome in outcomes[-2:]]
-                percent = 100.0 * found.error / abs(values[1]) if values[1] else None
-                unit = case.known[name].unit if name in case.known else ""
-                rows.append(
-                    Row(
-                        [
-                            case.name,
-                            with_unit(name, unit),
-                            *values,
-                            found.converged,
-                            found.error,
-                            percent,
-                        ]
-                    )
-                )
-    header = [
-        "case",
-        "quantity",
-        "coarser mesh",
-        "finest mesh",
-        "converged",
-        "error estimate",
-        "error estimate (%)",
-    ]
-    return Table(header, rows)
+            estimate = estimate_of(case, outcomes, name)
+            if estimate:
+                coarse, fine = (outcome.values[name] for outcome in outcomes[-2:])
+                percent = 100.0 * estimate.error / abs(fine) if fine else None
+                title = with_unit(name, case.known[name].unit if name in case.known else "")
+                numbers = [coarse, fine, estimate.converged, estimate.error, percent]
+                rows.append(Row([case.name, title, *numbers]))
+    header = ["case", "quantity", "coarser mesh", "finest mesh", "converged"]
+    return Table([*header, "error estimate", "error estimate (%)"], rows)
 
 
 def _failures(results: Sequence[Result], out: Path) -> list[Failure]:
@@ -186,9 +133,6 @@ def _figures(study: Study, results: Sequence[Result]) -> list[FigureSection]:
     sections = [FigureSection("Stresses against the angle of the wave generator", over_angle)]
     for key in dict.fromkeys(key for job, _ in results for key in job.case.varied):
         drawn = figures.over_key(results, key, in_step=study.section.mode == "sweep")
-        sections.append(
-            FigureSection(
-                f"Against {key}", [Picture(png, f"quantities against {key}") for png in drawn]
-            )
-        )
+        pictures = [Picture(png, f"quantities against {key}") for png in drawn]
+        sections.append(FigureSection(f"Against {key}", pictures))
     return sections

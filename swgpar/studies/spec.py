@@ -14,6 +14,7 @@ from typing import Any, Literal
 from swgpar.errors import InputError
 from swgpar.input.quantities import Section, quantity, show, show_key
 from swgpar.input.toml_file import read_toml, split_override, validate
+from swgpar.studies.run_file import RunFile, RunsSection, flat, refusals_of, require_only
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.,+=-]*")
 """Names of cases are names of folders."""
@@ -49,24 +50,17 @@ class CaseSection(Section):
     note: str = quantity("", text="a remark for the report")
 
 
-class StudySection(Section):
+class StudySection(RunsSection):
     """The `[study]` without its cases."""
 
-    title: str = quantity("", text="title of the report")
-    remarks: str = quantity("", text="text for the report; a blank line ends a paragraph")
-    design: str = quantity(text="the design file, relative to the study file")
     meshes: list[str] = quantity(
-        [], text="mesh recipes of a drive, coarse to fine, relative to the study file"
+        [], text="mesh recipes of a drive, coarse to fine, relative to this file"
     )
     compared: str = quantity(
         "", text="the one of the meshes that published values are compared on; else the last"
     )
     quantities: list[str] = quantity(
         [], text="quantities in tables and figures; else the usual ones"
-    )
-    set: list[str] = quantity([], text='"section.key=value" for all cases')
-    parallel: Literal["cases", "ranks"] = quantity(
-        "cases", text="every rank works on cases of its own, or all on one case after the other"
     )
     mode: Literal["grid", "sweep"] = quantity(
         "grid", text="all combinations of the varied values, or in step"
@@ -86,24 +80,13 @@ class _StudyFile(Section):
 
 
 @dataclass(frozen=True)
-class Study:
+class Study(RunFile[StudySection]):
     """The checked content of a study file.
 
-    name : the file in messages;  folder : the other paths are relative to it;  text : the content,
-    for the report
-    section : [study];  cases : its [[study.case]], one without a name when there are none
+    cases : its [[study.case]], one without a name when there are none
     """
 
-    name: str
-    folder: Path
-    text: str
-    section: StudySection
     cases: tuple[CaseSection, ...]
-
-    @property
-    def title(self) -> str:
-        """Title of the report; without one the name of the file."""
-        return self.section.title or Path(self.name).stem
 
 
 def load_study(path: str | Path) -> Study:
@@ -120,13 +103,8 @@ def make_study(table: Mapping[str, Any]) -> Study:
 
 
 def _make_study(table: Mapping[str, Any], name: str, folder: Path, text: str) -> Study:
-    try:
-        for key, value in table.items():
-            if key != "study" or not isinstance(value, dict):
-                raise InputError(
-                    f"{show_key(key)} = {show(value)} is not a section of a study file: allowed "
-                    f"[study]"
-                )
+    with refusals_of(name):
+        require_only("study", table, "a study file")
         study = dict(table.get("study", {}))
         tables = study.pop("case", [])
         if isinstance(study.get("vary"), dict):
@@ -140,55 +118,34 @@ def _make_study(table: Mapping[str, Any], name: str, folder: Path, text: str) ->
         _check_study(section)
         for case in cases:
             _check_case(case, section)
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from None
     return Study(name, folder, text, section, cases or (CaseSection.model_construct(name=""),))
 
 
 def _case(number: int, table: dict[str, Any]) -> CaseSection:
-    try:
+    with refusals_of(f"[[study.case]] {number}"):
         if isinstance(table, dict):
             table = {**table, **_numbers(table)}
         return validate(_CaseFile, {"case": table}).case
-    except InputError as error:
-        raise InputError(f"[[study.case]] {number}: {error}") from None
 
 
-def _numbers(table: dict[str, Any]) -> dict[str, Any]:
+def _numbers(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
     """`published` and `tolerance` by single numbers: a list gives name[1], name[2].., its tolerance
     stands for all."""
-    given = {
-        key: flat(table[key])
-        for key in ("published", "tolerance")
-        if isinstance(table.get(key), dict)
-    }
-    lengths = {
-        name: len(value)
-        for name, value in given.get("published", {}).items()
-        if isinstance(value, list)
-    }
-    out: dict[str, Any] = {key: {} for key in given}
-    for key, values in given.items():
-        for name, value in values.items():
-            if name in lengths:
-                numbers = value if isinstance(value, list) else [value] * lengths[name]
-                out[key] |= {
-                    f"{name}[{index}]": number for index, number in enumerate(numbers, start=1)
-                }
-            else:
-                out[key][name] = value
-    return out
+    keys = ("published", "tolerance")
+    given = {key: flat(table[key]) for key in keys if isinstance(table.get(key), dict)}
+    published = given.get("published", {})
+    counts = {name: len(value) for name, value in published.items() if isinstance(value, list)}
 
+    def numbered(name: str, value: Any) -> dict[str, Any]:
+        if name not in counts:
+            return {name: value}
+        numbers = value if isinstance(value, list) else [value] * counts[name]
+        return {f"{name}[{index}]": number for index, number in enumerate(numbers, start=1)}
 
-def flat(table: dict[str, Any], above: str = "") -> dict[str, Any]:
-    """Tables in tables as one with dotted keys: in TOML, load.torque = 1 and "load.torque" = 1 then
-    mean the same."""
-    out: dict[str, Any] = {}
-    for key, value in table.items():
-        out.update(
-            flat(value, f"{above}{key}.") if isinstance(value, dict) else {f"{above}{key}": value}
-        )
-    return out
+    return {
+        key: {k: v for name, value in values.items() for k, v in numbered(name, value).items()}
+        for key, values in given.items()
+    }
 
 
 def _check_study(study: StudySection) -> None:

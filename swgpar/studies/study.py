@@ -3,36 +3,30 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 from mpi4py import MPI
 
-from swgpar import log, watch
+from swgpar import watch
 from swgpar.errors import InputError, OutputError
-from swgpar.results.atomic import agreed, first_reason, write_from_root
+from swgpar.results.atomic import agreed, on_root, write_from_root
 from swgpar.results.folder import given_folder, remove_results
-from swgpar.results.lock import acquire, releasing
+from swgpar.results.lock import releasing
 from swgpar.results.table import format_csv
 from swgpar.run_options import RunOptions
 from swgpar.studies.case import Job, Outcome
 from swgpar.studies.cases import expand
-from swgpar.studies.job import STATUS, read_status, run_planned
+from swgpar.studies.job import STATUS, read_status, run_one
+from swgpar.studies.many_runs import claim_folder, do_runs, note_ended
 from swgpar.studies.report import make_report
 from swgpar.studies.spec import Study, load_study, make_study
 from swgpar.studies.table import Comparison, Result, compare, complete, published_rows, study_rows
 from swgpar.studies.terminal import StudyProgress
-from swgpar.tasks import share_tasks
-
-Report = Callable[[tuple[int, Outcome | None]], None]
-"""Takes a job's number with its outcome, or None after an increment."""
-
-Run = Callable[[int, MPI.Comm, Report], None]
-"""Runs the job of a number."""
+from swgpar.tasks import Send
 
 TABLE, PUBLISHED, REPORT = "study.csv", "published.csv", "study.html"
 
@@ -110,31 +104,18 @@ class _Book:
     def receive(self, message: tuple[int, Outcome | None]) -> None:
         """Job number with its outcome, or None after an increment."""
         number, outcome = message
-        if outcome is None:
-            if self.progress is not None:
-                self.progress.increment(number)
-            return
-        self.outcomes[number] = outcome
-        watch.saved("cases", len(self.outcomes), len(self.jobs))
-        watch.doing(f"{len(self.outcomes)} of {len(self.jobs)} cases have ended")
+        if outcome is not None:
+            self.outcomes[number] = outcome
+            note_ended("cases", len(self.outcomes), len(self.jobs))
         if self.progress is not None:
-            self.progress.outcome(number, outcome)
-        begin = time.perf_counter()
-        if (
-            self.out is not None
-            and begin >= self.next_writing
-            and len(self.outcomes) < len(self.jobs)
-        ):
-            with suppress(OutputError):  # the others are at work: said at the end, when all write
-                _write(
-                    self.study,
-                    self.results(),
-                    self.out,
-                    MPI.COMM_SELF,
-                    len(self.jobs) - len(self.outcomes),
-                )
-            end = time.perf_counter()
-            self.next_writing = end + (end - begin) / SHARE
+            self.progress.receive(number, outcome)
+        begin, missing = time.perf_counter(), len(self.jobs) - len(self.outcomes)
+        if outcome is None or self.out is None or begin < self.next_writing or not missing:
+            return
+        with suppress(OutputError):  # the others are at work: said at the end, when all write
+            _write(self.study, self.results(), self.out, MPI.COMM_SELF, missing)
+        end = time.perf_counter()
+        self.next_writing = end + (end - begin) / SHARE
 
     def results(self) -> list[Result]:
         """Jobs that have ended, in the order of the study."""
@@ -151,114 +132,72 @@ def run_study(
     terminal: bool = False,
     comm: MPI.Comm = MPI.COMM_WORLD,
 ) -> StudyResult:
-    """Run all cases of a study; collective.
+    """Run all cases of a study; collective. Parameters and errors are those of `swgpar.study`.
 
-    Parameters
-    ----------
-    source : a study file (TOML), or its content
-    out : folder of the study, with tables, report and the results of every case; None keeps
-    everything in memory
-    restart : keep what is finished in the folder, continue what was interrupted, try again what
-    failed
-    overwrite : replace a study that the folder already holds
     terminal : whether rank 0 reports on the terminal
-
-    Raises
-    ------
-    InputError
-        A study file that cannot be used.
-    OutputError
-        A folder that cannot be written. A case that fails is an outcome.
     """
     folder = None if out is None else given_folder(out)
-    study, jobs = _read(source, comm)
-    statuses: list[str | None] | None = [None] * len(jobs)
+    study, jobs = on_root(comm, lambda: _read(source))  # whatever happens to the file meanwhile
     if folder is not None:
-        _prepare(folder, comm, restart, overwrite)
-        if comm.rank == 0:
-            statuses = [read_status(job.folder(folder)).get("status") for job in jobs]
+        _claim(folder, comm, restart, overwrite)
     elif restart:
         raise InputError(
             "restart = true needs the folder of the study: a study in memory leaves nothing to "
             "continue"
         )
-    order = queue(jobs, comm.bcast(statuses))
-    run = partial(_run_one, jobs, folder, restart, overwrite)
-    with log.session(
-        MPI.COMM_SELF if study.section.parallel == "cases" else comm, terminal=False, shown=False
-    ):
-        results = _run_all(study, jobs, order, run, folder, terminal, comm)
+    order = on_root(comm, lambda: queue(jobs, _statuses(jobs, folder)))
+
+    def run(index: int, own: MPI.Comm, send: Send) -> None:
+        job = jobs[order[index]]
+        options = RunOptions(
+            None if folder is None else job.folder(folder),
+            recipe=job.recipe,
+            recipe_name=str(job.mesh or ""),
+            restart=restart,
+            overwrite=overwrite,
+            comm=own,
+            on_increment=lambda: send((order[index], None)),
+        )
+        outcome = run_one(job.case.system, job.case.design, options, job.case.refusal)
+        send((order[index], outcome))
+
+    book = _Book(study, jobs, folder, terminal) if comm.rank == 0 else None
+    try:
+        do_runs(comm, study.section.parallel, len(jobs), run, book.receive if book else None)
+    finally:
+        if book is not None and book.progress is not None:
+            book.progress.stop()
+    results = comm.bcast(book.results() if book else None)
     if folder is not None:
         _write(study, results, folder, comm)
     return StudyResult(results, None if folder is None else folder.absolute())
 
 
-def _run_all(
-    study: Study,
-    jobs: list[Job],
-    order: list[int],
-    run: Run,
-    out: Path | None,
-    terminal: bool,
-    comm: MPI.Comm,
-) -> list[Result]:
-    """All jobs and their outcomes, on every rank."""
-    book = _Book(study, jobs, out, terminal) if comm.rank == 0 else None
-    receive: Report = book.receive if book is not None else lambda _: None
-    try:
-        if study.section.parallel == "cases":
-            share_tasks(
-                comm,
-                len(order),
-                lambda index, send: run(order[index], MPI.COMM_SELF, send),
-                receive,
-            )
-        else:
-            for number in order:
-                run(number, comm, receive)
-    finally:
-        if book is not None and book.progress is not None:
-            book.progress.stop()
-    return comm.bcast(book.results() if book is not None else None)
+def _read(source: str | Path | Mapping[str, Any]) -> tuple[Study, list[Job]]:
+    study = make_study(source) if isinstance(source, Mapping) else load_study(source)
+    return study, expand(study)
 
 
-def _read(source: str | Path | Mapping[str, Any], comm: MPI.Comm) -> tuple[Study, list[Job]]:
-    """Rank 0 reads, so that all have the same study whatever happens to the file."""
-    content: Any = None
-    reason = None
-    if comm.rank == 0:
-        try:
-            study = make_study(source) if isinstance(source, Mapping) else load_study(source)
-            content = (study, expand(study))
-        except InputError as error:
-            reason = str(error)
-    reason = first_reason(comm, reason)
-    if reason is not None:
-        raise InputError(reason)
-    return comm.bcast(content)
+def _claim(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
+    cases = out / "cases"
 
+    def remove() -> None:
+        for status in [*cases.glob(f"**/{STATUS}")]:
+            remove_results(status.parent)
+            status.unlink()
+        for name in (TABLE, PUBLISHED, REPORT):
+            (out / name).unlink(missing_ok=True)
 
-def _prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
-    with agreed(comm, out):
+    claim_folder(comm, out, "a study", cases.exists, remove, restart=restart, overwrite=overwrite)
+    with agreed(comm, cases):
         if comm.rank == 0:
-            out.mkdir(parents=True, exist_ok=True)
-            acquire(out)
-    present = comm.bcast((out / "cases").exists() if comm.rank == 0 else None)
-    if present and not restart and not overwrite:
-        raise OutputError(
-            f"{out} already holds a study: continue it with restart = true (--restart), replace it "
-            f"with "
-            "overwrite = true (--overwrite), or choose another folder"
-        )
-    with agreed(comm, out):
-        if comm.rank == 0:
-            (out / "cases").mkdir(parents=True, exist_ok=True)
-            if overwrite and not restart:
-                for status in [*out.glob(f"cases/**/{STATUS}")]:
-                    remove_results(status.parent)
-                    status.unlink()
-                for name in (TABLE, PUBLISHED, REPORT):
-                    (out / name).unlink(missing_ok=True)
+            cases.mkdir(exist_ok=True)
+
+
+def _statuses(jobs: Sequence[Job], folder: Path | None) -> list[str | None]:
+    if folder is None:
+        return [None] * len(jobs)
+    return [read_status(job.folder(folder)).get("status") for job in jobs]
 
 
 def queue(jobs: Sequence[Job], statuses: Sequence[str | None]) -> list[int]:
@@ -268,27 +207,6 @@ def queue(jobs: Sequence[Job], statuses: Sequence[str | None]) -> list[int]:
         range(len(jobs)),
         key=lambda k: (statuses[k] == "failed", jobs[k].finer, -jobs[k].increments),
     )
-
-
-def _run_one(
-    jobs: Sequence[Job],
-    out: Path | None,
-    restart: bool,
-    overwrite: bool,
-    number: int,
-    comm: MPI.Comm,
-    report: Report,
-) -> None:
-    """Run a job and report its increments, as None, and its outcome."""
-    job = jobs[number]
-    options = RunOptions(
-        None if out is None else job.folder(out),
-        restart=restart,
-        overwrite=overwrite,
-        comm=comm,
-        on_increment=lambda: report((number, None)),
-    )
-    report((number, run_planned(job.planned, options)))
 
 
 def _write(

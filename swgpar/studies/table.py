@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from swgpar.analysis.error_estimate import Estimate, estimate
@@ -20,12 +20,12 @@ OF_MESHES = ("mesh", "converged", "error_estimate")
 
 @dataclass(frozen=True)
 class Comparison:
-    """A published value beside the computed one.
+    """A published value beside the computed one: a row of published.csv.
 
     mesh : the one it was computed on, or empty
-    estimate : from the two finest meshes, its error that of the computed value
-    difference : percent of the published value;  verdict : "inside", "MISS", or empty without a
-    tolerance
+    difference_percent : of the published value
+    verdict : "inside", "MISS", or empty without a tolerance
+    converged : from the two finest meshes;  error_estimate : that of the computed value
     """
 
     case: str
@@ -34,10 +34,11 @@ class Comparison:
     unit: str
     published: float
     computed: float | None
-    difference: float | None
-    tolerance: float | None
+    difference_percent: float | None
+    tolerance_percent: float | None
     verdict: str
-    estimate: Estimate | None
+    converged: float | None
+    error_estimate: float | None
 
 
 def by_case(results: Sequence[Result]) -> list[tuple[Case, list[Outcome]]]:
@@ -95,34 +96,33 @@ def compare(results: Sequence[Result]) -> list[Comparison]:
     """All published values."""
     rows = []
     for case, outcomes in by_case(results):
+        mesh = case.meshes[case.compared].stem if case.meshes else ""
         for name, published in case.section.published.items():
-            outcome = outcomes[case.compared]
-            computed = outcome.values.get(name)
-            difference = None
+            computed = outcomes[case.compared].values.get(name)
+            difference = converged = error = None
             if computed is not None and published != 0.0:
                 difference = 100.0 * (computed - published) / abs(published)
             tolerance, verdict = case.section.tolerance.get(name), ""
             if tolerance is not None:
-                verdict = (
-                    "inside" if difference is not None and abs(difference) <= tolerance else "MISS"
-                )
-            found = estimate_of(case, outcomes, name)
-            if found is not None and computed is not None:
-                found = Estimate(found.converged, abs(found.converged - computed))
-            mesh = case.meshes[case.compared].stem if case.meshes else ""
-            unit = case.known[name].unit if name in case.known else ""
+                inside = difference is not None and abs(difference) <= tolerance
+                verdict = "inside" if inside else "MISS"
+            of_meshes = estimate_of(case, outcomes, name)
+            if of_meshes is not None:
+                converged = of_meshes.converged
+                error = of_meshes.error if computed is None else abs(converged - computed)
             rows.append(
                 Comparison(
-                    case.name,
-                    mesh,
-                    name,
-                    unit,
-                    published,
-                    computed,
-                    difference,
-                    tolerance,
-                    verdict,
-                    found,
+                    case=case.name,
+                    mesh=mesh,
+                    quantity=name,
+                    unit=case.known[name].unit if name in case.known else "",
+                    published=published,
+                    computed=computed,
+                    difference_percent=difference,
+                    tolerance_percent=tolerance,
+                    verdict=verdict,
+                    converged=converged,
+                    error_estimate=error,
                 )
             )
     return rows
@@ -134,51 +134,26 @@ def study_rows(results: Sequence[Result]) -> list[dict[str, Any]]:
     names = list(dict.fromkeys(name for job, _ in results for name in job.case.shown))
     rows = []
     for job, outcome in results:
-        details = {
-            "mesh": job.mesh_name,
-            "elements": outcome.elements,
-            "newton_mean": outcome.newton_mean,
-        }
         row: dict[str, Any] = {"case": job.case.name}
         if "mesh" in job.case.system.options:
-            row.update(details)
-        row.update({key: shown(job.case.varied.get(key)) for key in keys})
-        row["status"] = outcome.status
-        row.update({name: outcome.values.get(name) for name in names})
-        row.update(wall_s=outcome.wall_s, reason=outcome.reason)
-        rows.append(row)
+            row |= {"mesh": job.mesh_name, "elements": outcome.elements}
+            row["newton_mean"] = outcome.newton_mean
+        row |= {key: shown(job.case.varied.get(key)) for key in keys} | {"status": outcome.status}
+        row |= {name: outcome.values.get(name) for name in names}
+        rows.append(row | {"wall_s": outcome.wall_s, "reason": outcome.reason})
     return rows
 
 
 def shown(value: Any) -> Any:
     """A varied value in a table: numbers and texts as they are, all else as in TOML."""
-    if value is None:
-        return None
-    return (
-        value
-        if isinstance(value, (float, int, str)) and not isinstance(value, bool)
-        else toml_value(value)
-    )
+    if value is None or (isinstance(value, (float, int, str)) and not isinstance(value, bool)):
+        return value
+    return toml_value(value)
 
 
 def published_rows(comparisons: Iterable[Comparison]) -> list[dict[str, Any]]:
     """Rows of published.csv; without what follows from meshes where there are none."""
-    rows = [
-        {
-            "case": c.case,
-            "mesh": c.mesh,
-            "quantity": c.quantity,
-            "unit": c.unit,
-            "published": c.published,
-            "computed": c.computed,
-            "difference_percent": c.difference,
-            "tolerance_percent": c.tolerance,
-            "verdict": c.verdict,
-            "converged": c.estimate.converged if c.estimate else None,
-            "error_estimate": c.estimate.error if c.estimate else None,
-        }
-        for c in comparisons
-    ]
+    rows = [asdict(comparison) for comparison in comparisons]
     if any(row["mesh"] for row in rows):
         return rows
     return [{name: value for name, value in row.items() if name not in OF_MESHES} for row in rows]

@@ -4,14 +4,14 @@ at the end."""
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import suppress
 
 from rich import box
 from rich.table import Table
 
-from swgpar import watch
 from swgpar.log import console, progress_bar
+from swgpar.results.page import number
 from swgpar.studies.case import Job, Outcome
+from swgpar.studies.many_runs import print_line
 from swgpar.studies.table import Comparison, Result, shown_quantities
 
 COLUMNS = 5
@@ -36,16 +36,19 @@ class StudyProgress:
             self._task = self._bar.add_task("increments", total=sum(job.increments for job in jobs))
             self._bar.start()
 
-    def increment(self, number: int) -> None:
-        """An increment of job `number` has been computed."""
-        self._done[number] += 1
-        self._update()
+    def receive(self, index: int, outcome: Outcome | None) -> None:
+        """A job has computed an increment, or has ended."""
+        job = self._jobs[index]
+        if outcome is None:
+            self._done[index] += 1
+        else:
+            self._done[index] = job.increments
+            self._finished += 1
+            self._print(job, outcome)
+        if self._bar:
+            self._bar.update(self._task, completed=sum(self._done))
 
-    def outcome(self, number: int, outcome: Outcome) -> None:
-        """Job `number` has ended."""
-        job = self._jobs[number]
-        self._done[number] = job.increments
-        self._finished += 1
+    def _print(self, job: Job, outcome: Outcome) -> None:
         count = f"{self._finished:{len(str(len(self._jobs)))}d}/{len(self._jobs)}"
         words = [f"{count}  {job.title:{self._width}s}"]
         if outcome.status == "finished":
@@ -55,55 +58,40 @@ class StudyProgress:
             words.append("finished before" if outcome.kept else "finished")
         else:
             words.append(f"failed: {outcome.reason}")
-        with suppress(
-            OSError, SystemExit
-        ):  # the reader of our output has gone: the others are at work
-            console.print("  ".join(words), markup=False)
-            watch.note_output()
-        self._update()
+        print_line(words)
 
     def stop(self) -> None:
         """Take the bar away."""
         if self._bar:
             self._bar.stop()
 
-    def _update(self) -> None:
-        if self._bar:
-            self._bar.update(self._task, completed=sum(self._done))
-
 
 def print_results(results: Sequence[Result], comparisons: Sequence[Comparison]) -> None:
     """Print the first quantities of all cases, then published beside computed values."""
     quantities = list(shown_quantities(results).items())[:COLUMNS]
-    cases = Table(
-        box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0)
-    )  # long names are folded into 80 columns
-    cases.add_column("case", overflow="fold")
+    cases = folded_table("case")  # long names are folded into 80 columns
     for name, quantity in quantities:
-        unit = f" {quantity.unit}" if quantity.unit else ""
-        cases.add_column(f"{name}{unit}", justify="right", overflow="fold")
+        cases.add_column(f"{name} {quantity.unit}".rstrip(), justify="right", overflow="fold")
     cases.add_column("s", justify="right", no_wrap=True)
     for job, outcome in results:
-        if outcome.status == "finished":
-            numbers = [*(outcome.values.get(name) for name, _ in quantities), outcome.wall_s]
-            texts = ["" if value is None else f"{value:.5g}" for value in numbers]
-        else:
-            texts = ["failed"]
+        numbers = [*(outcome.values.get(name) for name, _ in quantities), outcome.wall_s]
+        texts = map(number, numbers) if outcome.status == "finished" else ["failed"]
         cases.add_row(job.title, *texts)
     console.print(cases)
     if not comparisons:
         return
-    published = Table(title="published values", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    published.add_column("case", overflow="fold")
-    published.add_column("quantity", overflow="fold")
+    published = folded_table("case", "quantity", title="published values")
     for name in ("published", "computed", "%", "error estimate", ""):
         published.add_column(name, justify="right", no_wrap=True)
-    for c in comparisons:
-        numbers = [c.published, c.computed, c.difference, c.estimate.error if c.estimate else None]
-        published.add_row(
-            c.case,
-            c.quantity,
-            *("" if value is None else f"{value:.5g}" for value in numbers),
-            c.verdict,
-        )
+    for each in comparisons:
+        numbers = [each.published, each.computed, each.difference_percent, each.error_estimate]
+        published.add_row(each.case, each.quantity, *map(number, numbers), each.verdict)
     console.print(published)
+
+
+def folded_table(*texts: str, title: str | None = None) -> Table:
+    """A table whose first columns are texts."""
+    table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for text in texts:
+        table.add_column(text, overflow="fold")
+    return table

@@ -24,7 +24,7 @@ from swgpar.results.table import format_csv
 from swgpar.run_options import RunOptions
 from swgpar.studies.case import Outcome
 from swgpar.studies.figures import over_angle, over_key
-from swgpar.studies.job import read_status, run_planned
+from swgpar.studies.job import read_status, run_one
 from swgpar.studies.report import make_report
 from swgpar.studies.spec import load_study
 from swgpar.studies.study import queue
@@ -236,7 +236,8 @@ class Broken(Drives):
 def test_an_unforeseen_error_is_the_case_s_own(study_file: Write, tmp_path: Path) -> None:
     (job,) = jobs_of(study_file())
     job = replace(job, case=replace(job.case, system=Broken()))
-    found = run_planned(job.planned, RunOptions(tmp_path / "a" / "b", comm=MPI.COMM_SELF))
+    options = RunOptions(tmp_path / "a" / "b", recipe=job.recipe, comm=MPI.COMM_SELF)
+    found = run_one(job.case.system, job.case.design, options)
     assert (found.status, found.reason) == ("failed", "ZeroDivisionError: by nothing")
     assert read_status(tmp_path / "a" / "b")["reason"] == found.reason
 
@@ -290,7 +291,7 @@ def test_published_values(study_file: Write) -> None:
         )
     )
     (failed, *_) = compare([(job, Outcome("failed", "no"))])
-    assert (failed.computed, failed.estimate, failed.verdict) == (None, None, "MISS")
+    assert (failed.computed, failed.error_estimate, failed.verdict) == (None, None, "MISS")
     job = replace(job, case=replace(job.case, meshes=(job.mesh, Path("fine.toml")), compared=1))
     coarse = replace(job, finer=1)
     rows = {
@@ -300,23 +301,22 @@ def test_published_values(study_file: Write) -> None:
     inside, without, miss, never = (
         rows[n] for n in ("mean.fs_s1", "mean.fs_vm", "step1.fs_s1", "step2.fs_s1")
     )
-    assert (inside.quantity, inside.unit, inside.computed, inside.difference) == (
+    assert (inside.quantity, inside.unit, inside.computed, inside.difference_percent) == (
         "mean.fs_s1",
         "MPa",
         210.0,
         5.0,
     )
     assert inside.verdict == "inside"
-    assert inside.estimate.converged == pytest.approx(
-        240.0
-    ) and inside.estimate.error == pytest.approx(30.0)
-    assert (miss.computed, miss.difference, miss.verdict) == (630.0, 26.0, "MISS")
-    assert (never.computed, never.difference, never.verdict) == (None, None, "MISS")
-    assert (without.difference, without.verdict) == (0.0, "")
+    assert inside.converged == pytest.approx(240.0)
+    assert inside.error_estimate == pytest.approx(30.0)
+    assert (miss.computed, miss.difference_percent, miss.verdict) == (630.0, 26.0, "MISS")
+    assert (never.computed, never.difference_percent, never.verdict) == (None, None, "MISS")
+    assert (without.difference_percent, without.verdict) == (0.0, "")
     job, coarse = (replace(j, case=replace(j.case, compared=0)) for j in (job, coarse))
     first, *_ = compare([(coarse, outcome(180.0, 1000)), (job, outcome(210.0, 8000))])
     assert (first.mesh, first.computed) == (job.mesh.stem, 180.0)
-    assert first.estimate.error == pytest.approx(60.0)
+    assert first.error_estimate == pytest.approx(60.0)
 
 
 def test_tables_and_report(study_file: Write, tmp_path: Path) -> None:

@@ -1,0 +1,78 @@
+"""What studies and optimisations do alike: they claim a folder, and share many runs among ranks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+from mpi4py import MPI
+
+from swgpar import log, watch
+from swgpar.errors import OutputError
+from swgpar.log import console
+from swgpar.results.atomic import agreed
+from swgpar.results.lock import acquire
+from swgpar.tasks import Send, share_tasks
+
+
+def claim_folder(
+    comm: MPI.Comm,
+    out: Path,
+    what: str,
+    present: Callable[[], bool],
+    remove: Callable[[], None],
+    *,
+    restart: bool,
+    overwrite: bool,
+) -> None:
+    """Make and lock a folder. `releasing` must decorate the caller; collective.
+
+    what : the folder holds, in messages;  present, remove : whether it does, and how to remove it
+    """
+    with agreed(comm, out):
+        if comm.rank == 0:
+            out.mkdir(parents=True, exist_ok=True)
+            acquire(out)
+            if overwrite and not restart:
+                remove()
+            elif not restart and present():
+                raise OutputError(
+                    f"{out} already holds {what}: continue it with restart = true (--restart), "
+                    "replace it with overwrite = true (--overwrite), or choose another folder"
+                )
+
+
+def do_runs(
+    comm: MPI.Comm,
+    parallel: str,
+    count: int,
+    run: Callable[[int, MPI.Comm, Send], None],
+    receive: Send | None,
+) -> None:
+    """Do the runs 0 to `count` - 1: each on one rank ("cases"), or on all ranks ("ranks");
+    collective.
+
+    run : called with a number, the communicator of the run, and what sends a message to rank 0
+    receive : takes the messages on rank 0, None on other ranks
+    """
+    alone, send = parallel == "cases", receive or (lambda _: None)
+    with log.session(MPI.COMM_SELF if alone else comm, terminal=False, shown=False):
+        if alone:
+            share_tasks(comm, count, lambda number, send: run(number, MPI.COMM_SELF, send), send)
+        else:
+            for number in range(count):
+                run(number, comm, send)
+
+
+def note_ended(kind: str, ended: int, count: int) -> None:
+    """So many of the "cases" or "evaluations" have ended, for `watch`."""
+    watch.saved(kind, ended, count)
+    watch.doing(f"{ended} of {count} {kind} have ended")
+
+
+def print_line(words: list[str]) -> None:
+    """Print a line. Where the reader of the output has gone, the other ranks are at work still."""
+    with suppress(OSError, SystemExit):
+        console.print("  ".join(words), markup=False)
+        watch.note_output()
