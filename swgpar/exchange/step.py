@@ -21,8 +21,8 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GearName
-from swgpar.exchange.gmsh_session import gmsh_model
 from swgpar.exchange.outlines import Edge, cam_outlines, gear_outline
+from swgpar.meshing.gmsh_session import gmsh_model
 
 PIECES = 32
 """Curves around a cam."""

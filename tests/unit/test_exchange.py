@@ -19,7 +19,6 @@ from support.small_drive import PLANE, SHORT
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import Housing
 from swgpar.errors import InputError
-from swgpar.exchange.gmsh_session import gmsh_model
 from swgpar.exchange.outlines import (
     FLANK_POINTS,
     TOLERANCE,
@@ -30,6 +29,7 @@ from swgpar.exchange.outlines import (
 from swgpar.exchange.step import closed_curve
 from swgpar.exchange.tables import write_look_up
 from swgpar.exchange.vtkhdf import step_times
+from swgpar.meshing.gmsh_session import gmsh_model
 from swgpar.results.fields import TIME_STEP, times
 from swgpar.results.table import read_columns
 

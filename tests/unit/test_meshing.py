@@ -658,7 +658,7 @@ def test_an_inverted_quadrilateral_is_refused() -> None:
         build_sector_meshes(plane_design().geometry, coarsest(layers=40, rim=100))
 
 
-def test_what_cannot_be_meshed_is_refused() -> None:
+def test_what_gmsh_cannot_mesh_is_refused() -> None:
     """The thinnest of the layers is 3^-40 of the thickest one."""
     with pytest.raises(
         InputError, match=r"^flexible_spline cannot be meshed, with .* layer_ratio = 3, .*: allowed"

@@ -1,4 +1,4 @@
-"""A session of gmsh: started when it is not running, without files of settings and without its
+"""Gmsh for a few calls: started when it is not running, without files of settings and without its
 signals."""
 
 from __future__ import annotations
@@ -14,14 +14,19 @@ from swgpar.petsc import NO_FILES, hidden_variables
 @contextmanager
 def gmsh_model(name: str) -> Iterator[ModuleType]:
     """The module gmsh with a new model, which is removed at the end."""
-    import gmsh  # here, so that other commands need no graphics libraries
+    import gmsh  # here, so that runs on an existing mesh need no graphics libraries
 
     owner = not gmsh.isInitialized()
     if owner:
-        # Gmsh has a PETSc of its own, which reads files and takes signals as the other. -v 0: no
-        # warning that the option is not one of Gmsh
-        arguments = ["gmsh", "-v", "0", NO_FILES]
-        with hidden_variables():
+        with (
+            hidden_variables()
+        ):  # Gmsh has a PETSc of its own, which reads files and takes signals as the other
+            arguments = [
+                "gmsh",
+                "-v",
+                "0",
+                NO_FILES,
+            ]  # without the warning that the option is not one of Gmsh
             gmsh.initialize(argv=arguments, readConfigFiles=False, interruptible=False)
         watch.rearm()
     try:
