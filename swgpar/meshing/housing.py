@@ -10,6 +10,7 @@ from swgpar.geometry.arrays import Floats
 from swgpar.geometry.drive_geometry import GearGeometry
 from swgpar.meshing.cross_section import CrossSection
 from swgpar.meshing.recipe import ToothRecipe
+from swgpar.meshing.sweep import grid_quads
 
 GROWTH = 1.6
 """Ratio of the thicknesses of successive layers."""
@@ -39,12 +40,8 @@ def with_housing(section: CrossSection, radii: Floats) -> CrossSection:
         return section
     unit = section.coords[section.free] / np.hypot(*section.coords[section.free].T)[:, None]
     new = known + np.arange(layers * width, dtype=np.int32).reshape(layers, width)
-    grid = np.concatenate((section.free[None], new))
-    inside, outside = grid[:-1], grid[1:]
     # the free circle runs from the clockwise to the counter-clockwise side
-    quads = np.stack(
-        (inside[:, :-1], outside[:, :-1], outside[:, 1:], inside[:, 1:]), axis=-1
-    ).reshape(-1, 4)
+    quads = grid_quads(np.concatenate((section.free[None], new)))
     added = np.ones(len(quads), dtype=bool)
     return replace(
         section,

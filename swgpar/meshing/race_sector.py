@@ -6,7 +6,7 @@ import numpy as np
 
 from swgpar.meshing.quality import element_quality
 from swgpar.meshing.sector import SectorMesh
-from swgpar.meshing.sweep import sweep_line, sweep_quads
+from swgpar.meshing.sweep import grid_quads, sweep_line, sweep_quads
 
 OUTER_RACE = "outer_race"
 """Name of a bearing's outer race as a body."""
@@ -85,10 +85,7 @@ def annular_sector(
     rows = number.reshape(len(number), -1)
     grid = number[0]
     # counter-clockwise seen from +z: angles run counter-clockwise, radii outward
-    quads = np.stack([grid[:-1, 1:], grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:]], axis=-1).reshape(
-        -1, 4
-    )
-    hexes = sweep_quads(quads, rows)
+    hexes = sweep_quads(grid_quads(grid), rows)
     surface = number[:1] if plane else number
     return SectorMesh(
         body=body,

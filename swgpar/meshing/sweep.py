@@ -8,6 +8,13 @@ import numpy as np
 from swgpar.geometry.arrays import Floats, Ints
 
 
+def grid_quads(grid: Ints) -> Ints:
+    """Quadrilaterals (n * m, 4) of a grid of nodes (n + 1, m + 1), from row to row and along its
+    columns."""
+    corners = (grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:])
+    return np.stack(corners, axis=-1).reshape(-1, 4)
+
+
 def sweep_quads(quads: Ints, rows: Ints) -> Ints:
     """Return the hexahedra (n_quad * n_step, 8) between consecutive copies of a plane mesh.
 
