@@ -63,6 +63,7 @@ myst_enable_extensions = [
 myst_heading_anchors = 3
 
 autodoc_typehints = "description"
+autodoc_preserve_defaults = True  # a communicator has no text of its own
 autodoc_typehints_description_target = "documented_params"
 autodoc_member_order = "bysource"
 napoleon_google_docstring = False

@@ -181,7 +181,7 @@ def run(
     restart: bool = False,
     overwrite: bool = False,
     progress: bool | None = None,
-    comm: MPI.Comm | None = None,
+    comm: MPI.Comm = MPI.COMM_WORLD,
 ) -> Result:
     """Run a design; collective.
 
@@ -209,8 +209,6 @@ def run(
         Replace results that `out` already holds.
     progress : bool
         Report every increment on the terminal. Default: only on a terminal.
-    comm : communicator
-        MPI.COMM_WORLD unless given.
 
     Returns
     -------
@@ -237,8 +235,6 @@ def run(
     >>> result = swgpar.run("drivers/plane_half_turn.toml")
     >>> result.summary["root.s1"].value, result.history["fs_s1"].max()
     """
-    comm = MPI.COMM_WORLD if comm is None else comm
-    terminal = _terminal(progress)
     folder = None if out is None else given_folder(out)
     given = RunOptions(
         folder,
@@ -247,10 +243,10 @@ def run(
         restart=restart,
         overwrite=overwrite,
         comm=comm,
-        terminal=terminal,
+        terminal=_terminal(progress),
     )
     checked, options = on_all(comm, lambda: _checked(design, mesh, given))
-    with log.session(comm, terminal=terminal):
+    with log.session(comm, terminal=given.terminal):
         system = system_of(checked)
         result = system.run(checked, options)
         if folder is not None:
@@ -263,7 +259,7 @@ def run(
     return result
 
 
-def save_report(result: Result, folder: str | Path, comm: MPI.Comm | None = None) -> None:
+def save_report(result: Result, folder: str | Path, comm: MPI.Comm = MPI.COMM_WORLD) -> None:
     """Write report.html of a result into its folder: what the run gives, on one page; collective.
 
     Raises
@@ -271,7 +267,7 @@ def save_report(result: Result, folder: str | Path, comm: MPI.Comm | None = None
     OutputError
         The page cannot be made or written.
     """
-    comm, path = MPI.COMM_WORLD if comm is None else comm, Path(folder) / REPORT
+    path = Path(folder) / REPORT
     failure: SwgparError | None = None
     if comm.rank == 0:
         try:
@@ -327,14 +323,14 @@ def export(
     """
     from swgpar.exchange.export import export_files  # CAD kernels and tables are for this alone
 
-    found: Design | Result
+    drive: Design | Result
     if isinstance(source, (str, Path)) and Path(source).is_dir():
-        found = open_result(source)
+        drive = open_result(source)
     else:
-        found = source if isinstance(source, DriveResult) else load_design(source)
-    rippled = open_result(ripple) if isinstance(ripple, (str, Path)) else ripple
-    if not isinstance(found, DriveDesign | DriveResult) or not isinstance(
-        rippled, DriveResult | None
+        drive = source if isinstance(source, DriveResult) else load_design(source)
+    periodic = open_result(ripple) if isinstance(ripple, (str, Path)) else ripple
+    if not isinstance(drive, DriveDesign | DriveResult) or not isinstance(
+        periodic, DriveResult | None
     ):
         raise InputError(
             "export is available for drives: a gear train has no geometry and no fields"
@@ -343,18 +339,18 @@ def export(
     paths: list[Path] = []
     with agreed(MPI.COMM_WORLD, Path(out)):
         if MPI.COMM_WORLD.rank == 0:
-            paths = export_files(found, Path(out), formats, recipe=recipe, ripple=rippled)
+            paths = export_files(drive, Path(out), formats, recipe=recipe, ripple=periodic)
     return MPI.COMM_WORLD.bcast(paths)
 
 
-def open_result(folder: str | Path, comm: MPI.Comm | None = None) -> Result:
+def open_result(folder: str | Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Result:
     """Read the result of a finished run from its folder; collective.
 
     Parameters
     ----------
     folder : path
     comm : communicator
-        MPI.COMM_WORLD unless given; MPI.COMM_SELF where one rank reads alone.
+        MPI.COMM_SELF where one rank reads alone.
 
     Returns
     -------
@@ -370,7 +366,6 @@ def open_result(folder: str | Path, comm: MPI.Comm | None = None) -> Result:
     --------
     >>> swgpar.open_result("results/plane").summary["mean.fs_s1"].value
     """
-    comm = MPI.COMM_WORLD if comm is None else comm
     folder = Path(folder)
     with agreed(comm, folder, "read"):
         system = system_of_table(read_design(folder))
@@ -384,7 +379,7 @@ def study(
     restart: bool = False,
     overwrite: bool = False,
     progress: bool | None = None,
-    comm: MPI.Comm | None = None,
+    comm: MPI.Comm = MPI.COMM_WORLD,
 ) -> StudyResult:
     """Compute many designs and compare them; collective.
 
@@ -403,7 +398,7 @@ def study(
     progress : bool
         Report every case on the terminal. Default: only on a terminal.
     comm : communicator
-        MPI.COMM_WORLD unless given. Each rank works on cases of its own.
+        Each rank works on cases of its own.
 
     Returns
     -------
@@ -434,7 +429,7 @@ def study(
         restart=restart,
         overwrite=overwrite,
         terminal=_terminal(progress),
-        comm=MPI.COMM_WORLD if comm is None else comm,
+        comm=comm,
     )
 
 
@@ -445,7 +440,7 @@ def optimise(
     restart: bool = False,
     overwrite: bool = False,
     progress: bool | None = None,
-    comm: MPI.Comm | None = None,
+    comm: MPI.Comm = MPI.COMM_WORLD,
 ) -> OptimisationResult:
     """Search for the best design; collective.
 
@@ -463,7 +458,7 @@ def optimise(
     progress : bool
         Report every evaluation on the terminal. Default: only on a terminal.
     comm : communicator
-        MPI.COMM_WORLD unless given. Each rank tries designs of its own.
+        Each rank tries designs of its own.
 
     Returns
     -------
@@ -490,7 +485,7 @@ def optimise(
         restart=restart,
         overwrite=overwrite,
         terminal=_terminal(progress),
-        comm=MPI.COMM_WORLD if comm is None else comm,
+        comm=comm,
     )
 
 
@@ -515,15 +510,19 @@ def check(
     -60.0
     """
     checked = load_design(design, overrides)
-    found = system_of(checked).check(checked)
-    return found if mesh is None else {**found, **_needs(checked, load_mesh(mesh))}
+    values = system_of(checked).check(checked)
+    return values if mesh is None else values | _needs(_drive(checked), load_mesh(mesh))
 
 
-def _needs(design: Design, recipe: MeshRecipe) -> dict[str, float]:
-    from swgpar.analysis.forecast import forecast, require_memory
-
+def _drive(design: Design) -> DriveDesign:
     if not isinstance(design, DriveDesign):
         raise InputError(f"{system_of(design).noun} has no mesh: allowed are drives")
+    return design
+
+
+def _needs(design: DriveDesign, recipe: MeshRecipe) -> dict[str, float]:
+    from swgpar.analysis.forecast import forecast, require_memory
+
     needs = forecast(design, recipe)
     require_memory(needs, design.solver.memory_limit)
     build_sector_meshes(design.geometry, recipe)  # or the reason why the recipe gives no mesh
@@ -540,7 +539,7 @@ def mesh(
     mesh: MeshLike,
     out: str | Path | None = None,
     formats: Sequence[str] = ("vtu",),
-    comm: MPI.Comm | None = None,
+    comm: MPI.Comm = MPI.COMM_WORLD,
 ) -> DriveMesh:
     """The mesh of a whole drive; collective when it is written.
 
@@ -552,8 +551,6 @@ def mesh(
         Folder into which rank 0 writes the mesh.
     formats : sequence of str
         Files to write: "vtu" (ParaView), "msh" (Gmsh), "inp" (Abaqus, CalculiX).
-    comm : communicator
-        MPI.COMM_WORLD unless given.
 
     Raises
     ------
@@ -566,28 +563,26 @@ def mesh(
     --------
     >>> swgpar.mesh("drivers/cup_45deg.toml", "coarse").quality["ring_gear"]["min_scaled_jacobian"]
     """
+
+    def make() -> DriveMesh:
+        drive = _drive(load_design(design))
+        sectors = build_sector_meshes(drive.geometry, load_mesh(mesh))
+        return DriveMesh(sectors, drive.materials, drive.drive.face_width)
+
     if out is None:
-        return _drive_mesh(design, mesh)
-    comm, folder = MPI.COMM_WORLD if comm is None else comm, given_folder(out)
-    found = on_all(comm, lambda: _drive_mesh(design, mesh))
-    on_all(comm, lambda: found.write(folder, formats) if comm.rank == 0 else None)
-    return found
-
-
-def _drive_mesh(design: DesignLike, mesh: MeshLike) -> DriveMesh:
-    checked = load_design(design)
-    if not isinstance(checked, DriveDesign):
-        raise InputError(f"{system_of(checked).noun} has no mesh: allowed are drives")
-    sectors = build_sector_meshes(checked.geometry, load_mesh(mesh))
-    return DriveMesh(sectors, checked.materials, checked.drive.face_width)
+        return make()
+    folder = given_folder(out)
+    whole = on_all(comm, make)
+    on_all(comm, lambda: whole.write(folder, formats) if comm.rank == 0 else None)
+    return whole
 
 
 def _require(name: str, value: Any) -> None:
     """Refuse what is neither a path nor the content of a file."""
     if not isinstance(value, (str, Path, Mapping)):
         raise InputError(
-            f"{name} is of the type {type(value).__name__}: allowed are a path, a dict or a loaded "
-            f"{name}"
+            f"{name} is of the type {type(value).__name__}: allowed are a path, a dict or a "
+            f"loaded {name}"
         )
 
 

@@ -16,34 +16,17 @@ __all__ = ["main", "parser"]
 SOLVING = ("run", "study", "optimise")
 """Commands that compute on all ranks, with options of PETSc."""
 
-OPTIONS = (
-    "--set",
-    "--mesh",
-    "--accuracy",
-    "--plain",
-    "--out",
-    "--restart",
-    "--overwrite",
-    "--format",
-    "--help",
-    "--version",
-)
 
-
-def _check_rest(rest: Sequence[str], petsc: bool) -> None:
-    """Refuse what is neither an option of swgpar nor one of PETSc (-name, -name value)."""
+def _check_rest(rest: Sequence[str], options: Sequence[str], petsc: bool) -> None:
+    """Refuse what is neither one of the options nor, where these are allowed, one of PETSc (-name,
+    -name value)."""
     after_option = False
     for word in rest:
         option = petsc and len(word) > 1 and word[0] == "-" and (word[1].isalpha())
         if not option and not after_option:
-            near = difflib.get_close_matches(word, OPTIONS, n=1)
-            hint = (
-                f": did you mean {near[0]}?"
-                if near
-                else "; options of PETSc begin with one dash"
-                if petsc
-                else ""
-            )
+            hint = "; options of PETSc begin with one dash" if petsc else ""
+            for near in difflib.get_close_matches(word, options, n=1):
+                hint = f": did you mean {near}?"
             raise InputError(f"unknown argument {shortened(word)}{hint}")
         after_option = option
 
@@ -61,7 +44,7 @@ def _main(arguments: Sequence[str] | None) -> int:
     try:
         known, rest = parser().parse_known_args(arguments)
         command = known.command
-        _check_rest(rest, petsc=command in SOLVING)
+        _check_rest(rest, known.parser.options(), petsc=command in SOLVING)
         known.overrides = [item for group in getattr(known, "set", []) for item in group]
         from swgpar import petsc, watch
 

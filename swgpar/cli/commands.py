@@ -4,6 +4,7 @@ load it."""
 from __future__ import annotations
 
 import argparse
+import inspect
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,81 +12,56 @@ from typing import TYPE_CHECKING, Any
 from swgpar.errors import InputError, StudyError, printable
 
 if TYPE_CHECKING:
-    from swgpar.systems import System
+    from swgpar.input.design import Design
 
 
 def _run(arguments: argparse.Namespace) -> None:
     from mpi4py import MPI
 
     from swgpar import api
-    from swgpar.results.atomic import on_all
     from swgpar.systems import system_of
 
-    comm = MPI.COMM_WORLD
-    design = on_all(comm, lambda: api.load_design(arguments.design, arguments.overrides))
-    _begin(arguments, system_of(design))
-    result = api.run(
-        design,
-        arguments.mesh,
-        arguments.out,
-        **{
-            name: getattr(arguments, name) for name in ("accuracy", "plain", "restart", "overwrite")
-        },
-        progress=True,
-        comm=comm,
-    )
-    if comm.rank == 0:
-        system_of(design).print(result)
-    _warn()
-    comm.Barrier()  # mpirun ends all ranks when one of them fails
+    design = _design(arguments)
+    system = system_of(design)
+    _begin(arguments, "increments", restarts="restart" in system.options)
+    given = _given(api.run, arguments)
+    result = api.run(design, arguments.mesh, arguments.out, progress=True, **given)
+    if MPI.COMM_WORLD.rank == 0:
+        system.print(result)
+    _end()
 
 
 def _study(arguments: argparse.Namespace) -> None:
-    from mpi4py import MPI
-
     from swgpar import api
-    from swgpar.log import console
     from swgpar.studies.terminal import print_results
 
-    _begin(arguments)
-    found = api.study(
-        arguments.study,
-        arguments.out,
-        restart=arguments.restart,
-        overwrite=arguments.overwrite,
-        progress=True,
-    )
-    folder = Path(arguments.out)
-    if MPI.COMM_WORLD.rank == 0:
-        print_results(found.results, found.comparisons)
-        for path in sorted([*folder.glob("*.csv"), *folder.glob("*.html")]):
-            console.print(printable(f"written {path}"), markup=False)
-    _warn()
-    MPI.COMM_WORLD.Barrier()  # mpirun ends all ranks when one of them fails
-    if found.failed:
-        reasons = folder / "study.csv"
+    _begin(arguments, "cases")
+    given = _given(api.study, arguments)
+    study = api.study(arguments.study, arguments.out, progress=True, **given)
+    _show(arguments.out, lambda: print_results(study.results, study.comparisons))
+    _end()
+    if study.failed:
         raise StudyError(
-            f"{len(found.failed)} of {len(found.results)} runs failed: the reasons are in {reasons}"
+            f"{len(study.failed)} of {len(study.results)} runs failed: the reasons are in "
+            f"{Path(arguments.out) / 'study.csv'}"
         )
+
+
+def _optimise(arguments: argparse.Namespace) -> None:
+    from swgpar import api
+    from swgpar.optimisation.terminal import print_result
+
+    _begin(arguments, "evaluations")
+    given = _given(api.optimise, arguments)
+    result = api.optimise(arguments.optimisation, arguments.out, progress=True, **given)
+    _show(arguments.out, lambda: print_result(result))
+    _end()
 
 
 def _new(arguments: argparse.Namespace) -> None:
     from swgpar import api
 
-    names = (
-        "ratio",
-        "torque",
-        "diameter",
-        "bore",
-        "profile",
-        "cam",
-        "layout",
-        "model",
-        "shape",
-        "lobes",
-        "overwrite",
-    )
-    design = api.new(arguments.design, **{name: getattr(arguments, name) for name in names})
+    design = api.new(arguments.design, **_given(api.new, arguments))
     drive = design.drive
     _print(
         [
@@ -97,37 +73,8 @@ def _new(arguments: argparse.Namespace) -> None:
     )
 
 
-def _optimise(arguments: argparse.Namespace) -> None:
-    from mpi4py import MPI
-
-    from swgpar import api
-    from swgpar.log import console
-    from swgpar.optimisation.terminal import print_result
-
-    _begin(arguments, kind="evaluations")
-    found = api.optimise(
-        arguments.optimisation,
-        arguments.out,
-        restart=arguments.restart,
-        overwrite=arguments.overwrite,
-        progress=True,
-    )
-    if MPI.COMM_WORLD.rank == 0:
-        print_result(found)
-        folder = Path(arguments.out)
-        for path in sorted(
-            [*folder.glob("*.csv"), *folder.glob("*.html"), *folder.glob("best/*.toml")]
-        ):
-            console.print(printable(f"written {path}"), markup=False)
-    _warn()
-    MPI.COMM_WORLD.Barrier()  # mpirun ends all ranks when one of them fails
-
-
 def _export(arguments: argparse.Namespace) -> None:
-    from mpi4py import MPI
-
     from swgpar import api
-    from swgpar.results.atomic import on_all
 
     source = arguments.source
     if arguments.overrides:
@@ -135,21 +82,16 @@ def _export(arguments: argparse.Namespace) -> None:
             raise InputError(
                 f"--set is of no use with the results folder {source}: allowed with a design file"
             )
-        source = on_all(MPI.COMM_WORLD, lambda: api.load_design(source, arguments.overrides))
-    paths = api.export(
-        source, arguments.out, arguments.format, mesh=arguments.mesh, ripple=arguments.ripple
-    )
+        source = _design(arguments)
+    given = _given(api.export, arguments)
+    paths = api.export(source, arguments.out, arguments.format, **given)
     _print(f"written {path}" for path in paths)
 
 
 def _mesh(arguments: argparse.Namespace) -> None:
-    from mpi4py import MPI
-
     from swgpar import api
-    from swgpar.results.atomic import on_all
 
-    design = on_all(MPI.COMM_WORLD, lambda: api.load_design(arguments.design, arguments.overrides))
-    mesh = api.mesh(design, arguments.mesh, arguments.out, arguments.format, MPI.COMM_WORLD)
+    mesh = api.mesh(_design(arguments), arguments.mesh, arguments.out, arguments.format)
     lines = []
     for body, values in mesh.quality.items():
         lines += [body, *(f"  {name:30s} {value:.6g}" for name, value in values.items())]
@@ -163,7 +105,7 @@ def _check(arguments: argparse.Namespace) -> None:
     from swgpar.results.atomic import on_all
     from swgpar.systems import system_of
 
-    design = on_all(MPI.COMM_WORLD, lambda: api.load_design(arguments.design, arguments.overrides))
+    design = _design(arguments)
     values = on_all(MPI.COMM_WORLD, lambda: api.check(design, mesh=arguments.mesh))
     _print(f"{name:40s} {value:.6g}" for name, value in values.items())
     _print(f"warning: {text}" for text in system_of(design).remarks(design, values))
@@ -188,7 +130,35 @@ def _view(arguments: argparse.Namespace) -> None:
     result.view()
 
 
-def _warn() -> None:
+def _design(arguments: argparse.Namespace) -> Design:
+    """The design, or source, of the command with the values of --set; collective."""
+    from mpi4py import MPI
+
+    from swgpar import api
+    from swgpar.results.atomic import on_all
+
+    path = arguments.source if arguments.command == "export" else arguments.design
+    return on_all(MPI.COMM_WORLD, lambda: api.load_design(path, arguments.overrides))
+
+
+def _given(function: Callable[..., Any], arguments: argparse.Namespace) -> dict[str, Any]:
+    """The options of the command that are keywords of a function of the Python interface."""
+    keywords = inspect.getfullargspec(function).kwonlyargs
+    return {name: value for name, value in vars(arguments).items() if name in keywords}
+
+
+def _begin(arguments: argparse.Namespace, kind: str, *, restarts: bool = True) -> None:
+    """Say what is saved when a signal ends the command. kind : what is counted"""
+    from mpi4py import MPI
+
+    from swgpar import watch
+    from swgpar.log import console
+
+    if MPI.COMM_WORLD.rank == 0:
+        watch.begin(kind, arguments.out, restarts=restarts, terminal=console.is_terminal)
+
+
+def _end() -> None:
     """Warn of options of PETSc that a study, or a system without PETSc, has not used; a drive says
     it earlier."""
     from mpi4py import MPI
@@ -197,6 +167,20 @@ def _warn() -> None:
 
     with log.session(MPI.COMM_WORLD):
         petsc.warn_of_unused_options()
+    MPI.COMM_WORLD.Barrier()  # mpirun ends all ranks when one of them fails
+
+
+def _show(out: str, show: Callable[[], None]) -> None:
+    """Show the results of many runs, and the files that are written; on rank 0 only."""
+    from mpi4py import MPI
+
+    from swgpar.log import console
+
+    if MPI.COMM_WORLD.rank == 0:
+        show()
+        patterns = ("*.csv", "*.html", "best/*.toml")
+        for path in sorted(path for pattern in patterns for path in Path(out).glob(pattern)):
+            console.print(printable(f"written {path}"), markup=False)
 
 
 def _print(lines: Iterable[str]) -> None:
@@ -206,22 +190,6 @@ def _print(lines: Iterable[str]) -> None:
     if MPI.COMM_WORLD.rank == 0:
         for line in lines:
             print(printable(line))
-
-
-def _begin(
-    arguments: argparse.Namespace, system: System[Any, Any] | None = None, kind: str = "cases"
-) -> None:
-    """Say what is saved when a signal ends the command. system : of the design of a run;  kind :
-    counted without it"""
-    from mpi4py import MPI
-
-    from swgpar import watch
-    from swgpar.log import console
-
-    if MPI.COMM_WORLD.rank == 0:
-        kind = kind if system is None else "increments"
-        restarts = system is None or "restart" in system.options
-        watch.begin(kind, arguments.out, restarts=restarts, terminal=console.is_terminal)
 
 
 COMMANDS: dict[str, Callable[[argparse.Namespace], None]] = {

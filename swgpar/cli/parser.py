@@ -35,6 +35,8 @@ MESH_EXAMPLES = """examples:
   swgpar mesh drivers/plane_half_turn.toml --mesh my_recipe.toml --out results/mesh
 """
 
+CHECK = "Check a design and print its derived geometry, and what a run will need."
+
 CHECK_EXAMPLES = """examples:
   swgpar check drivers/cup_45deg.toml
   swgpar check drivers/cup_45deg.toml --set drive.layout=spline_fixed
@@ -82,6 +84,8 @@ OPTIMISE_EXAMPLES = """examples:
 --restart continues the search, with more evaluations if the file asks for them.
 """
 
+VIEW = "Show the deformed drive of a finished run in a window."
+
 VIEW_EXAMPLES = """example:
   swgpar view results/coarse
 """
@@ -96,17 +100,28 @@ EXPORT_EXAMPLES = """examples:
   swgpar export results/stiffness --ripple results/period --format fmu --out results/fmu
 """
 
+REPORT = "Draw the figures of a finished run again, and write its report.html."
+
 REPORT_EXAMPLES = """example:
   swgpar report results/coarse
 """
 
+ACCURACY = """refine the mesh and the windows until the estimated error of the largest tensile stress at the teeth
+under load is at most A (0.02: 2 %%; 0.001 to 0.2). Without other values in the design, one period is computed in 2
+(from 0.04), 4, 8 or 16 angles. The mesh has at most 1,500,000 elements in the plane, 700,000 in space"""
+
+PLAIN = """compute all that the design asks for: without this, a drive without friction leaves out the assembly step by
+step and further periods, where the design does not set their keys"""
+
+FORMATS = """step: solids of gears and cam; dxf: their outlines; inp: job of CalculiX; vtkhdf, xdmf: fields with all
+teeth; parquet: tables; lookup: torsional spring and ripple for multibody programs; fmu: the same as an FMU (FMI 2.0)"""
+
+MODELS = "cup drive, toothed section in plane stress, two ring gears"
+SHAPES = "flexible spline: a cup, one of half the length, a silk hat"
 MESH_HELP = (
     "mesh recipe: coarse, forces, medium, full, plane_coarse, plane, plane_fine, or the path of a "
     "file (TOML)"
 )
-
-
-_Commands: TypeAlias = "argparse._SubParsersAction[_Parser]"
 
 
 class _Parser(argparse.ArgumentParser):
@@ -115,9 +130,16 @@ class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} (see {self.prog} --help)")
 
+    def options(self) -> list[str]:
+        """Names of the options, with their dashes."""
+        return list(self._option_string_actions)
 
-def parser() -> argparse.ArgumentParser:
-    """Argument parser of all subcommands."""
+
+_Commands: TypeAlias = "argparse._SubParsersAction[_Parser]"
+
+
+def parser() -> _Parser:
+    """Argument parser of all subcommands; `parser` of its namespace is that of the subcommand."""
     top = _Parser(
         prog="swgpar",
         description="Contact finite-element analysis of strain wave gears, and models of the gear "
@@ -131,65 +153,47 @@ def parser() -> argparse.ArgumentParser:
         required=True,
         metavar="new | check | mesh | run | study | optimise | report | view | export",
     )
-
     _add_new(commands)
     _add_run(commands)
-    _add_study(commands)
-    _add_optimise(commands)
+    study = _add_command(commands, "study", STUDY, STUDY_EXAMPLES)
+    study.add_argument("study", help="study file (TOML)")
+    _add_out(study, "folder of the study", "continue the study in --out", "a study")
+    optimise = _add_command(commands, "optimise", OPTIMISE, OPTIMISE_EXAMPLES)
+    optimise.add_argument("optimisation", help="optimisation file (TOML)")
+    _add_out(optimise, "folder of the results", "continue the search in --out", "a search")
     mesh = _add_command(commands, "mesh", "Write the mesh of the whole drive.", MESH_EXAMPLES)
     _add_design(mesh)
     mesh.add_argument("--mesh", required=True, help=MESH_HELP)
     mesh.add_argument("--out", required=True, help="folder for the mesh files")
-    mesh.add_argument(
-        "--format",
-        nargs="+",
-        default=["vtu", "msh", "inp"],
-        choices=["vtu", "msh", "inp"],
-        help="vtu for ParaView, msh for Gmsh, inp for Abaqus and CalculiX (default: all)",
-    )
-    check = _add_command(
-        commands,
-        "check",
-        "Check a design and print its derived geometry, and what a run will need.",
-        CHECK_EXAMPLES,
-    )
+    formats = ["vtu", "msh", "inp"]
+    text = "vtu for ParaView, msh for Gmsh, inp for Abaqus and CalculiX (default: all)"
+    mesh.add_argument("--format", nargs="+", default=formats, choices=formats, help=text)
+    check = _add_command(commands, "check", CHECK, CHECK_EXAMPLES)
     _add_design(check)
-    check.add_argument(
-        "--mesh", help=f"{MESH_HELP}: prints elements, unknowns, memory and time to expect"
-    )
-    report = _add_command(
-        commands,
-        "report",
-        "Draw the figures of a finished run again, and write its report.html.",
-        REPORT_EXAMPLES,
-    )
+    text = "prints elements, unknowns, memory and time to expect"
+    check.add_argument("--mesh", help=f"{MESH_HELP}: {text}")
+    report = _add_command(commands, "report", REPORT, REPORT_EXAMPLES)
     report.add_argument("out", help="results folder")
     _add_export(commands)
-    view = _add_command(
-        commands, "view", "Show the deformed drive of a finished run in a window.", VIEW_EXAMPLES
-    )
+    view = _add_command(commands, "view", VIEW, VIEW_EXAMPLES)
     view.add_argument("out", help="results folder")
     return top
 
 
-def _add_command(
-    commands: _Commands, name: str, text: str, examples: str
-) -> argparse.ArgumentParser:
-    return commands.add_parser(
+def _add_command(commands: _Commands, name: str, text: str, examples: str) -> _Parser:
+    command = commands.add_parser(
         name,
         help=text.partition(".")[0].lower(),
         description=text,
         epilog=examples,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+    command.set_defaults(parser=command)
+    return command
 
 
-def _add_design(command: argparse.ArgumentParser) -> None:
-    command.add_argument("design", help="design file (TOML)")
-    _add_set(command)
-
-
-def _add_set(command: argparse.ArgumentParser) -> None:
+def _add_design(command: _Parser, name: str = "design", text: str = "design file (TOML)") -> None:
+    command.add_argument(name, help=text)
     command.add_argument(
         "--set",
         action="append",
@@ -200,124 +204,58 @@ def _add_set(command: argparse.ArgumentParser) -> None:
     )
 
 
+def _add_out(command: _Parser, folder: str, restart: str, present: str) -> None:
+    """The folder of results, and what happens to what it already holds."""
+    command.add_argument("--out", required=True, help=folder)
+    command.add_argument("--restart", action="store_true", help=restart)
+    _add_overwrite(command, f"{present} that --out already holds")
+
+
+def _add_overwrite(command: _Parser, what: str) -> None:
+    command.add_argument("--overwrite", action="store_true", help=f"replace {what}")
+
+
 def _add_new(commands: _Commands) -> None:
     new = _add_command(commands, "new", NEW, NEW_EXAMPLES)
     new.add_argument("design", help="design file to write (TOML)")
-    new.add_argument(
-        "--ratio",
-        type=float,
-        required=True,
-        help="speed of the wave generator over that of the output",
-    )
+    text = "speed of the wave generator over that of the output"
+    new.add_argument("--ratio", type=float, required=True, help=text)
     size = new.add_mutually_exclusive_group(required=True)
-    size.add_argument(
-        "--diameter", type=float, metavar="D", help="pitch diameter of the flexible spline, mm"
-    )
-    size.add_argument(
-        "--bore", type=float, metavar="D", help="inner diameter of the flexible spline, mm"
-    )
+    for name, text in (("--diameter", "pitch diameter"), ("--bore", "inner diameter")):
+        size.add_argument(name, type=float, metavar="D", help=f"{text} of the flexible spline, mm")
     new.add_argument("--torque", type=float, required=True, metavar="T", help="on the output, N·m")
     for name, choices, text in (
         ("--profile", ("quadruple_arc", "double_arc", "involute"), "profile of the teeth"),
         ("--layout", ("ring_fixed", "spline_fixed"), "fixed member"),
-        (
-            "--model",
-            ("cup", "plane", "pancake"),
-            "cup drive, toothed section in plane stress, two ring gears",
-        ),
-        (
-            "--shape",
-            ("cup", "short", "hat"),
-            "flexible spline: a cup, one of half the length, a silk hat",
-        ),
+        ("--model", ("cup", "plane", "pancake"), MODELS),
+        ("--shape", ("cup", "short", "hat"), SHAPES),
     ):
-        new.add_argument(
-            name, choices=choices, default=choices[0], help=f"{text} (default: {choices[0]})"
-        )
-    new.add_argument(
-        "--cam",
-        choices=("elliptical", "parabolic", "simplified", "four_roller", "harmonic"),
-        help="cam of the wave generator (default: elliptical, with three lobes harmonic)",
-    )
-    new.add_argument(
-        "--lobes", type=int, choices=(2, 3), default=2, help="lobes of the cam (default: 2)"
-    )
-    new.add_argument("--overwrite", action="store_true", help="replace a file that exists")
+        text = f"{text} (default: {choices[0]})"
+        new.add_argument(name, choices=choices, default=choices[0], help=text)
+    cams = ("elliptical", "parabolic", "simplified", "four_roller", "harmonic")
+    text = "cam of the wave generator (default: elliptical, with three lobes harmonic)"
+    new.add_argument("--cam", choices=cams, help=text)
+    text = "lobes of the cam (default: 2)"
+    new.add_argument("--lobes", type=int, choices=(2, 3), default=2, help=text)
+    _add_overwrite(new, "a file that exists")
 
 
 def _add_export(commands: _Commands) -> None:
     export = _add_command(commands, "export", EXPORT, EXPORT_EXAMPLES)
-    export.add_argument("source", help="design file (TOML), or results folder")
-    _add_set(export)
+    _add_design(export, "source", "design file (TOML), or results folder")
     export.add_argument("--out", required=True, help="folder for the files")
-    export.add_argument(
-        "--format",
-        nargs="+",
-        required=True,
-        choices=["step", "dxf", "inp", "vtkhdf", "xdmf", "parquet", "lookup", "fmu"],
-        help="step: solids of gears and cam; dxf: their outlines; inp: job of CalculiX; vtkhdf, "
-        "xdmf: fields with all "
-        "teeth; parquet: tables; lookup: torsional spring and ripple for multibody programs; fmu: "
-        "the same as an FMU "
-        "(FMI 2.0)",
-    )
-    export.add_argument(
-        "--ripple",
-        metavar="FOLDER",
-        help="for fmu: results of the same drive with steps.samples or [deviations]",
-    )
+    formats = ["step", "dxf", "inp", "vtkhdf", "xdmf", "parquet", "lookup", "fmu"]
+    export.add_argument("--format", nargs="+", required=True, choices=formats, help=FORMATS)
+    text = "for fmu: results of the same drive with steps.samples or [deviations]"
+    export.add_argument("--ripple", metavar="FOLDER", help=text)
     export.add_argument("--mesh", help=f"of the format inp; {MESH_HELP}")
 
 
 def _add_run(commands: _Commands) -> None:
     run = _add_command(commands, "run", RUN, RUN_EXAMPLES)
     _add_design(run)
-    run.add_argument(
-        "--mesh",
-        help=f"{MESH_HELP} (default: forces, for a plane model plane_coarse); gear trains have "
-        f"none",
-    )
-    run.add_argument(
-        "--accuracy",
-        type=float,
-        metavar="A",
-        help="refine the mesh and the windows until the estimated error of the largest tensile "
-        "stress at the teeth "
-        "under load is at most A (0.02: 2 %%; 0.001 to 0.2). Without other values in the design, "
-        "one period is "
-        "computed in 2 (from 0.04), 4, 8 or 16 angles. The mesh has at most 1,500,000 elements in "
-        "the plane, "
-        "700,000 in space",
-    )
-    run.add_argument(
-        "--plain",
-        action="store_true",
-        help="compute all that the design asks for: without this, a drive without friction leaves "
-        "out the "
-        "assembly step by step and further periods, where the design does not set their keys",
-    )
-    run.add_argument("--out", required=True, help="results folder")
-    run.add_argument("--restart", action="store_true", help="continue from the checkpoint in --out")
-    run.add_argument(
-        "--overwrite", action="store_true", help="replace results that --out already holds"
-    )
-
-
-def _add_study(commands: _Commands) -> None:
-    study = _add_command(commands, "study", STUDY, STUDY_EXAMPLES)
-    study.add_argument("study", help="study file (TOML)")
-    study.add_argument("--out", required=True, help="folder of the study")
-    study.add_argument("--restart", action="store_true", help="continue the study in --out")
-    study.add_argument(
-        "--overwrite", action="store_true", help="replace a study that --out already holds"
-    )
-
-
-def _add_optimise(commands: _Commands) -> None:
-    optimise = _add_command(commands, "optimise", OPTIMISE, OPTIMISE_EXAMPLES)
-    optimise.add_argument("optimisation", help="optimisation file (TOML)")
-    optimise.add_argument("--out", required=True, help="folder of the results")
-    optimise.add_argument("--restart", action="store_true", help="continue the search in --out")
-    optimise.add_argument(
-        "--overwrite", action="store_true", help="replace a search that --out already holds"
-    )
+    text = "(default: forces, for a plane model plane_coarse); gear trains have none"
+    run.add_argument("--mesh", help=f"{MESH_HELP} {text}")
+    run.add_argument("--accuracy", type=float, metavar="A", help=ACCURACY)
+    run.add_argument("--plain", action="store_true", help=PLAIN)
+    _add_out(run, "results folder", "continue from the checkpoint in --out", "results")
