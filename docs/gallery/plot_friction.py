@@ -27,7 +27,7 @@ results = [swgpar.run(design.with_values({"contact.friction": mu}), mesh=mesh) f
 # The efficiency of the tooth contact is the input torque of the frictionless drive over the
 # mean input torque.
 
-ideal = 1000.0 * design.load.torque / abs(design.ratio)
+ideal = 1000.0 * design.load.torque / abs(design.kinematics.ratio)
 for mu, result in zip(FRICTION, results):
     torque = result.summary["mean.wg_torque_Nmm"].value
     print(f"friction {mu:.1f}   input torque {torque:6.2f} N·mm   efficiency {ideal / torque:.4f}")

@@ -15,7 +15,7 @@ import swgpar
 
 DRIVERS = Path(__file__).parents[2] / "drivers"
 design = swgpar.load_design(DRIVERS / "three_lobes.toml")
-print(f"ratio {design.ratio:g}, radial deflection {0.5 * design.deflection:g} mm")
+print(f"ratio {design.kinematics.ratio:g}, radial deflection {0.5 * design.deflection:g} mm")
 
 # %%
 # The cam is as long as the inner circumference of the spline. The figure shows how far it lies

@@ -45,7 +45,9 @@ axes.legend(fontsize=8)
 figure, axes = plt.subplots(figsize=(7.0, 3.8), layout="constrained")
 input_torque = [r.summary["mean.wg_torque_Nmm"].value for r in results]
 axes.plot(TORQUES, input_torque, "o", label="computed")
-axes.plot(TORQUES, 1000.0 * np.array(TORQUES) / abs(design.ratio), "--", label="torque / ratio")
+axes.plot(
+    TORQUES, 1000.0 * np.array(TORQUES) / abs(design.kinematics.ratio), "--", label="torque / ratio"
+)
 axes.set(xlabel="output torque (N·m)", ylabel="mean input torque (N·mm)")
 axes.legend(loc="upper left")
 count = axes.twinx()

@@ -28,14 +28,16 @@ result = swgpar.run(design, mesh={"flexible_spline": gear, "ring_gear": gear})
 loaded = result.history["step"].astype(int) >= 3
 angle = result.history["wg_angle_deg"][loaded]
 torque = result.history["wg_torque_Nmm"][loaded]
-error = 3600.0 * (result.history["output_angle_deg"][loaded] - angle / design.ratio)
+error = 3600.0 * (result.history["output_angle_deg"][loaded] - angle / design.kinematics.ratio)
 error -= error.mean()
 
 figure, (upper, lower) = plt.subplots(2, 1, figsize=(7.5, 5.5), sharex=True, layout="constrained")
 upper.plot(angle, error, "o-", markersize=3)
 upper.set(ylabel="transmission error (arc seconds)")
 lower.plot(angle, torque, "o-", markersize=3, color="tab:orange")
-lower.axhline(1000.0 * design.load.torque / abs(design.ratio), color="0.4", linestyle="--")
+lower.axhline(
+    1000.0 * design.load.torque / abs(design.kinematics.ratio), color="0.4", linestyle="--"
+)
 lower.set(xlabel="angle of the wave generator (deg)", ylabel="input torque (N·mm)")
 for axes in (upper, lower):
     axes.grid(alpha=0.3)

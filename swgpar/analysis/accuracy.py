@@ -46,7 +46,7 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
             f"--accuracy {accuracy:g} is out of range: allowed {LOWEST:g} to {HIGHEST:g}"
         )
     whole_period = design.steps.rotation >= 0.999999 * design.periods * np.degrees(
-        design.period_angle
+        design.kinematics.period_angle
     )
     if "samples" in design.steps.model_fields_set or not whole_period:
         return design

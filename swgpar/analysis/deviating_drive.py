@@ -148,7 +148,7 @@ class DeviatingDrive:
     @property
     def pitches(self) -> int:
         """Pitches of the fixed gear in all turns."""
-        return self.deviations.turns * round(2.0 * np.pi / self.design.period_angle)
+        return self.deviations.turns * round(2.0 * np.pi / self.design.kinematics.period_angle)
 
     def destroy(self) -> None:
         """Release the model."""
@@ -189,7 +189,7 @@ class DeviatingDrive:
         x, count = self.model.problem.x, self.deviations.angles_per_pitch
         found = [(self.loaded, x.copy())]
         for phase in range(1, count):
-            angle = self.design.period_angle * phase / count
+            angle = self.design.kinematics.period_angle * phase / count
             state = replace(
                 self.loaded, stage=Stage.ROTATE, step=Stage.ROTATE + phase - 1, angle=angle
             )
@@ -215,8 +215,8 @@ class DeviatingDrive:
         part = self.deviations.cup
         offsets = self.model.problem.supports.offsets
         turn = -2.0 * np.pi * pitch / self.design.drive.teeth_fs
-        if self.design.output_gear == "flexible_spline":
-            turn += state.angle / self.design.ratio
+        if self.design.kinematics.output_gear == "flexible_spline":
+            turn += state.angle / self.design.kinematics.ratio
         lean = share * rotated(part.lean, turn)
         offsets[SPLINE_COUPLING, [X, Y]] = share * rotated(part.shift, turn) + self.bore_z * lean
         offsets[SPLINE_COUPLING, [TILT_X, TILT_Y]] = -lean[1], lean[0]
@@ -238,11 +238,11 @@ class DeviatingDrive:
                 if not result.converged:
                     break
             else:
-                turned = pitch * self.design.period_angle
-                output = problem.output_rotation() + turned / self.design.ratio
+                turned = pitch * self.design.kinematics.period_angle
+                output = problem.output_rotation() + turned / self.design.kinematics.ratio
                 torque = torques(problem, state).wave_generator
                 return TurnPoint(index, state.angle + turned, output, torque, iterations)
-        angle = np.degrees(state.angle + pitch * self.design.period_angle)
+        angle = np.degrees(state.angle + pitch * self.design.kinematics.period_angle)
         raise ConvergenceError(
             f"the drive with [deviations] did not converge at a wave-generator angle of "
             f"{angle:.4g} degrees: "
@@ -251,6 +251,6 @@ class DeviatingDrive:
 
     def _repeated(self, first: int, point: TurnPoint, pitch: int, index: int) -> TurnPoint:
         """The state of the pitch `first` again, at another one."""
-        turned = (pitch - first) * self.design.period_angle
-        output = point.output_angle + turned / self.design.ratio
+        turned = (pitch - first) * self.design.kinematics.period_angle
+        output = point.output_angle + turned / self.design.kinematics.ratio
         return TurnPoint(index, point.wg_angle + turned, output, point.wg_torque, 0)

@@ -25,7 +25,6 @@ from swgpar.evaluation.place_errors import CoarseStresses
 from swgpar.evaluation.places import find_places
 from swgpar.evaluation.ratcheting import has_fallen
 from swgpar.evaluation.result_frame import history_rows
-from swgpar.evaluation.rotation import sampled_rows
 from swgpar.evaluation.transmission_error import period_rows
 from swgpar.evaluation.windows.root_stress import RootStress, resolve_root_stress, with_angle
 from swgpar.load.load_sequence import LoadSequence
@@ -204,7 +203,7 @@ class DriveRun:
 
     def finish(self, recipe_name: str) -> DriveData:
         """Summarise the run."""
-        recorder, design = self.recorder, self.model.design
+        recorder, design, sequence = self.recorder, self.model.design, self.sequence
         rows = self.record.rows
         error = None
         if design.stiffness is not None and design.stiffness.mesh_error:
@@ -215,10 +214,10 @@ class DriveRun:
         if design.deviations is not None:
             follow_turns(self.recipe, recorder)
         else:
-            recorder.keep_turns(period_rows(design, rows))
-        if design.steps.samples and sampled_rows(design, rows):
-            rows = continued(design, rows)
-        rows = history_rows(design, rows)
+            recorder.keep_turns(period_rows(sequence, rows))
+        if sequence.samples and rows:
+            rows = continued(sequence, rows)
+        rows = history_rows(sequence.kinematics, rows)
         summary, tables = evaluate_run(
             recorder,
             rows,

@@ -26,6 +26,7 @@ from swgpar.evaluation.rotation import evaluate_rotation, sampled_rows
 from swgpar.evaluation.step_values import step_values
 from swgpar.evaluation.stiffness import torsional_stiffness
 from swgpar.evaluation.transmission_error import evaluate_turns
+from swgpar.load.load_program import stiffness_program
 from swgpar.petsc import PETSc
 from swgpar.results.history import Row, loaded_increments
 from swgpar.version import __version__
@@ -51,7 +52,7 @@ def evaluate_run(
     ended_early : whether a load program has ended before its last point
     """
     model, design, record = recorder.model, recorder.model.design, recorder.record
-    rows = record.rows
+    sequence, rows = recorder.sequence, record.rows
     program, places = recorder.program_rows(), recorder.places_with_errors()
     fatigue, losses, losses_table = _cycle_results(recorder)
     bodies = {name: BodySizes(**counts) for name, counts in model.counts().items()}
@@ -76,9 +77,9 @@ def evaluate_run(
             name: round(value, 3) for name, value in model.phases.slowest(model.comm).items()
         },
         peak_memory_MB_per_rank=tuple(round(value, 1) for value in memory),
-        ratio=design.input_ratio,
+        ratio=design.kinematics.input_ratio,
         design=design,
-        rotation=evaluate_rotation(design, rows, record.root_stress, places),
+        rotation=evaluate_rotation(sequence, rows, record.root_stress, places),
         stresses=LargestStresses.of(places),
         steps=step_values(shown),
         numerics=evaluate_numerics(
@@ -88,12 +89,20 @@ def evaluate_run(
         root_stress=record.root_stress,
         contact=largest_contact(record.pairs),
         load_sharing=_load_sharing(recorder),
-        transmission_error=evaluate_turns(design, record.turns),
-        stiffness=torsional_stiffness(design, program, stiffness_error)
+        transmission_error=evaluate_turns(
+            sequence.kinematics, design.deviations, sequence.samples, record.turns
+        ),
+        stiffness=torsional_stiffness(stiffness_program(design), program, stiffness_error)
         if design.stiffness
         else None,
         ratcheting=(
-            evaluate_ratcheting(design, program, record.tooth_rotations, ended_early=ended_early)
+            evaluate_ratcheting(
+                sequence.kinematics,
+                design.ratcheting.drop,
+                program,
+                record.tooth_rotations,
+                ended_early=ended_early,
+            )
             if design.ratcheting
             else None
         ),
@@ -110,14 +119,14 @@ def evaluate_run(
 
 
 def _load_sharing(recorder: Recorder) -> LoadSharing | None:
-    rows, design = recorder.record.rows, recorder.model.design
+    rows = recorder.record.rows
     # without a rotation the loaded state stands for it
-    count = max(len(sampled_rows(design, rows)), 1)
+    count = max(len(sampled_rows(recorder.sequence, rows)), 1)
     return load_sharing(
         [pair for pair in recorder.record.pairs if pair.get("ring", RING) == RING],
         [row["tooth_torque_Nmm"] for row in rows],
         range(len(rows) - count + 1, len(rows) + 1),
-        design.drive.teeth_fs,
+        recorder.sequence.kinematics.teeth_fs,
         recorder.model.copies,
     )
 

@@ -37,7 +37,7 @@ def follow_turns(recipe: MeshRecipe, recorder: Recorder) -> None:
     recipe : of the run's mesh. Raises ConvergenceError; the rows up to then are kept.
     """
     design = recorder.model.design
-    step = design.period_angle / design.deviations.angles_per_pitch
+    step = design.kinematics.period_angle / design.deviations.angles_per_pitch
     known = {_index(row, step): row for row in recorder.known_turns()}
     comm, shared = recorder.comm, design.drive.model == "plane"
     with recorder.model.phases("turns"):
@@ -54,7 +54,7 @@ def follow_turns(recipe: MeshRecipe, recorder: Recorder) -> None:
         try:
             saved, reported, iterations = len(known), 0, 0
             for found in _rounds(points, comm):
-                known |= {point.index: turn_row(point, design) for point in found}
+                known |= {point.index: turn_row(point, design.kinematics) for point in found}
                 iterations += sum(point.iterations for point in found)
                 if len(known) >= saved + SAVED:
                     saved = len(known)

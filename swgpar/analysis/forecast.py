@@ -62,7 +62,9 @@ def forecast(design: DriveDesign, recipe: MeshRecipe) -> Forecast:
     plane = design.drive.model == "plane"
     elements = unknowns = 0
     for gear, counts in sector_counts(design.geometry, recipe).items():
-        fixed = counts.outer if gear == design.standing_gear and design.frame_is_rigid else 0
+        fixed = (
+            counts.outer if gear == design.kinematics.standing_gear and design.frame_is_rigid else 0
+        )
         free = counts.nodes - counts.shared - fixed
         elements += counts.elements * counts.n_sectors
         unknowns += (2 if plane else 3) * free * (counts.n_sectors // design.copies)

@@ -200,7 +200,11 @@ class LoadStepper:
         if state.stage == Stage.PROGRAM:
             self._before, self._last = self._last, (state, self.problem.x.copy())
         if state.is_periodic:
-            known = self.known_states if state.continues_period(before, self.design.ratio) else []
+            known = (
+                self.known_states
+                if state.continues_period(before, self.design.kinematics.ratio)
+                else []
+            )
             self.known_states = [*known, KnownState(state.angle, self.problem.x.copy())][
                 -MAX_KNOWN_STATES:
             ]
@@ -225,8 +229,11 @@ class LoadStepper:
             return
         if state.angle != here.angle:
             self._predict_rotation(state.angle)
-            if not state.continues_period(here, self.design.ratio) and state.control == "rotation":
-                drift = (state.angle - here.angle) / self.design.ratio
+            if (
+                not state.continues_period(here, self.design.kinematics.ratio)
+                and state.control == "rotation"
+            ):
+                drift = (state.angle - here.angle) / self.design.kinematics.ratio
                 self._rotate_output(state.output_rotation - here.output_rotation - drift)
         elif (factor := self._extrapolation(state)) > 0.0:
             (_, older), (_, last) = self._before, self._last

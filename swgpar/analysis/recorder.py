@@ -34,7 +34,6 @@ from swgpar.evaluation.windows.accuracy import Accuracy
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.half_space.pair_contact import PairContact, pair_contacts
 from swgpar.input.toml_file import to_toml
-from swgpar.load.load_program import internal_torque
 from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import SectorMesh
@@ -73,9 +72,10 @@ class Recorder(ABC):
     """
 
     def __init__(self, model: DriveModel, sequence: LoadSequence) -> None:
-        self.model, self.comm, self._sequence = model, model.comm, sequence
+        self.model, self.comm, self.sequence = model, model.comm, sequence
         self.record = RunRecord()
-        self.cycle = StressCycle(model) if model.design.fatigue or model.design.losses else None
+        needed = model.design.fatigue or model.design.losses
+        self.cycle = StressCycle(model, sequence) if needed else None
 
     def keep_choice(self, chosen: ChosenMesh, accuracy: float) -> None:
         """Keep the stress that the windows of a mesh chosen for an accuracy gave."""
@@ -129,7 +129,7 @@ class Recorder(ABC):
             for name, place in find_places(self.model, state, fields, on_edge=on_edge).items():
                 if name not in self.record.places or place.value > self.record.places[name].value:
                     self.record.places[name] = place
-            if self.record.coarse is not None and state == self._sequence.loaded:
+            if self.record.coarse is not None and state == self.sequence.loaded:
                 self.record.stress_errors, self.record.coarse = (
                     self.record.coarse.errors(self.record.places),
                     None,
@@ -171,10 +171,8 @@ class Recorder(ABC):
         """Whether a point of the load program is the first one with its largest torque."""
         if state.stage != Stage.PROGRAM or state.control != "torque" or self.record.bearing_shares:
             return False
-        torques = [abs(point.value) for point in self._sequence.points if point.control == "torque"]
-        return abs(state.torque) >= abs(internal_torque(self.model.design.ratio, max(torques))) * (
-            1.0 - 1e-9
-        )
+        torques = [abs(point.value) for point in self.sequence.points if point.control == "torque"]
+        return abs(state.torque) >= 1000.0 * max(torques) * (1.0 - 1e-9)
 
     def keep_turns(self, rows: list[Row]) -> None:
         """Keep rows of transmission_error.csv in place of those before."""
@@ -202,7 +200,7 @@ class Recorder(ABC):
 
     def program_rows(self) -> list[PointRow]:
         """Rows of program.csv."""
-        return point_rows(self._sequence.points, self.model.design.ratio, self.record.rows)
+        return point_rows(self.sequence.points, self.sequence.kinematics, self.record.rows)
 
     @abstractmethod
     def begin(self) -> None:
@@ -256,7 +254,7 @@ class FolderRecorder(Recorder):
     def resume(self, stepper: LoadStepper) -> tuple[tuple[LoadState, ...], float]:
         """Bring back the state of the checkpoint; returns the states of the run, and the wall
         seconds spent so far."""
-        saved, states = resume_run(self.out, self.identity, stepper, self._sequence, self.cycle)
+        saved, states = resume_run(self.out, self.identity, stepper, self.sequence, self.cycle)
         self.record = saved.record
         self._write_tables()
         return states, saved.wall_s
@@ -309,7 +307,7 @@ class FolderRecorder(Recorder):
                 if self._writer.has(i)
             ]
             self._writer.write_index(self.comm.bcast(written), record.components)
-        shown = history_rows(self.model.design, record.rows)
+        shown = history_rows(self.sequence.kinematics, record.rows)
         write_from_root(self.comm, self.out / history.NAME, history.format_rows(shown))
         program = self.program_rows()
         for name, rows in (

@@ -55,7 +55,8 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
     if not options.plain:
         shortcuts = with_shortcuts(design, recipe, levels=options.accuracy is None)
         design, left_out = shortcuts.design, shortcuts.left_out
-    require_samples(design)
+    sequence = load_sequence(design)
+    require_samples(sequence, [name for name in ("fatigue", "losses") if getattr(design, name)])
     needs = forecast(design, recipe)
     require_memory(needs, design.solver.memory_limit, comm)
     resumed = folder is not None and prepare(folder, comm, options.restart, options.overwrite)
@@ -68,7 +69,7 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
         elif not resumed:
             way = "taking over loaded states" if kept.found(comm) else "starting from the beginning"
             logger.info("no increment was saved: %s", way)
-        sequence, what = load_sequence(design), identity(design, recipe, options.accuracy)
+        what = identity(design, recipe, options.accuracy)
         chosen = None
         if options.accuracy is not None:
             if resumed:

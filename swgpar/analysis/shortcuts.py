@@ -80,7 +80,10 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
             left_out.append(words)
 
     if not design.contact.friction:
-        period, samples = float(np.degrees(design.period_angle)), SAMPLES[design.drive.model]
+        period, samples = (
+            float(np.degrees(design.kinematics.period_angle)),
+            SAMPLES[design.drive.model],
+        )
         samples_enough = (
             repeats
             and steps.rotation >= 0.999999 * period

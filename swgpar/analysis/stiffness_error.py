@@ -15,6 +15,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.evaluation.program_results import PointRow, point_rows
 from swgpar.evaluation.stiffness import NAMES, Stiffness, by_position
+from swgpar.load.load_program import stiffness_program
 from swgpar.load.load_sequence import load_sequence
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
@@ -41,7 +42,7 @@ def stiffness_error(
     except (ConvergenceError, InputError) as error:
         logger.info("the error of the stiffness by the mesh is not known: %s", error)
         return None
-    fine = by_position(first, rows)[0.0]
+    fine = by_position(stiffness_program(first), rows)[0.0]
     remaining = size_ratio(coarse, recipe) ** ORDER - 1.0
     return {name: abs(getattr(fine, name) - getattr(found, name)) / remaining for name in NAMES}
 
@@ -64,4 +65,5 @@ def _stiffness_on(design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> St
             rows.append(stepper.row())
     finally:
         model.destroy()
-    return by_position(design, point_rows(sequence.points, design.ratio, rows))[0.0]
+    points = point_rows(sequence.points, sequence.kinematics, rows)
+    return by_position(stiffness_program(design), points)[0.0]

@@ -22,9 +22,9 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
     them."""
     spline, ring = design.profile("flexible_spline"), design.profile("ring_gear")
     cam, half = design.cam(), 0.5 * design.deflection
+    driving = "ring gear" if design.kinematics.wave_generator_is_fixed else "wave generator"
     return {
-        f"ratio ({'ring gear' if design.wave_generator_is_fixed else 'wave generator'} / "
-        f"output)": design.input_ratio,
+        f"ratio ({driving} / output)": design.kinematics.input_ratio,
         "d, diametral deflection (mm)": design.deflection,
         "a, major semi-axis (mm)": design.major_semi_axis,
         **_smallest(cam, design.lobes),

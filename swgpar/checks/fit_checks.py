@@ -163,7 +163,7 @@ def _check_concave(design: DriveDesign, wave: Harmonic) -> None:
 
 
 def _check_steps(design: DriveDesign) -> None:
-    steps, least = design.steps, np.degrees(design.period_angle) * design.periods
+    steps, least = design.steps, np.degrees(design.kinematics.period_angle) * design.periods
     if steps.samples and steps.rotation < 0.999999 * least:
         allowed = f"{least:.6g} deg (periods: {design.periods}) and more with steps.samples"
         _refuse("steps.rotation", steps.rotation, allowed)

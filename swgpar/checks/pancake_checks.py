@@ -23,7 +23,7 @@ def check_pancake(design: DriveDesign) -> None:
     for refused, what, allowed in (
         (design.cup is not None, "cup is given", 'allowed only with drive.model = "cup"'),
         (
-            design.wave_generator_is_fixed,
+            design.kinematics.wave_generator_is_fixed,
             'drive.layout = "wave_generator_fixed"',
             'allowed "ring_fixed" or "spline_fixed"',
         ),

@@ -10,9 +10,7 @@ from swgpar.load.load_program import (
     NO_TORQUE,
     RATCHETING,
     controls,
-    pitch_angle,
-    rated_torque,
-    stiffness_torque,
+    stiffness_program,
 )
 
 NAME = re.compile(r"[A-Za-z0-9_ +-]+")
@@ -86,7 +84,7 @@ def _check_stages(design: DriveDesign) -> None:
                 "given: allowed one of them"
             )
         if (
-            kinds[k] == "rotation" and design.wave_generator_is_fixed
+            kinds[k] == "rotation" and design.kinematics.wave_generator_is_fixed
         ):  # rotations are prescribed in another frame
             raise InputError(
                 f"{key}.torque is missing: allowed only stages with a torque with drive.layout = "
@@ -107,10 +105,10 @@ def _check_stages(design: DriveDesign) -> None:
 
 
 def _check_stiffness(design: DriveDesign) -> None:
-    section, top = design.stiffness, stiffness_torque(design)
-    if top <= 0.0:
+    section, program = design.stiffness, stiffness_program(design)
+    if program.torque <= 0.0:
         raise InputError("stiffness.torque is missing: give it, or load.torque, above 0 N·m")
-    share = section.lost_motion_share * rated_torque(design) / top
+    share = program.lost_motion_torque / program.torque
     ends = section.break_points
     if len(ends) != 2 or not share < ends[0] < ends[1] < 1.0:
         raise InputError(
@@ -139,8 +137,9 @@ def _check_ratcheting(design: DriveDesign) -> None:
             f"pitches "
             "(ratcheting.increment) and more"
         )
-    if section.limit * pitch_angle(design) > MOST_ROTATION:
+    pitch = design.kinematics.output_pitch
+    if section.limit * pitch > MOST_ROTATION:
         raise InputError(
             f"ratcheting.limit = {section.limit:g} is out of range: allowed up to "
-            f"{MOST_ROTATION / pitch_angle(design):.3g} pitches, {MOST_ROTATION:g} degrees"
+            f"{MOST_ROTATION / pitch:.3g} pitches, {MOST_ROTATION:g} degrees"
         )

@@ -8,6 +8,7 @@ import numpy as np
 from swgpar.design.cup_section import Cup
 from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.deviations import Deviations
+from swgpar.design.kinematics import Kinematics
 from swgpar.design.program_sections import Ratcheting, Stiffness
 from swgpar.design.sections import (
     GEARS,
@@ -120,57 +121,21 @@ class DriveDesign(Design):
         )
 
     @property
-    def wave_generator_is_fixed(self) -> bool:
-        """Whether the ring gear is the input. Everything is then computed in the frame of the ring
-        gear."""
-        return self.drive.layout == "wave_generator_fixed"
-
-    @property
-    def output_gear(self) -> GearName:
-        """The gear that is the output; the other one stands in the frame in which the drive is
-        computed."""
-        if self.drive.layout == "spline_fixed":
-            return "ring_gear"
-        return "flexible_spline" if self.dynamic_spline is None else "dynamic_spline"
-
-    @property
-    def standing_gear(self) -> GearName:
-        """The gear that stands in the frame in which the drive is computed: the fixed one, or the
-        driven ring gear."""
-        if self.output_gear != "ring_gear":
-            return "ring_gear"
-        return "flexible_spline" if self.dynamic_spline is None else "dynamic_spline"
-
-    @property
-    def ratio(self) -> float:
-        """Speed ratio, wave generator over output, both against the standing gear."""
-        g = self.drive
-        return (g.teeth_rg if self.output_gear == "ring_gear" else -g.teeth_fs) / (
-            g.teeth_rg - g.teeth_fs
+    def kinematics(self) -> Kinematics:
+        """Speeds and angles."""
+        drive = self.drive
+        output: GearName = "flexible_spline" if self.dynamic_spline is None else "dynamic_spline"
+        standing: GearName = "ring_gear"
+        if drive.layout == "spline_fixed":
+            output, standing = standing, output
+        return Kinematics(
+            drive.teeth_fs,
+            drive.teeth_rg,
+            self.lobes,
+            output,
+            standing,
+            wave_generator_is_fixed=drive.layout == "wave_generator_fixed",
         )
-
-    @property
-    def input_ratio(self) -> float:
-        """Speed ratio of the drive, input over output."""
-        return (
-            self.drive.teeth_fs / self.drive.teeth_rg
-            if self.wave_generator_is_fixed
-            else self.ratio
-        )
-
-    def in_frame_of_result(self, angle: float, wave_generator: float) -> float:
-        """Angle in the frame of the fixed member, from that in the frame in which the drive is
-        computed.
-
-        wave_generator : its angle against the standing gear, in the unit of the angle
-        """
-        return angle - wave_generator if self.wave_generator_is_fixed else angle
-
-    @property
-    def period_angle(self) -> float:
-        """Period of the motion, rad of the wave generator against the standing gear: one pitch
-        angle of that gear."""
-        return 2.0 * np.pi / self.drive.teeth(self.standing_gear).n_teeth
 
     @property
     def has_program(self) -> bool:
@@ -290,9 +255,7 @@ class DriveDesign(Design):
             return 1.0
         if self.bearing.cage_speed is not None:
             return self.bearing.cage_speed
-        return self.bearing_sizes.rolling_speed(
-            0.0 if self.output_gear == "ring_gear" else 1.0 / self.ratio
-        )
+        return self.bearing_sizes.rolling_speed(self.kinematics.spline_speed)
 
     @property
     def ball_passing_angle(self) -> float:
@@ -348,7 +311,7 @@ class DriveDesign(Design):
     def leaves_out_sectors(self) -> bool:
         """Whether sectors of the ring gear out of reach are left out; an elastic housing gives way
         all round."""
-        clamped = self.standing_gear == "ring_gear" and self.housing is None
+        clamped = self.kinematics.standing_gear == "ring_gear" and self.housing is None
         return self.solver.far_teeth == "left_out" and clamped
 
     @property

@@ -143,14 +143,13 @@ class DriveData:
 
     def curves(self) -> Curves:
         """Columns of the history under load, over one period where the rotation was sampled."""
-        design = self.summary.design
-        drive = design.drive
-        standing = drive.teeth_fs if drive.layout == "spline_fixed" else drive.teeth_rg
-        # the wave generator turns against the ring gear as the ring gear turns against it, the
-        # other way round
-        ratio = self.summary.ratio * (-1.0 if design.wave_generator_is_fixed else 1.0)
+        kinematics = self.summary.design.kinematics
         return history.curves(
-            self.history, design.steps.samples, self.summary.increments, 360.0 / standing, ratio
+            self.history,
+            self.summary.design.steps.samples,
+            self.summary.increments,
+            float(np.degrees(kinematics.period_angle)),
+            kinematics.shown_ratio,
         )
 
     def mesh(self, body: GearName = SPLINE) -> BodyMesh:

@@ -79,7 +79,7 @@ def _energy(design: DriveDesign, rotation: Rotation) -> Check:
         return Check(name, None, "a drive on bolts does not repeat after a pitch")
     mean = rotation.means.get("wg_torque_Nmm")
     covered = design.steps.samples or design.steps.rotation >= 0.999999 * np.degrees(
-        design.period_angle
+        design.kinematics.period_angle
     )
     if mean is None or not expected or not covered:
         return Check(
@@ -87,7 +87,7 @@ def _energy(design: DriveDesign, rotation: Rotation) -> Check:
         )
     torque = (
         "mean torque on the standing wave generator"
-        if design.wave_generator_is_fixed
+        if design.kinematics.wave_generator_is_fixed
         else "mean input torque"
     )
     text = f"{torque} {mean:.5g} N·mm, by the energy balance {expected:.5g} N·mm"

@@ -182,7 +182,7 @@ def ball_rows(model: DriveModel, state: LoadState, increment: int, step: int) ->
                 "step": step,
                 "wg_angle_deg": float(np.degrees(state.angle)),
                 "ball": ball,
-                "angle_deg": design.in_frame_of_result(
+                "angle_deg": design.kinematics.in_frame_of_result(
                     float(np.degrees(angle)), float(np.degrees(state.angle))
                 )
                 % 360.0,
@@ -250,8 +250,7 @@ def bearing_life(design: DriveDesign, loads: np.ndarray) -> BearingLife:
     rating = bearing.load_rating or series.load_rating()
     million = million_turns(series, rating, loads)
     # the races turn relative to each other a little faster or slower than the wave generator
-    outer = 0.0 if design.output_gear == "ring_gear" else 1.0 / design.ratio
-    turns = 1e6 * million / abs(1.0 - outer)
+    turns = 1e6 * million / abs(1.0 - design.kinematics.spline_speed)
     finite = np.isfinite(turns)
     return BearingLife(
         load_rating_N=rating,

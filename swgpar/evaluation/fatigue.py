@@ -33,7 +33,6 @@ from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.evaluation.windows.root_stress import RootStress
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal
-from swgpar.load.load_program import program_points
 from swgpar.load.load_states import Stage
 from swgpar.model.regions import TOOTH_END, warning_of
 from swgpar.results.sector_fields import SectorFields
@@ -252,8 +251,12 @@ def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> Fati
         sampling_error=half,
         root_factor=factor if root_stress else None,
         root_factor_error=factor_error if root_stress else None,
-        windows=model.design.bearing is None and not model.design.has_program,
-        life=_life(cycle, damage(values, fatigue)),
+        windows=model.design.bearing is None and not cycle.sequence.points,
+        life=_life(
+            damage(values, fatigue),
+            None if cycle.sequence.points else cycle.angle,
+            model.design.load.input_speed,
+        ),
         phases=len(values),
         fatigue_limit_of_the_part_MPa=float(fatigue_limits(fatigue)[0]),
     )
@@ -265,29 +268,31 @@ def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> Fati
     return FatigueResult(found, _sector(cycle, nodal, regions), table)
 
 
-def _life(cycle: StressCycle, damage_of_cycle: float) -> Life:
-    design = cycle.model.design
+def _life(damage_of_cycle: float, angle: float | None, input_speed: float) -> Life:
+    """angle : rad, of the wave generator over the cycle; None over a load program
+
+    input_speed : 1/min
+    """
     life = 1.0 / damage_of_cycle if damage_of_cycle > 0.0 else None
     finite = np.isfinite(damage_of_cycle)
-    if design.has_program:
+    if angle is None:
         return Life(damage_per_program=damage_of_cycle if finite else None, life_programs=life)
-    speed = 2.0 * np.pi / cycle.angle
-    turns = None if life is None else life / speed
+    cycles = 2.0 * np.pi / angle
+    turns = None if life is None else life / cycles
     return Life(
-        damage_per_turn=speed * damage_of_cycle if finite else None,
+        damage_per_turn=cycles * damage_of_cycle if finite else None,
         life_turns=turns,
-        life_hours=turns / (60.0 * design.load.input_speed) if turns is not None else None,
-        cycles_per_turn=speed,
+        life_hours=None if turns is None else turns / (60.0 * input_speed),
+        cycles_per_turn=cycles,
     )
 
 
 def _when(cycle: StressCycle, count: int) -> dict[str, np.ndarray]:
     """Columns that say when the values of a cycle are: wave-generator angles, in a load program its
     steps too."""
-    design = cycle.model.design
-    if not design.has_program:
+    if not cycle.sequence.points:
         return {"wg_angle_deg": np.degrees(cycle.angle) * np.arange(count) / count}
-    angles = np.array([point.angle for point in program_points(design)])
+    angles = np.array([point.angle for point in cycle.sequence.points])
     return {"step": int(Stage.LOAD) + np.arange(count), "wg_angle_deg": angles}
 
 
@@ -368,7 +373,7 @@ def _change_by_half(values: np.ndarray, cycle: StressCycle, safety: float) -> fl
 
     None for an odd number of them, and for a load program.
     """
-    if cycle.model.design.has_program or cycle.model.design.steps.samples % 2:
+    if cycle.sequence.points or cycle.sequence.samples % 2:
         return None
     halves = values.reshape(-1, 2)
     high, low = halves.max(axis=0), halves.min(axis=0)

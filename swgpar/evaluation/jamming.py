@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
-from swgpar.load.load_sequence import counts_as_none
+from swgpar.load.load_sequence import LoadSequence
 from swgpar.results.history import Row, column
 
 LEAST_EFFICIENCY = 0.5
@@ -15,7 +14,7 @@ LEAST_EFFICIENCY = 0.5
 
 
 def jamming_remark(
-    design: DriveDesign, rows: Sequence[Row], means: Mapping[str, float]
+    sequence: LoadSequence, rows: Sequence[Row], means: Mapping[str, float]
 ) -> str | None:
     """A sentence where the mean input torque is far from that of the energy balance, T / ratio;
     else None.
@@ -26,12 +25,12 @@ def jamming_remark(
 
     rows : increments of the rotation whose `means` are given
     """
-    expected = 1000.0 * design.load.torque / abs(design.ratio)
-    if not rows or expected == 0.0 or design.is_bolted or counts_as_none(design):
+    if not rows or not sequence.repeats or sequence.loaded.control == "rotation":
         return None
-    angles = column(rows, "wg_angle_deg")
-    covered = design.steps.samples or np.ptp(angles) + design.steps.increment >= np.degrees(
-        design.period_angle
+    kinematics, angles = sequence.kinematics, column(rows, "wg_angle_deg")
+    expected = kinematics.wave_generator_torque(sequence.torque)
+    covered = sequence.samples or (
+        np.ptp(angles) + sequence.increment >= np.degrees(kinematics.period_angle)
     )
     mean = means["wg_torque_Nmm"]
     if not covered or LEAST_EFFICIENCY * expected <= mean <= expected / LEAST_EFFICIENCY:

@@ -104,7 +104,7 @@ def evaluate_losses(
     forces = np.array([cam_forces[increment - 1] for increment in increments])
     arm = 0.5 * (losses.bearing_diameter or _bearing_diameter(design))
     # the outer race turns with the flexible spline
-    relative = 1.0 if design.output_gear == "ring_gear" else 1.0 - 1.0 / design.ratio
+    relative = 1.0 - design.kinematics.spline_speed
     bearing = losses.bearing_friction * forces * arm * relative
     hysteresis = losses.loss_factor * hysteresis_work(cycle) / (2.0 * np.pi)
     parts = LossParts(
@@ -118,7 +118,10 @@ def evaluate_losses(
             "pairs are not known",
             100.0 * missing,
         )
-    total, useful = sum(astuple(parts)), 1000.0 * design.load.torque / abs(design.input_ratio)
+    total, useful = (
+        sum(astuple(parts)),
+        1000.0 * design.load.torque / abs(design.kinematics.input_ratio),
+    )
     found = DriveLosses(
         loss_torque_Nmm=total,
         parts_Nmm=parts,

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.kinematics import Kinematics
 from swgpar.evaluation.answers import (
     Answer,
     AnswerGroup,
@@ -17,7 +18,7 @@ from swgpar.evaluation.answers import (
     evaluation,
     part_answers,
 )
-from swgpar.load.load_program import ProgramPoint, torque_direction
+from swgpar.load.load_program import ProgramPoint
 from swgpar.load.load_states import Stage
 from swgpar.results.history import Row, wrapped
 
@@ -37,16 +38,17 @@ COLUMNS = {
 and the rotation of the output by it, beyond what the ratio makes of the wave generator's angle."""
 
 
-def point_rows(points: Sequence[ProgramPoint], ratio: float, rows: Sequence[Row]) -> list[PointRow]:
-    """Rows of program.csv from those of the history. ratio : speed of the wave generator over that
-    of the output"""
-    direction, found = torque_direction(ratio), []
+def point_rows(
+    points: Sequence[ProgramPoint], kinematics: Kinematics, rows: Sequence[Row]
+) -> list[PointRow]:
+    """Rows of program.csv from those of the history."""
+    direction, computed = kinematics.torque_direction, []
     for row in rows:
         index = int(row["step"]) - Stage.LOAD
         if not 0 <= index < len(points):
             continue
-        rotation = wrapped(row["output_angle_deg"] - row["wg_angle_deg"] / ratio)
-        found.append(
+        rotation = wrapped(row["output_angle_deg"] - row["wg_angle_deg"] / kinematics.ratio)
+        computed.append(
             {
                 "step": int(row["step"]),
                 "stage": points[index].stage,
@@ -57,7 +59,7 @@ def point_rows(points: Sequence[ProgramPoint], ratio: float, rows: Sequence[Row]
                 "pairs_in_contact": row["pairs_in_contact"],
             }
         )
-    return found
+    return computed
 
 
 def work_by_torque(rows: Sequence[PointRow]) -> float:

@@ -9,11 +9,10 @@ from dataclasses import replace
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.design.drive_design import DriveDesign
+from swgpar.design.kinematics import Kinematics
 from swgpar.evaluation.answers import Answer, AnswerGroup, answer, evaluation
 from swgpar.evaluation.program_results import PointRow
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.load.load_program import pitch_angle, torque_direction
 from swgpar.model.drive_model import DriveModel
 
 AT_TEETH, IN_SPLINE, NOTHING = "teeth jump over", "flexible spline buckles", "nothing"
@@ -92,7 +91,7 @@ def has_fallen(drop: float, rows: Sequence[PointRow]) -> bool:
     return top > 0.0 and rows[-1]["torque_Nm"] < (1.0 - drop) * top
 
 
-def what_gave_way(design: DriveDesign, rows: Sequence[PointRow], teeth: Sequence[float]) -> str:
+def what_gave_way(kinematics: Kinematics, rows: Sequence[PointRow], teeth: Sequence[float]) -> str:
     """What the output's rotation since the peak went into: `AT_TEETH`, `IN_SPLINE`, or `NOTHING`
     without a peak.
 
@@ -102,31 +101,37 @@ def what_gave_way(design: DriveDesign, rows: Sequence[PointRow], teeth: Sequence
     if top == len(rows) - 1:
         return NOTHING
     output = (rows[-1]["rotation_arcmin"] - rows[top]["rotation_arcmin"]) / 60.0
-    turned = torque_direction(design.ratio) * (teeth[-1] - teeth[top])
-    between_teeth = output - turned if design.output_gear == "ring_gear" else turned
+    turned = kinematics.torque_direction * (teeth[-1] - teeth[top])
+    between_teeth = output - turned if kinematics.output_gear == "ring_gear" else turned
     return AT_TEETH if between_teeth > 0.5 * output else IN_SPLINE
 
 
 def evaluate_ratcheting(
-    design: DriveDesign, rows: Sequence[PointRow], teeth: Sequence[float], *, ended_early: bool
+    kinematics: Kinematics,
+    drop: float,
+    rows: Sequence[PointRow],
+    teeth: Sequence[float],
+    *,
+    ended_early: bool,
 ) -> RatchetingTorque:
     """The largest torque from the rows of program.csv of a design with [ratcheting].
 
+    drop : share of the peak by which the torque has to fall
     teeth : (n,) deg, rotation of the flexible spline's teeth at every row
     ended_early : whether no equilibrium was found behind the last row
     """
-    top, fallen = peak(rows), has_fallen(design.ratcheting.drop, rows)
+    top, fallen = peak(rows), has_fallen(drop, rows)
     beside = [rows[k]["torque_Nm"] for k in (top - 1, top + 1) if 0 <= k < len(rows)]
     return RatchetingTorque(
         peak_torque_Nm=rows[top]["torque_Nm"],
         peak_error_Nm=max((rows[top]["torque_Nm"] - torque for torque in beside), default=0.0),
         peak_rotation_deg=rows[top]["rotation_arcmin"] / 60.0,
-        peak_rotation_pitches=rows[top]["rotation_arcmin"] / 60.0 / pitch_angle(design),
+        peak_rotation_pitches=rows[top]["rotation_arcmin"] / 60.0 / kinematics.output_pitch,
         peak_step=rows[top]["step"],
         last_torque_Nm=rows[-1]["torque_Nm"],
         last_step=rows[-1]["step"],
         is_peak=top < len(rows) - 1,
-        gave_way=what_gave_way(design, rows, teeth),
+        gave_way=what_gave_way(kinematics, rows, teeth),
         ended="no equilibrium found"
         if ended_early
         else "torque fell"

@@ -12,39 +12,40 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
+from swgpar.design.kinematics import Kinematics
 from swgpar.evaluation.answers import answer, evaluation
 from swgpar.fem.stress import rotated_tensor
 from swgpar.geometry.rotation import rotated
-from swgpar.load.load_program import internal_torque
 from swgpar.model.drive_model import DriveModel
 from swgpar.results.history import Row, column, wrapped
 
 
-def history_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
+def history_rows(kinematics: Kinematics, rows: Sequence[Row]) -> list[Row]:
     """Rows of history.csv from those in the frame in which the drive is computed.
 
     With the wave generator fixed they have the ring gear's angle and its torque too: that of the
     teeth on the spline, which is the torque that drives the ring gear. `wg_angle_deg` is the angle
     against the ring gear in all layouts with the flexible spline as the output.
     """
-    if not design.wave_generator_is_fixed:
+    if not kinematics.wave_generator_is_fixed:
         return list(rows)
     return [
         {
             **row,
-            "output_angle_deg": shown_output(design, row["wg_angle_deg"], row["output_angle_deg"]),
-            "input_angle_deg": design.in_frame_of_result(0.0, row["wg_angle_deg"]),
+            "output_angle_deg": shown_output(
+                kinematics, row["wg_angle_deg"], row["output_angle_deg"]
+            ),
+            "input_angle_deg": kinematics.in_frame_of_result(0.0, row["wg_angle_deg"]),
             "input_torque_Nmm": row["tooth_torque_Nmm"],
         }
         for row in rows
     ]
 
 
-def shown_output(design: DriveDesign, wg_angle: float, output_angle: float) -> float:
+def shown_output(kinematics: Kinematics, wg_angle: float, output_angle: float) -> float:
     """Angle of the output (degrees), within half a turn, from angles (degrees) in the frame in
     which the drive is computed."""
-    return float(wrapped(np.array(design.in_frame_of_result(output_angle, wg_angle))))
+    return float(wrapped(np.array(kinematics.in_frame_of_result(output_angle, wg_angle))))
 
 
 def nodal_fields(
@@ -55,12 +56,12 @@ def nodal_fields(
 
     Displacements go from the undeformed place to that in the frame of the fixed member.
     """
-    if not model.design.wave_generator_is_fixed:
+    if not model.design.kinematics.wave_generator_is_fixed:
         return dict(fields)
     found = {}
     for name, body in model.elements.bodies.items():
         values, position = fields[name], body.positions()[body.owned]
-        back = np.full((len(position), 1), model.design.in_frame_of_result(0.0, angle))
+        back = np.full((len(position), 1), model.design.kinematics.in_frame_of_result(0.0, angle))
         found[name] = {
             **values,
             "displacement": rotated(position + values["displacement"], back) - position,
@@ -84,14 +85,19 @@ class InputTorque:
     torque_ripple: float | None = None
 
 
-def input_torque(design: DriveDesign, rows: Sequence[Row]) -> InputTorque | None:
-    """Over the increments `rows` of the rotation; None where the wave generator drives."""
-    if not design.wave_generator_is_fixed or not rows:
+def input_torque(
+    kinematics: Kinematics, output_torque: float, rows: Sequence[Row]
+) -> InputTorque | None:
+    """Over the increments `rows` of the rotation; None where the wave generator drives.
+
+    output_torque : N·m
+    """
+    if not kinematics.wave_generator_is_fixed or not rows:
         return None
     torque = column(rows, "tooth_torque_Nmm")
     mean = float(torque.mean())
     return InputTorque(
         torque_Nmm=mean,
-        torque_expected_Nmm=-internal_torque(design.ratio, design.load.torque) / design.input_ratio,
+        torque_expected_Nmm=-kinematics.internal_torque(output_torque) / kinematics.input_ratio,
         torque_ripple=float(np.ptp(torque)) / abs(mean) if mean else None,
     )

@@ -21,6 +21,7 @@ from swgpar.evaluation.period import of_period, sampling_error
 from swgpar.evaluation.places import STRESSES, Place
 from swgpar.evaluation.result_frame import InputTorque, input_torque
 from swgpar.evaluation.windows.root_stress import RootStress
+from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import Stage
 from swgpar.results.history import DECLARED, Row, column, transmission_error
 
@@ -89,14 +90,15 @@ class Rotation(AnswerGroup):
         has = {
             "all": True,
             "pancake": design.dynamic_spline is not None,
-            "wave generator fixed": design.wave_generator_is_fixed,
+            "wave generator fixed": design.kinematics.wave_generator_is_fixed,
         }
         missing = [mean.name for mean in MEAN_COLUMNS if not has[mean.drives]]
         return tuple(
             kind
             for kind in super().kinds(design)
             for group, _, name in [kind.name.partition(".")]
-            if name not in missing and (group != "input" or design.wave_generator_is_fixed)
+            if name not in missing
+            and (group != "input" or design.kinematics.wave_generator_is_fixed)
         )
 
     def answers(self) -> Iterator[Answer]:
@@ -115,7 +117,7 @@ class Rotation(AnswerGroup):
 
 
 def evaluate_rotation(
-    design: DriveDesign,
+    sequence: LoadSequence,
     rows: Sequence[Row],
     root_stress: RootStress | None,
     places: Mapping[str, Place],
@@ -124,11 +126,9 @@ def evaluate_rotation(
 
     root_stress, places : by which the errors of the means are known
     """
-    rotation = (
-        [] if design.has_program else [row for row in rows if int(row["step"]) >= Stage.ROTATE]
-    )
-    sampled = sampled_rows(design, rows)
-    driven = input_torque(design, sampled)
+    kinematics, rotation = sequence.kinematics, rotation_rows(sequence, rows)
+    sampled = sampled_rows(sequence, rows)
+    driven = input_torque(kinematics, sequence.torque, sampled)
     means: dict[str, float] = {}
     maxima: dict[str, float] = {}
     ripple = deviation = half = None
@@ -140,9 +140,9 @@ def evaluate_rotation(
         torque, mean = column(sampled, INPUT_TORQUE), means[INPUT_TORQUE]
         ripple = float(np.ptp(torque)) / abs(mean) if mean else None
         angles = column(sampled, "wg_angle_deg"), column(sampled, "output_angle_deg")
-        deviation = float(np.ptp(transmission_error(*angles, design.ratio)))
-        if design.steps.samples:
-            half = sampling_error(design, list(rows), tuple(names))
+        deviation = float(np.ptp(transmission_error(*angles, kinematics.ratio)))
+        if sequence.samples:
+            half = sampling_error(sequence, list(rows), tuple(names))
     return Rotation(
         means=means,
         maxima=maxima,
@@ -154,17 +154,22 @@ def evaluate_rotation(
         if rotation
         else None,
         input=driven,
-        wg_torque_expected_Nmm=1000.0 * design.load.torque / abs(design.ratio),
-        jammed=jamming_remark(design, sampled, means),
+        wg_torque_expected_Nmm=kinematics.wave_generator_torque(sequence.torque),
+        jammed=jamming_remark(sequence, sampled, means),
     )
 
 
-def sampled_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
+def rotation_rows(sequence: LoadSequence, rows: Sequence[Row]) -> list[Row]:
+    """Rows of the history that belong to the rotation; none in a load program."""
+    return [] if sequence.points else [row for row in rows if int(row["step"]) >= Stage.ROTATE]
+
+
+def sampled_rows(sequence: LoadSequence, rows: Sequence[Row]) -> list[Row]:
     """Rows of the history that stand for the rotation: those of the sampled period, or all; none in
     a load program."""
-    if design.steps.samples:
-        return of_period(design, list(rows))
-    return [] if design.has_program else [row for row in rows if int(row["step"]) >= Stage.ROTATE]
+    if sequence.samples:
+        return of_period(sequence, list(rows))
+    return rotation_rows(sequence, rows)
 
 
 def mesh_error(

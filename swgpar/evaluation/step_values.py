@@ -43,7 +43,9 @@ class StepValues(AnswerGroup):
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
         left_out = (
-            set() if design.wave_generator_is_fixed else {"input_angle_deg", "input_torque_Nmm"}
+            set()
+            if design.kinematics.wave_generator_is_fixed
+            else {"input_angle_deg", "input_torque_Nmm"}
         )
         return tuple(
             kind

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.answers import Answer, AnswerGroup, answer, evaluation
 from swgpar.evaluation.program_results import PointRow, work_by_torque
 from swgpar.load.load_program import (
@@ -19,10 +18,7 @@ from swgpar.load.load_program import (
     POSITIVE_LOADING,
     POSITIVE_UNLOADING,
     TRAVEL,
-    computed_position,
-    rated_torque,
-    stiffness_angles,
-    stiffness_torque,
+    StiffnessProgram,
 )
 
 ARC_MINUTE = np.pi / 10800.0
@@ -180,7 +176,7 @@ class Loop:
         return self.loading[0].at(torque) if torque > 0.0 else -self.unloading[1].at(-torque)
 
 
-def at_position(design: DriveDesign, rows: Sequence[PointRow]) -> Stiffness:
+def at_position(program: StiffnessProgram, rows: Sequence[PointRow]) -> Stiffness:
     """The stiffness from the rows of the loop at one angle of the wave generator, in the order of
     the program."""
     loop = Loop(rows)
@@ -189,8 +185,8 @@ def at_position(design: DriveDesign, rows: Sequence[PointRow]) -> Stiffness:
     def middle(side: int, torque: float) -> float:
         return 0.5 * (unloading[side].at(torque) + loading[side].at(torque))
 
-    top, share = stiffness_torque(design), design.stiffness.lost_motion_share * rated_torque(design)
-    ends = [0.0, *(b * top for b in design.stiffness.break_points), top]
+    top, share = program.torque, program.lost_motion_torque
+    ends = [0.0, *(b * top for b in program.section.break_points), top]
     line = np.array([0.5 * (middle(0, torque) + middle(1, torque)) for torque in ends])
     chords = np.diff(ends) / np.diff(line)
     return Stiffness(
@@ -227,41 +223,42 @@ def _loop_work(branches: Sequence[Sequence[PointRow]]) -> float:
     return work_by_torque([row for rows in branches for row in rows])
 
 
-def by_position(design: DriveDesign, rows: Sequence[PointRow]) -> dict[float, Stiffness]:
+def by_position(program: StiffnessProgram, rows: Sequence[PointRow]) -> dict[float, Stiffness]:
     """The stiffness at every angle (deg) of the wave generator, from all rows of program.csv."""
     return {
-        angle: at_position(design, here) for angle, here in rows_by_position(design, rows).items()
+        angle: at_position(program, here) for angle, here in rows_by_position(program, rows).items()
     }
 
 
-def rows_by_position(design: DriveDesign, rows: Sequence[PointRow]) -> dict[float, list[PointRow]]:
+def rows_by_position(
+    program: StiffnessProgram, rows: Sequence[PointRow]
+) -> dict[float, list[PointRow]]:
     """Rows of the loop that stands for every angle (deg) of the wave generator, from all rows of
     program.csv."""
-    angles = stiffness_angles(design)
-    found = {}
-    for k, angle in enumerate(angles):
-        computed = angles[computed_position(design, k)]
-        found[angle] = [row for row in rows if abs(row["wg_angle_deg"] - computed) < SAME_ANGLE]
-    return found
+    by_angle = {}
+    for k, angle in enumerate(program.angles):
+        computed = program.angles[program.computed(k)]
+        by_angle[angle] = [row for row in rows if abs(row["wg_angle_deg"] - computed) < SAME_ANGLE]
+    return by_angle
 
 
 def torsional_stiffness(
-    design: DriveDesign, rows: Sequence[PointRow], error: Mapping[str, float] | None
+    program: StiffnessProgram, rows: Sequence[PointRow], error: Mapping[str, float] | None
 ) -> TorsionalStiffness:
-    """The stiffness from all rows of program.csv of a design with [stiffness].
+    """The stiffness from all rows of program.csv.
 
     error : of every value by the mesh, None where it is not known
     """
-    found = by_position(design, rows)
-    table = {name: np.array([getattr(one, name) for one in found.values()]) for name in NAMES}
+    positions = by_position(program, rows)
+    table = {name: np.array([getattr(one, name) for one in positions.values()]) for name in NAMES}
     return TorsionalStiffness(
         **{name: float(values.mean()) for name, values in table.items()},
-        torque_Nm=stiffness_torque(design),
-        rated_torque_Nm=rated_torque(design),
-        break_points=tuple(design.stiffness.break_points),
+        torque_Nm=program.torque,
+        rated_torque_Nm=program.rated_torque,
+        break_points=tuple(program.section.break_points),
         spread=Stiffness(**{name: float(np.ptp(values)) for name, values in table.items()}),
         mesh_error=error,
         positions=tuple(
-            StiffnessAtAngle(**asdict(one), wg_angle_deg=angle) for angle, one in found.items()
+            StiffnessAtAngle(**asdict(one), wg_angle_deg=angle) for angle, one in positions.items()
         ),
     )

@@ -23,7 +23,7 @@ from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import split
 from swgpar.fem.stress import rotated_tensor
-from swgpar.load.load_program import program_points
+from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
 
@@ -36,7 +36,8 @@ class StressCycle:
 
     Parameters
     ----------
-    model : the drive, in which a period is sampled or which follows a load program
+    model : the drive
+    sequence : its load states, with a sampled period or a load program
 
     Attributes
     ----------
@@ -45,8 +46,8 @@ class StressCycle:
     touched : (n,) bool, nodes that a contact pressed in an owned sector
     """
 
-    def __init__(self, model: DriveModel) -> None:
-        self.model = model
+    def __init__(self, model: DriveModel, sequence: LoadSequence) -> None:
+        self.model, self.sequence = model, sequence
         self.body = model.elements.bodies[FLEXIBLE_SPLINE]
         mesh = self.body.layout.mesh
         lower = mesh.lower_nodes
@@ -59,7 +60,7 @@ class StressCycle:
 
         fields : nodal fields of the flexible spline, of `DriveModel.stresses`
         """
-        number = sample_of(self.model.design, state)
+        number = sample_of(self.sequence, state)
         if number is None:
             return
         self.samples[number] = sector_stress(self.body, fields)[:, self.nodes]
@@ -68,15 +69,12 @@ class StressCycle:
     @property
     def complete(self) -> bool:
         """Whether all samples of the period, or of the program, are there."""
-        design = self.model.design
-        return len(self.samples) == (
-            len(program_points(design)) if design.has_program else design.steps.samples
-        )
+        return len(self.samples) == (len(self.sequence.points) or self.sequence.samples)
 
     @property
     def angle(self) -> float:
         """Rotation of the wave generator (rad) after which the cycle of a sector repeats."""
-        return self.model.design.period_angle * self.body.layout.count
+        return self.sequence.kinematics.period_angle * self.body.layout.count
 
     def rows(self) -> dict[str, np.ndarray]:
         """The samples as rows of a checkpoint, by sector."""
@@ -104,7 +102,7 @@ class StressCycle:
         6) of the owned sectors, at whose nodes `mine` (n,) repeats.
         """
         samples = [self.samples[number] for number in sorted(self.samples)]
-        if self.model.design.has_program:
+        if self.sequence.points:
             mine = np.tile(np.arange(len(self.nodes)), len(samples[0]))
             return mine, np.stack([values.reshape(-1, 6) for values in samples])
         return history_by_renaming(self.model.comm, self.body.layout, self.nodes, samples)

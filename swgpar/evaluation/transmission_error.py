@@ -9,11 +9,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.design.deviations import TiltedOffset
+from swgpar.design.deviations import Deviations, TiltedOffset
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.kinematics import Kinematics
+from swgpar.design.sections import GearName
 from swgpar.evaluation.answers import AnswerGroup, AnswerKind, answer, evaluation
 from swgpar.evaluation.period import of_period
 from swgpar.evaluation.result_frame import shown_output
+from swgpar.load.load_sequence import LoadSequence
 from swgpar.results.history import Row, column, transmission_error
 
 COLUMNS = (
@@ -123,27 +126,30 @@ class TransmissionError(AnswerGroup):
             yield f"order {line.order:.3f}: {line.amplitude:.3g} arc seconds, {line.cause}"
 
 
-def turn_row(point: TurnPoint, design: DriveDesign) -> Row:
+def turn_row(point: TurnPoint, kinematics: Kinematics) -> Row:
     """Row of transmission_error.csv; the output's angle lies between -180 and 180 degrees."""
     angles = float(np.degrees(point.wg_angle)), float(np.degrees(point.output_angle))
-    return _row(design, *angles, point.wg_torque, point.iterations)
+    return _row(kinematics, *angles, point.wg_torque, point.iterations)
 
 
-def period_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
+def period_rows(sequence: LoadSequence, rows: Sequence[Row]) -> list[Row]:
     """Rows of transmission_error.csv of the ideal drive from the history of its sampled period;
     none without one."""
-    if not design.steps.samples or len(rows) < design.steps.samples or not design.load.torque:
+    if not sequence.samples or len(rows) < sequence.samples or not sequence.torque:
         return []
     names = ("wg_angle_deg", "output_angle_deg", "wg_torque_Nmm", "newton_iterations")
-    return [_row(design, *(row[name] for name in names)) for row in of_period(design, list(rows))]
+    return [
+        _row(sequence.kinematics, *(row[name] for name in names))
+        for row in of_period(sequence, list(rows))
+    ]
 
 
 def _row(
-    design: DriveDesign, wg_angle: float, output_angle: float, wg_torque: float, iterations: int
+    kinematics: Kinematics, wg_angle: float, output_angle: float, wg_torque: float, iterations: int
 ) -> Row:
     """Angles in degrees, in the frame in which the drive is computed; torque in N mm."""
-    error = transmission_error(np.array(wg_angle), np.array(output_angle), design.ratio)
-    shown = shown_output(design, wg_angle, output_angle)
+    error = transmission_error(np.array(wg_angle), np.array(output_angle), kinematics.ratio)
+    shown = shown_output(kinematics, wg_angle, output_angle)
     return dict(zip(COLUMNS, (wg_angle, shown, float(error), wg_torque, iterations), strict=True))
 
 
@@ -167,23 +173,23 @@ class Causes:
 
     Parameters
     ----------
-    design : the drive;  turns : of the wave generator over which the spectrum was taken
+    kinematics : of the drive;  deviations : None of the ideal drive
+    turns : of the wave generator over which the spectrum was taken
     """
 
-    def __init__(self, design: DriveDesign, turns: float) -> None:
-        self.design, self.turns = design, turns
-        fixed = round(2.0 * np.pi / design.period_angle)
-        self.mesh = math.lcm(fixed, design.lobes)
-        parts = {
-            "ring gear": _kinds(design, "ring_gear"),
-            "flexible spline": _kinds(design, "flexible_spline"),
-        }
-        moving = design.output_gear.replace("_", " ")
-        passes = 1.0 - 1.0 / design.ratio
+    def __init__(self, kinematics: Kinematics, deviations: Deviations | None, turns: float) -> None:
+        self.kinematics, self.turns = kinematics, turns
+        self.mesh = math.lcm(kinematics.teeth(kinematics.standing_gear), kinematics.lobes)
+        self.of_wave_generator = _kinds(deviations, "wave_generator")
+        gears: tuple[GearName, ...] = ("ring_gear", "flexible_spline")
         self.gears = [
-            (name, kinds, passes if name == moving else 1.0)
-            for name, kinds in parts.items()
-            if kinds
+            (
+                gear.replace("_", " "),
+                kinds,
+                1.0 - 1.0 / kinematics.ratio if gear == kinematics.output_gear else 1.0,
+            )
+            for gear in gears
+            if (kinds := _kinds(deviations, gear))
         ]
 
     def of(self, order: float) -> str:
@@ -197,26 +203,26 @@ class Causes:
             times = round(order / passes)
             if times and abs(order - times * passes) < half:
                 found.append(f"{name} ({', '.join(kinds)}), {times} per turn against it")
-        output = 1.0 / abs(self.design.ratio)
+        output = 1.0 / abs(self.kinematics.ratio)
         times = round(order / output)
         if (
             not found
             and times
             and abs(order - times * output) < half
-            and self.turns >= abs(self.design.ratio)
+            and self.turns >= abs(self.kinematics.ratio)
         ):
-            against = " against the ring gear" if self.design.wave_generator_is_fixed else ""
+            against = " against the ring gear" if self.kinematics.wave_generator_is_fixed else ""
             found.append(f"output, {times} per turn{against}")
-        if round(order) == 1 and (kinds := _kinds(self.design, "wave_generator")):
-            found.append(f"wave generator ({', '.join(kinds)})")
+        if round(order) == 1 and self.of_wave_generator:
+            found.append(f"wave generator ({', '.join(self.of_wave_generator)})")
         return " or ".join(found) or "combined"
 
 
-def _kinds(design: DriveDesign, part: str) -> list[str]:
+def _kinds(deviations: Deviations | None, part: str) -> list[str]:
     """Kinds of deviations of a part that are not zero."""
-    if design.deviations is None:
+    if deviations is None:
         return []
-    section = getattr(design.deviations, part)
+    section = getattr(deviations, part)
     kinds = []
     if not isinstance(section, TiltedOffset) or part == "ring_gear":
         kinds += ["pitch"] if section.pitch_errors or section.pitch_grade else []
@@ -224,7 +230,7 @@ def _kinds(design: DriveDesign, part: str) -> list[str]:
     kinds += ["tilt"] if getattr(section, "tilt", 0.0) else []
     kinds += ["ovality"] if getattr(section, "ovality", 0.0) else []
     if part == "flexible_spline":
-        cup = design.deviations.cup
+        cup = deviations.cup
         kinds += [
             name
             for name, value in (("cup eccentricity", cup.eccentricity), ("cup tilt", cup.tilt))
@@ -233,14 +239,20 @@ def _kinds(design: DriveDesign, part: str) -> list[str]:
     return kinds
 
 
-def evaluate_turns(design: DriveDesign, rows: Sequence[Row]) -> TransmissionError | None:
-    """The transmission error from the rows of transmission_error.csv; None without rows."""
+def evaluate_turns(
+    kinematics: Kinematics, deviations: Deviations | None, samples: int, rows: Sequence[Row]
+) -> TransmissionError | None:
+    """The transmission error from the rows of transmission_error.csv; None without rows.
+
+    samples : rows of a period without deviations
+    """
     if not rows:
         return None
-    turns = len(rows) * _step(design) / (2.0 * np.pi)
+    per_period = samples if deviations is None else deviations.angles_per_pitch
+    turns = len(rows) * (kinematics.period_angle / per_period) / (2.0 * np.pi)
     error, torque = column(rows, "transmission_error_arcsec"), column(rows, "wg_torque_Nmm")
     mean = float(torque.mean())
-    causes = Causes(design, turns)
+    causes = Causes(kinematics, deviations, turns)
     return TransmissionError(
         turns=turns,
         angles=len(rows),
@@ -255,14 +267,6 @@ def evaluate_turns(design: DriveDesign, rows: Sequence[Row]) -> TransmissionErro
             spectrum=_named(torque, turns, causes),
         ),
     )
-
-
-def _step(design: DriveDesign) -> float:
-    """Angle (rad) of the wave generator between two rows."""
-    count = (
-        design.steps.samples if design.deviations is None else design.deviations.angles_per_pitch
-    )
-    return design.period_angle / count
 
 
 def _named(values: np.ndarray, turns: float, causes: Causes) -> tuple[SpectrumLine, ...]:

@@ -25,8 +25,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.exchange.calculix_model import JobModel, Surface, Term
 from swgpar.exchange.cam_facets import OUTER_FACE, CamFacets, cam_facets
-from swgpar.load.load_program import internal_torque
-from swgpar.load.load_sequence import counts_as_none, negligible_torque
+from swgpar.load.load_sequence import negligible_torque
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.inp import write_inp
 
@@ -95,8 +94,8 @@ def _check(design: DriveDesign) -> None:
             refuse(key, "a design without it")
     if design.has_attachment:
         refuse(f'cup.attachment = "{design.cup.attachment}"', '"edge"')
-    if not design.load.torque or counts_as_none(design):
-        least = 0.001 * negligible_torque(design)
+    least = 0.001 * negligible_torque(design)
+    if design.load.torque <= least:
         refuse(
             f"load.torque = {design.load.torque:g} N·m",
             f"above {least:.3g} N·m, which closes the backlash",
@@ -116,7 +115,7 @@ def _equation(terms: list[Term]) -> Iterator[str]:
 
 
 def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
-    design, ring_fixed = model.design, model.design.standing_gear == "ring_gear"
+    design, ring_fixed = model.design, model.design.kinematics.standing_gear == "ring_gear"
     output = len(model.points) + len(cam.points)
     bore, outer = model.surface(model.spline, "bore"), model.surface(model.ring, "outer")
     planar = ("ALL_NODES, 3, 3",) if model.plane else ()
@@ -213,7 +212,7 @@ def _bend(model: JobModel, dependent: set[int], held: Iterable[str]) -> Iterator
 
 def _torque(model: JobModel, surface: Surface) -> Iterator[str]:
     """Forces of the torque: those of the distributing coupling at the angle zero of the output."""
-    torque = internal_torque(model.design.ratio, model.design.load.torque)
+    torque = model.design.kinematics.internal_torque(model.design.load.torque)
     x = model.points[surface.nodes, :2]
     share = torque * surface.weight / float((surface.weight * (x**2).sum(axis=1)).sum())
     yield "*CLOAD"

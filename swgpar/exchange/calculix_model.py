@@ -22,7 +22,6 @@ from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.profiles.flank import Segment
 from swgpar.geometry.profiles.rigid_teeth import RigidTeeth
 from swgpar.geometry.rotation import rotated
-from swgpar.load.load_program import torque_direction
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
 from swgpar.meshing.export import sector_numbers, whole_body, whole_drive
 from swgpar.meshing.inp import element_faces
@@ -168,7 +167,7 @@ class JobModel:
         closing = abs(self.faceted_teeth().touching_rotation())
         if not np.isfinite(closing):  # the loaded state has to find the flanks
             closing = self.design.backlash_angle
-        return torque_direction(self.design.ratio) * closing
+        return self.design.kinematics.torque_direction * closing
 
     def housing(self, surface: Surface) -> Iterator[list[Term]]:
         """The nodes of a surface, that of the ring gear, move along its circle and the axis.

@@ -74,7 +74,7 @@ def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
             "run, --ripple FOLDER"
         )
     if (
-        summary.design.wave_generator_is_fixed
+        summary.design.kinematics.wave_generator_is_fixed
     ):  # the columns of both runs count the rotation of the wave generator
         raise InputError(
             f'drive.layout = "{summary.design.drive.layout}" is not available with the format fmu: '

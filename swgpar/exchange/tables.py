@@ -10,7 +10,7 @@ import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.evaluation.stiffness import Loop, rows_by_position
-from swgpar.load.load_program import stiffness_torques
+from swgpar.load.load_program import stiffness_program
 from swgpar.results.table import format_columns
 
 if TYPE_CHECKING:
@@ -84,13 +84,13 @@ def write_look_up(result: DriveData, folder: Path) -> list[Path]:
 def spring_table(result: DriveData) -> dict[str, np.ndarray]:
     """Columns of spring.csv of a run with [stiffness]: wind-up at the torques of its loops, mean
     over the positions."""
-    design = result.summary.design
+    program = stiffness_program(result.summary.design)
     rows = [
         dict(zip(result.program, values, strict=True))
         for values in zip(*result.program.values(), strict=True)
     ]
-    loops = [Loop(here) for here in rows_by_position(design, rows).values()]
-    torques = np.array(stiffness_torques(design))
+    loops = [Loop(here) for here in rows_by_position(program, rows).values()]
+    torques = np.array(program.torques)
     levels = np.concatenate([-torques[::-1], torques])
     rising = np.mean([[loop.rising(torque) for torque in levels] for loop in loops], axis=0)
     falling = np.mean([[loop.falling(torque) for torque in levels] for loop in loops], axis=0)

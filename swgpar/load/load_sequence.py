@@ -5,13 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.kinematics import Kinematics
+from swgpar.design.sections import Steps
 from swgpar.geometry.cams import pin_travel
-from swgpar.load.load_program import ProgramPoint, internal_torque, program_points
+from swgpar.load.load_program import ProgramPoint, program_points
 from swgpar.load.load_states import (
     CAM_START_CLEARANCE,
     FLANK_START_CLEARANCE,
@@ -43,12 +44,6 @@ def negligible_torque(design: DriveDesign) -> float:
     return NEGLIGIBLE * force * radius
 
 
-def counts_as_none(design: DriveDesign) -> bool:
-    """Whether the design has a torque that is too small beside the bending of the flexible
-    spline."""
-    return 0.0 < 1000.0 * design.load.torque <= negligible_torque(design)
-
-
 def start_state(design: DriveDesign) -> LoadState:
     """Undeformed drive; the pins, or the shrunk cam, touch the inner surface."""
     travel = pin_travel(design.cam(), design.inner_radius, design.lobes)
@@ -59,16 +54,29 @@ def start_state(design: DriveDesign) -> LoadState:
 
 @dataclass(frozen=True)
 class LoadSequence:
-    """The load states of a run.
+    """The load states of a run, and what evaluations need to know of them.
 
+    kinematics : of the drive
     start : undeformed drive
     states : at the ends of all increments, in order
     points : of the load program; empty without one
+    torque : N·m, `load.torque`
+    rotation, increment : deg, `steps.rotation` and `steps.increment`
+    samples : angles of one period that are computed and continued by symmetry; 0 without
+    periods : that are computed with them: two with friction, whose state settles in the first
+    repeats : whether the drive is in the same state again after a period of its motion
     """
 
+    kinematics: Kinematics
     start: LoadState
     states: tuple[LoadState, ...]
-    points: tuple[ProgramPoint, ...] = ()
+    points: tuple[ProgramPoint, ...]
+    torque: float
+    rotation: float
+    increment: float
+    samples: int
+    periods: int
+    repeats: bool
 
     @property
     def loaded(self) -> LoadState:
@@ -78,10 +86,10 @@ class LoadSequence:
     @property
     def from_loaded(self) -> tuple[LoadState, ...]:
         """The states from the fully loaded one on."""
-        ends = [k for k, state in enumerate(self.states) if state.stage == Stage.LOAD]
+        loaded = [k for k, state in enumerate(self.states) if state.stage == Stage.LOAD]
         first = (
-            ends[-1]
-            if ends
+            loaded[-1]
+            if loaded
             else next(k for k, state in enumerate(self.states) if state.stage == Stage.PROGRAM)
         )
         return self.states[first:]
@@ -89,34 +97,37 @@ class LoadSequence:
 
 def load_sequence(design: DriveDesign) -> LoadSequence:
     """All load states of a run."""
-    start, points = start_state(design), tuple(program_points(design))
-    states = [*_deflection(start, design.steps.deflect_increments), *_engagement(design)]
-    states += _program(points, design.ratio) if points else _rotation(design)
+    kinematics, steps, start = design.kinematics, design.steps, start_state(design)
+    points, module = tuple(program_points(design)), design.drive.module
+    states = [
+        *_deflection(start, steps.deflect_increments),
+        *_engagement(
+            steps.engage_increments, module, design.deflection if design.uses_pins else 0.0
+        ),
+    ]
+    if points:
+        states += _program(points, kinematics)
+    else:
+        torque = kinematics.internal_torque(design.load.torque)
+        counts = abs(torque) > negligible_torque(design)
+        angles = rotation_angles(steps, kinematics.period_angle, design.periods)
+        states += _rotation(
+            torque if counts else 0.0, steps.load_increments, angles, kinematics.ratio
+        )
     if design.dynamic_spline is not None:
         states = [replace(state, spline_held=state.control == "rotation") for state in states]
-    return LoadSequence(start, tuple(states), points)
-
-
-def _rotation(design: DriveDesign) -> Iterator[LoadState]:
-    """The stages LOAD and ROTATE."""
-    torque = 0.0 if counts_as_none(design) else internal_torque(design.ratio, design.load.torque)
-    control: Literal["rotation", "torque"] = "torque" if torque else "rotation"
-    loaded = LoadState(Stage.LOAD, 3, cam_clearance=0.0, flank_clearance=0.0, control=control)
-    if torque:
-        n = design.steps.load_increments
-        for i in range(1, n + 1):
-            yield replace(loaded, torque=torque * i / n)
-    else:
-        yield loaded
-    for i, angle in enumerate(rotation_angles(design), start=1):
-        yield replace(
-            loaded,
-            stage=Stage.ROTATE,
-            step=3 + i,
-            angle=angle,
-            torque=torque,
-            output_rotation=angle / design.ratio,
-        )
+    return LoadSequence(
+        kinematics=kinematics,
+        start=start,
+        states=tuple(states),
+        points=points,
+        torque=design.load.torque,
+        rotation=steps.rotation,
+        increment=steps.increment,
+        samples=steps.samples,
+        periods=design.periods,
+        repeats=not design.is_bolted,
+    )
 
 
 def _deflection(start: LoadState, increments: int) -> Iterator[LoadState]:
@@ -128,20 +139,40 @@ def _deflection(start: LoadState, increments: int) -> Iterator[LoadState]:
             yield LoadState(Stage.DEFLECT, 1, cam_clearance=start.cam_clearance * left)
 
 
-def _engagement(design: DriveDesign) -> Iterator[LoadState]:
-    pins, module, n = design.uses_pins, design.drive.module, design.steps.engage_increments
-    for i in range(1, n + 1):
-        t = i / n
+def _engagement(increments: int, module: float, by_pins: float) -> Iterator[LoadState]:
+    """by_pins : mm, deflection by pins; 0 where the cam has grown"""
+    for i in range(1, increments + 1):
+        t = i / increments
         yield LoadState(
             Stage.ENGAGE,
             2,
-            cam_clearance=CAM_START_CLEARANCE * module * (1.0 - t) if pins else 0.0,
+            cam_clearance=CAM_START_CLEARANCE * module * (1.0 - t) if by_pins else 0.0,
             flank_clearance=FLANK_START_CLEARANCE * module * (1.0 - t),
-            pin_inset=PIN_RETRACTION * design.deflection * t if pins and i < n else None,
+            pin_inset=PIN_RETRACTION * by_pins * t if by_pins and i < increments else None,
         )
 
 
-def _program(points: Sequence[ProgramPoint], ratio: float) -> Iterator[LoadState]:
+def _rotation(
+    torque: float, increments: int, angles: Sequence[float], ratio: float
+) -> Iterator[LoadState]:
+    """The stages LOAD and ROTATE.
+
+    torque : N mm, about z on the output;  increments : of the torque
+    angles : rad, of the wave generator
+    """
+    loaded = LoadState(Stage.LOAD, 3, cam_clearance=0.0, flank_clearance=0.0)
+    if torque:
+        loaded = replace(loaded, control="torque", torque=torque)
+        for i in range(1, increments):
+            yield replace(loaded, torque=torque * i / increments)
+    yield loaded
+    for step, angle in enumerate(angles, start=int(Stage.ROTATE)):
+        yield replace(
+            loaded, stage=Stage.ROTATE, step=step, angle=angle, output_rotation=angle / ratio
+        )
+
+
+def _program(points: Sequence[ProgramPoint], kinematics: Kinematics) -> Iterator[LoadState]:
     for step, point in enumerate(points, start=int(Stage.LOAD)):
         state = LoadState(
             Stage.PROGRAM,
@@ -151,22 +182,22 @@ def _program(points: Sequence[ProgramPoint], ratio: float) -> Iterator[LoadState
             flank_clearance=0.0,
         )
         if point.control == "torque":
-            yield replace(state, control="torque", torque=internal_torque(ratio, point.value))
+            torque = kinematics.internal_torque(point.value)
+            yield replace(state, control="torque", torque=torque)
         else:
             yield replace(state, output_rotation=float(np.radians(point.value)))
 
 
-def rotation_angles(design: DriveDesign) -> list[float]:
+def rotation_angles(steps: Steps, period: float, periods: int) -> list[float]:
     """Angles (rad) of the wave generator at the ends of the computed increments of its rotation.
 
-    With `steps.samples` these are the angles of one period. The last one is left out, because the
-    drive is then in its loaded state again. With friction they are the angles of two periods; the
-    slip settles in the first one.
+    With `steps.samples` these are the angles of one period (rad). The last one is left out, because
+    the drive is then in its loaded state again. Of two periods, the first of which settles, it is
+    not.
     """
-    steps = design.steps
     if steps.samples:
-        count = 2 * steps.samples if design.contact.friction else steps.samples - 1
-        return [design.period_angle * i / steps.samples for i in range(1, count + 1)]
+        count = steps.samples - 1 if periods == 1 else periods * steps.samples
+        return [period * i / steps.samples for i in range(1, count + 1)]
     count = int(np.ceil(round(steps.rotation / steps.increment, 9)))
     return [
         float(np.radians(min(i * steps.increment, steps.rotation))) for i in range(1, count + 1)

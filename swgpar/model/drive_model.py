@@ -99,7 +99,7 @@ class DriveModel:
     @property
     def fixed_body(self) -> str:
         """Name of the gear that does not rotate in the frame in which the drive is computed."""
-        return self.design.standing_gear
+        return self.design.kinematics.standing_gear
 
     def omitted_bending_stress(self) -> float:
         """Stress (MPa) that condensed sectors leave out in the present state: E theta^2 / 8 where
@@ -214,7 +214,7 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
 
 def build_layouts(design: DriveDesign, meshes: Mapping[str, SectorMesh]) -> list[BodyLayout]:
     """Modelled sectors of the gears and of the outer race."""
-    held = design.standing_gear if design.frame_is_rigid else None
+    held = design.kinematics.standing_gear if design.frame_is_rigid else None
     layouts = [
         build_layout(
             build_gear(mesh, design.materials, design.drive.face_width),
@@ -238,7 +238,7 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
     copies = design.copies
     # a plane section with deviations is centred by its cam alone: the wall of the cup gives way
     centred = design.has_cup or (design.drive.model == "plane" and design.deviations is None)
-    rotates, guide = design.output_gear != "flexible_spline", None
+    rotates, guide = design.kinematics.output_gear != "flexible_spline", None
     couplings: list[NodeMeans] = []
     if design.has_attachment:
         penalty = design.penalty("flexible_spline")
@@ -247,17 +247,19 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
     else:
         couplings.append(DistributingCoupling(partition, spline, "bore", copies > 1, centred))
     if rotates or not design.frame_is_rigid:
-        ring = elements.bodies[design.output_gear if rotates else RING_GEAR]
+        ring = elements.bodies[design.kinematics.output_gear if rotates else RING_GEAR]
         ring_coupling = DistributingCoupling(partition, ring, "outer", copies > 1)
         couplings.append(ring_coupling)
         if design.frame_is_rigid:
-            ends = design.axial_range(design.output_gear)
-            guide = ring_guide(ring_coupling, ends, copies, design.penalty(design.output_gear))
+            ends = design.axial_range(design.kinematics.output_gear)
+            guide = ring_guide(
+                ring_coupling, ends, copies, design.penalty(design.kinematics.output_gear)
+            )
     scale = design.modulus_of("flexible_spline") * design.drive.module
     race = None if design.bearing is None else race_coupling(partition, elements, couplings[0])
     spline_ratio = None
     if design.dynamic_spline is not None:  # the flexible spline rotates with the dynamic one
-        spline_ratio = 1.0 if design.output_gear == "dynamic_spline" else 0.0
+        spline_ratio = 1.0 if design.kinematics.output_gear == "dynamic_spline" else 0.0
     return Supports(
         partition,
         couplings,

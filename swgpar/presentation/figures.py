@@ -242,7 +242,7 @@ class DriveFigures(FigureSet):
     @property
     def _angle(self) -> str:
         """Title of the axis with the column `wg_angle_deg`."""
-        fixed = self._design.wave_generator_is_fixed
+        fixed = self._design.kinematics.wave_generator_is_fixed
         return ANGLE_AGAINST_RING if fixed else ANGLE
 
     def _panels(self, count: int) -> tuple[Figure, list[Axes]]:

@@ -66,8 +66,9 @@ def test_fatigue_over_a_program_on_any_ranks() -> None:
 
     def found(comm: MPI.Comm) -> SafetyAndLife:
         stepper = load_stepper(design, comm)
-        cycle = StressCycle(stepper.model)
-        for state in load_sequence(design).states:
+        sequence = load_sequence(design)
+        cycle = StressCycle(stepper.model, sequence)
+        for state in sequence.states:
             stepper.advance(state)
             cycle.keep(stepper.load_state, stepper.model.stresses()[1][FLEXIBLE_SPLINE])
         assert cycle.complete

@@ -80,7 +80,11 @@ def test_renamed_deviations_are_those_of_a_drive_that_is_rotated(layout: str) ->
         "deviations.flexible_spline.profile_slope=5",
     )
     drive = deviating(*overrides)
-    tables, step, ratio = drive.tables, drive.design.period_angle / 2.0, drive.design.ratio
+    tables, step, ratio = (
+        drive.tables,
+        drive.design.kinematics.period_angle / 2.0,
+        drive.design.kinematics.ratio,
+    )
     found = points(drive, (0, 1, 7))
     stepper = loaded_stepper(turn_design(small("plane", 'deviations.mesh="same"', *overrides)))
     drive.model.problem = stepper.problem

@@ -73,7 +73,7 @@ def test_a_study_measures_what_it_offers(overrides: tuple[str, ...]) -> None:
     assert (
         ("input.torque" in measured)
         == ("input.torque" in offered)
-        == design.wave_generator_is_fixed
+        == design.kinematics.wave_generator_is_fixed
     )
 
 

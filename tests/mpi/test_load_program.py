@@ -22,7 +22,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.evaluation.program_results import PointRow, point_rows, work_by_torque
 from swgpar.evaluation.ratcheting import AT_TEETH
-from swgpar.load.load_program import FIRST_LOADING, NO_TORQUE, pitch_angle, program_points
+from swgpar.load.load_program import FIRST_LOADING, NO_TORQUE, program_points
 from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
@@ -111,7 +111,7 @@ def test_the_loop_with_friction_is_the_work_of_friction() -> None:
         stepper.advance(state)
         rows.append(stepper.row())
         done.append(work.total if work else 0.0)
-    points = point_rows(program_points(design), design.ratio, rows)
+    points = point_rows(program_points(design), design.kinematics, rows)
     first = max(k for k, point in enumerate(points) if point["stage"] == FIRST_LOADING)
     dissipated = done[-1] - done[-len(points) + first]
     area = work_by_torque(points[first:])
@@ -168,7 +168,7 @@ def follow(design: DriveDesign) -> list[PointRow]:
     for state in load_sequence(design).states:
         stepper.advance(state)
         rows.append(stepper.row())
-    return point_rows(program_points(design), design.ratio, rows)
+    return point_rows(program_points(design), design.kinematics, rows)
 
 
 def test_a_program_changes_between_torque_and_rotation() -> None:
@@ -212,7 +212,7 @@ def test_the_torque_repeats_after_a_jump() -> None:
     """Turned by one pitch with the wave generator locked, the output is where its neighbouring
     teeth were."""
     design = small("plane").with_values(LOW_TEETH)
-    pitch = pitch_angle(design)
+    pitch = design.kinematics.output_pitch
     angles = [0.05 * pitch, 0.5 * pitch, 1.05 * pitch]
     stages = [{"name": f"to {k}", "output_rotation": angle} for k, angle in enumerate(angles)]
     rows = follow(design.with_values({"load.program": stages}))

@@ -50,7 +50,7 @@ def test_balance_and_period(layout: str) -> None:
     state is the same."""
     ratio, teeth = LAYOUTS[layout]
     design = pancake(f"drive.layout={layout}")
-    assert design.ratio == ratio
+    assert design.kinematics.ratio == ratio
     stepper, first = loaded(design)
     tooth, second, cam = (
         first["tooth_torque_Nmm"],

@@ -70,7 +70,7 @@ def error(model: DriveModel, known: list[float], angle: float, slip: float = 0.0
 @pytest.mark.parametrize("pitches", [1, 3, -2])
 @pytest.mark.parallel([1, 2, 3])
 def test_whole_pitches_are_exact(model: DriveModel, pitches: int) -> None:
-    assert error(model, [0.0], pitches * model.design.period_angle) < 1e-11
+    assert error(model, [0.0], pitches * model.design.kinematics.period_angle) < 1e-11
 
 
 @pytest.mark.parametrize("teeth", [1, -2])
@@ -89,7 +89,7 @@ def test_between_them_cubic_polynomials_interpolate(model: DriveModel) -> None:
     """Error of the middle: 9/16 of a pitch (the spline's, the larger) to the fourth, over 4!, times
     a derivative."""
     pitch = 2.0 * np.pi / model.design.drive.teeth_fs
-    middle = error(model, [0.0], 0.5 * model.design.period_angle)
+    middle = error(model, [0.0], 0.5 * model.design.kinematics.period_angle)
     assert 0.5 < middle / (9.0 / 16.0 / 24.0 * (2.0 * pitch) ** 4) < 1.02
 
 
@@ -97,7 +97,7 @@ def test_between_them_cubic_polynomials_interpolate(model: DriveModel) -> None:
 def test_more_states_make_it_better(model: DriveModel) -> None:
     """Halfway between two states a quarter of a pitch apart the error is that of the shorter
     distance."""
-    pitch = model.design.period_angle
+    pitch = model.design.kinematics.period_angle
     alone = error(model, [0.0], 0.5 * pitch)
     close = error(model, [0.0, 0.25 * pitch, 0.75 * pitch], 0.5 * pitch)
     assert close < 0.04 * alone

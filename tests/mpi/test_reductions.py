@@ -319,16 +319,19 @@ def test_the_continued_history_is_that_of_a_longer_rotation() -> None:
     design = load_design(DESIGN, [*PLANE, "steps.samples=4", "steps.rotation=11"])
     stepper = load_stepper(design)
     rows = []
-    for item in load_sequence(design).states:
+    sequence = load_sequence(design)
+    for item in sequence.states:
         stepper.advance(item)
         if item.stage >= Stage.LOAD:
             rows.append({**stepper.row(), **stepper.model.stresses()[0], "wall_s": 1.0})
-    again, following = continued(design, rows)[4:6]
-    assert again["wg_angle_deg"] == pytest.approx(np.degrees(design.period_angle))
+    again, following = continued(sequence, rows)[4:6]
+    assert again["wg_angle_deg"] == pytest.approx(np.degrees(design.kinematics.period_angle))
     assert {k: again[k] for k in STATE} == {k: rows[0][k] for k in STATE}
-    stepper.advance(replace(stepper.load_state, angle=1.25 * design.period_angle))
+    stepper.advance(replace(stepper.load_state, angle=1.25 * design.kinematics.period_angle))
     computed = row(stepper)
-    assert following["wg_angle_deg"] == pytest.approx(np.degrees(1.25 * design.period_angle))
+    assert following["wg_angle_deg"] == pytest.approx(
+        np.degrees(1.25 * design.kinematics.period_angle)
+    )
     assert_same(following, computed, 1e-6)
 
 

@@ -16,6 +16,7 @@ from support.paths import RECIPE
 from support.stepping import WORLD, loaded, rotate, small
 from swgpar.evaluation.stress_cycle import StressCycle, sector_stress
 from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.load.load_sequence import load_sequence
 
 SAMPLED = ("steps.samples=2", "steps.rotation=9.0")
 WITH = ("fatigue.size_factor=1.0", "losses.loss_factor=3e-4")
@@ -25,9 +26,9 @@ def sampled(model: str, layout: str, comm: MPI.Comm) -> StressCycle:
     """The cycle of the small drive from two angles of a period."""
     design = small(model, *SAMPLED, *WITH, f"drive.layout={layout}")
     stepper, _ = loaded(design, comm)
-    cycle = StressCycle(stepper.model)
+    cycle = StressCycle(stepper.model, load_sequence(design))
     cycle.keep(stepper.load_state, stepper.model.stresses()[1][FLEXIBLE_SPLINE])
-    rotate(stepper, 0.5 * design.period_angle)
+    rotate(stepper, 0.5 * design.kinematics.period_angle)
     cycle.keep(stepper.load_state, stepper.model.stresses()[1][FLEXIBLE_SPLINE])
     assert cycle.complete
     return cycle
@@ -44,7 +45,7 @@ def test_renaming_teeth_gives_the_turn(layout: str) -> None:
     body, found = stepper.model.elements.bodies[FLEXIBLE_SPLINE], []
     for k in range(len(renamed)):
         if k:
-            rotate(stepper, 0.5 * k * cycle.model.design.period_angle)
+            rotate(stepper, 0.5 * k * cycle.model.design.kinematics.period_angle)
         found.append(
             sector_stress(body, stepper.model.stresses()[1][FLEXIBLE_SPLINE])[0, cycle.nodes]
         )
@@ -57,13 +58,14 @@ def test_renaming_teeth_in_the_cup() -> None:
     pitch."""
     design = small("cup", "steps.samples=1", "steps.rotation=9.0", *WITH)
     stepper, _ = loaded(design, MPI.COMM_SELF)
-    cycle, body = StressCycle(stepper.model), stepper.model.elements.bodies[FLEXIBLE_SPLINE]
+    cycle = StressCycle(stepper.model, load_sequence(design))
+    body = stepper.model.elements.bodies[FLEXIBLE_SPLINE]
     cycle.keep(stepper.load_state, stepper.model.stresses()[1][FLEXIBLE_SPLINE])
     _, renamed = cycle.history()
     assert len(renamed) == body.layout.count
     for pitch in range(1, len(renamed)):
         for half in (0.5, 0.0):
-            rotate(stepper, (pitch - half) * design.period_angle)
+            rotate(stepper, (pitch - half) * design.kinematics.period_angle)
         found = sector_stress(body, stepper.model.stresses()[1][FLEXIBLE_SPLINE])[0, cycle.nodes]
         assert np.abs(found - renamed[pitch]).max() < 1e-6 * np.abs(renamed).max()
     assert np.abs(renamed[1] - renamed[0]).max() > 1e-2 * np.abs(renamed).max()

@@ -114,15 +114,19 @@ def test_period_and_work() -> None:
     stepper.advance(next(s for s in load_sequence(design).states if s.stage == Stage.LOAD))
     first = row(stepper)
     rows = [
-        rotate(stepper, design.period_angle * k / PERIOD_SAMPLES)
+        rotate(stepper, design.kinematics.period_angle * k / PERIOD_SAMPLES)
         for k in range(1, PERIOD_SAMPLES + 1)
     ]
     last = rows[-1]
     assert_agree(last, first, (*STATE[:-1], *TORQUES), 1e-6)
     turned = last["output_angle_deg"] - first["output_angle_deg"]
-    assert turned == pytest.approx(np.degrees(design.period_angle) / design.ratio, rel=1e-7)
+    assert turned == pytest.approx(
+        np.degrees(design.kinematics.period_angle) / design.kinematics.ratio, rel=1e-7
+    )
     mean = np.mean([r["wg_torque_Nmm"] for r in rows])
-    assert abs(mean) == pytest.approx(1000.0 * design.load.torque / abs(design.ratio), rel=1e-3)
+    assert abs(mean) == pytest.approx(
+        1000.0 * design.load.torque / abs(design.kinematics.ratio), rel=1e-3
+    )
 
 
 @both_models

@@ -61,7 +61,9 @@ class Group:
         if self.steps:
             return {}
         try:
-            pitch = float(np.degrees(make_drive(table_of(self.design, case)).period_angle))
+            pitch = float(
+                np.degrees(make_drive(table_of(self.design, case)).kinematics.period_angle)
+            )
         except InputError:  # it is the run that is to refuse the design
             return {}
         return {"steps.increment": 0.5 * pitch, "steps.rotation": 1.5 * pitch}

@@ -140,16 +140,14 @@ def test_causes() -> None:
     design = plane(
         "deviations.ring_gear.pitch_grade=6", "deviations.flexible_spline.eccentricity=0.01"
     )
-    causes = Causes(design, 60)
+    causes = Causes(design.kinematics, design.deviations, 60)
     assert causes.of(2.0) == "ring gear (pitch), 2 per turn against it"
     assert causes.of(2.0 * 61 / 60) == "flexible spline (eccentricity), 2 per turn against it"
     assert causes.of(2 / 60) == "output, 2 per turn"
     assert causes.of(122.0) == "mesh of the teeth"
-    assert " or " in Causes(design, 1).of(2.0)
-    assert (
-        Causes(plane("drive.teeth_fs=119", "drive.teeth_rg=121"), 1).of(242.0)
-        == "mesh of the teeth"
-    )
+    assert " or " in Causes(design.kinematics, design.deviations, 1).of(2.0)
+    odd = plane("drive.teeth_fs=119", "drive.teeth_rg=121")
+    assert Causes(odd.kinematics, odd.deviations, 1).of(242.0) == "mesh of the teeth"
 
 
 BAD = [

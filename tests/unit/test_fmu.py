@@ -22,7 +22,7 @@ from swgpar.errors import InputError, OutputError
 from swgpar.evaluation.stiffness import torsional_stiffness
 from swgpar.exchange.fmu import VARIABLES, write_fmu
 from swgpar.exchange.tables import ripple_table, spring_table
-from swgpar.load.load_program import program_points
+from swgpar.load.load_program import program_points, stiffness_program
 
 fmpy = pytest.importorskip("fmpy")
 pytestmark = pytest.mark.skipif(not shutil.which("cc"), reason="no C compiler")
@@ -67,9 +67,9 @@ class StiffnessRun:
             "rotation_arcmin": rotation,
         }
         rows = [dict(zip(self.program, values)) for values in zip(*self.program.values())]
-        stiffness = torsional_stiffness(self.design, rows, None)
+        stiffness = torsional_stiffness(stiffness_program(self.design), rows, None)
         self.summary = SimpleNamespace(
-            ratio=self.design.ratio, design=self.design, stiffness=stiffness
+            ratio=self.design.kinematics.ratio, design=self.design, stiffness=stiffness
         )
 
 
@@ -173,7 +173,7 @@ def test_windup_under_a_torque_is_that_of_the_table(
     """Torques of the table act against the output's motion, those of the FMU about z."""
     run = StiffnessRun(layout, backlash)
     (path,) = write_fmu(run, tmp_path)
-    table, sense = spring_table(run), -np.sign(run.design.ratio)
+    table, sense = spring_table(run), -np.sign(run.design.kinematics.ratio)
     expected = windup(table["torque_Nm"]) + 0.5 * backlash * ARCMIN * np.sign(table["torque_Nm"])
     assert table["windup_rad"] == pytest.approx(expected, abs=1e-15)
     with instance(path, tmp_path / "unit") as unit:

@@ -24,9 +24,8 @@ from swgpar.load.load_program import (
     NO_TORQUE,
     POSITIVE_UNLOADING,
     TRAVEL,
-    pitch_angle,
     program_points,
-    stiffness_torques,
+    stiffness_program,
 )
 from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import Stage
@@ -159,7 +158,7 @@ def test_shortcuts_of_programs() -> None:
     assert found.steps.bent_start and not found.steps.samples and not found.stiffness.loop
     # of six positions two mirror others, and at the first and the fourth one side mirrors the other
     points = program_points(found)
-    period, half = 360.0 / 42.0, len(stiffness_torques(found))
+    period, half = 360.0 / 42.0, len(stiffness_program(found).torques)
     counts = [sum(p.angle == pytest.approx(period * k / 6.0) for p in points) for k in range(6)]
     assert counts == [half, 2 * half, 2 * half, half, 0, 0]
     # the wave generator turns under the torque in which the position before has ended
@@ -205,7 +204,7 @@ def test_stiffness_of_a_given_loop(points: int) -> None:
     values = {"stiffness.torque": TORQUE, "stiffness.positions": 2, "stiffness.points": points}
     design = small("plane", "contact.friction=0.1").with_values(values)
     rows = rows_of(design)
-    found = by_position(design, rows)
+    found = by_position(stiffness_program(design), rows)
     assert list(found) == pytest.approx([0.0, 180.0 / 42.0])
     for one in found.values():
         assert (one.K1, one.K2, one.K3) == pytest.approx(CHORDS, rel=1e-9)
@@ -218,7 +217,7 @@ def test_stiffness_of_a_given_loop(points: int) -> None:
         assert one.loop_work == pytest.approx(
             1000.0 * TORQUE * WIDTH * ARC_MINUTE, rel=2.5 * NO_TORQUE
         )
-    summary = torsional_stiffness(design, rows, None)
+    summary = torsional_stiffness(stiffness_program(design), rows, None)
     assert summary.K1 == pytest.approx(CHORDS[0]) and summary.spread.K1 == pytest.approx(
         0.0, abs=1e-6
     )
@@ -229,7 +228,8 @@ def test_one_way_of_the_loop_stands_for_both() -> None:
     values = {"stiffness.torque": TORQUE, "stiffness.positions": 3, "stiffness.loop": False}
     design = small("plane").with_values(values)
     found = by_position(
-        design, [{**row, "rotation_arcmin": row["torque_Nm"]} for row in rows_of(design)]
+        stiffness_program(design),
+        [{**row, "rotation_arcmin": row["torque_Nm"]} for row in rows_of(design)],
     )
     assert len(found) == 3
     for one in found.values():
@@ -257,11 +257,15 @@ def test_what_gives_way_is_where_the_rotation_goes(teeth: float, gave_way: str) 
         design.ratcheting.drop, rows
     )
     moved = [0.0, 0.5, 0.5 + teeth, 0.5 + 2.0 * teeth]
-    found = evaluate_ratcheting(design, rows, moved, ended_early=False)
+    found = evaluate_ratcheting(
+        design.kinematics, design.ratcheting.drop, rows, moved, ended_early=False
+    )
     assert found.gave_way == gave_way and found.ended == "torque fell"
     assert (found.peak_torque_Nm, found.peak_step, found.peak_error_Nm) == (3.0, 4, 2.0)
-    assert found.peak_rotation_pitches == pytest.approx(1.0 / pitch_angle(design))
-    rising = evaluate_ratcheting(design, rows[:2], moved[:2], ended_early=True)
+    assert found.peak_rotation_pitches == pytest.approx(1.0 / design.kinematics.output_pitch)
+    rising = evaluate_ratcheting(
+        design.kinematics, design.ratcheting.drop, rows[:2], moved[:2], ended_early=True
+    )
     assert (
         rising.gave_way == NOTHING and not rising.is_peak and rising.ended == "no equilibrium found"
     )

@@ -110,7 +110,7 @@ def test_every_answer_is_in_the_tables_with_its_unit_and_meaning() -> None:
 
 
 def test_the_own_drive_and_the_own_recipe_are_accepted() -> None:
-    assert swgpar.load_design(DOCS / "howto" / "own_drive.toml").ratio == -100.0
+    assert swgpar.load_design(DOCS / "howto" / "own_drive.toml").kinematics.ratio == -100.0
     (recipe,) = examples(DOCS / "howto" / "mesh.md", "toml")
     assert swgpar.load_mesh(tomllib.loads(recipe)).flexible_spline.flank == 14
 

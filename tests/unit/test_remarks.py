@@ -14,7 +14,7 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.jamming import jamming_remark
-from swgpar.load.load_sequence import RING_FLEXIBILITY, negligible_torque
+from swgpar.load.load_sequence import RING_FLEXIBILITY, load_sequence, negligible_torque
 
 PERIOD = ("steps.rotation=9", "steps.increment=3")
 
@@ -43,12 +43,14 @@ def test_a_jammed_drive_is_named() -> None:
 
 def test_a_running_drive_is_not() -> None:
     good = design(*PERIOD)
+    sequence = load_sequence(good)
     rows = [
         {"wg_angle_deg": angle, "wg_torque_Nmm": torque}
         for angle, torque in ((3.0, 9.0), (6.0, 8.0), (9.0, 13.0))
     ]
-    expected = 1000.0 * good.load.torque / abs(good.ratio)
+    expected = 1000.0 * good.load.torque / abs(good.kinematics.ratio)
     assert expected == pytest.approx(10.0)
+    unloaded = load_sequence(design("load.torque=0", *PERIOD))
     for mean, jams in (
         (10.0, False),
         (5.1, False),
@@ -57,12 +59,12 @@ def test_a_running_drive_is_not() -> None:
         (20.1, True),
         (-10.0, True),
     ):
-        assert bool(jamming_remark(good, rows, {"wg_torque_Nmm": mean})) == jams
-        assert jamming_remark(good, rows[:1], {"wg_torque_Nmm": mean}) is None  # less than a period
+        assert bool(jamming_remark(sequence, rows, {"wg_torque_Nmm": mean})) == jams
         assert (
-            jamming_remark(design("load.torque=0", *PERIOD), rows, {"wg_torque_Nmm": mean}) is None
-        )
-    assert jamming_remark(good, [], {}) is None
+            jamming_remark(sequence, rows[:1], {"wg_torque_Nmm": mean}) is None
+        )  # less than a period
+        assert jamming_remark(unloaded, rows, {"wg_torque_Nmm": mean}) is None
+    assert jamming_remark(sequence, [], {}) is None
 
 
 def test_the_ring_between_two_forces() -> None:

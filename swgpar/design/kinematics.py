@@ -1,0 +1,92 @@
+"""Speeds and angles of a drive (docs/theory/kinematics.md)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgpar.design.sections import GearName
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """What the layout and the numbers of teeth make of the motion of a drive.
+
+    teeth_fs, teeth_rg : numbers of teeth; a dynamic spline has those of the flexible spline
+    lobes : of the wave generator
+    output_gear : the gear that is the output
+    standing_gear : the gear that stands in the frame in which the drive is computed: the fixed one,
+    or the driven ring gear
+    wave_generator_is_fixed : whether the ring gear is the input. Everything is then computed in the
+    frame of the ring gear.
+    """
+
+    teeth_fs: int
+    teeth_rg: int
+    lobes: int
+    output_gear: GearName
+    standing_gear: GearName
+    wave_generator_is_fixed: bool
+
+    def teeth(self, gear: GearName) -> int:
+        """Number of teeth of a gear."""
+        return self.teeth_rg if gear == "ring_gear" else self.teeth_fs
+
+    @property
+    def ratio(self) -> float:
+        """Speed ratio, wave generator over output, both against the standing gear."""
+        output = self.teeth(self.output_gear)
+        sign = 1 if self.output_gear == "ring_gear" else -1
+        return sign * output / (self.teeth_rg - self.teeth_fs)
+
+    @property
+    def input_ratio(self) -> float:
+        """Speed ratio of the drive, input over output."""
+        return self.teeth_fs / self.teeth_rg if self.wave_generator_is_fixed else self.ratio
+
+    @property
+    def shown_ratio(self) -> float:
+        """Angle `wg_angle_deg` of a history over that of the output, in the frame of the result."""
+        return -self.input_ratio if self.wave_generator_is_fixed else self.ratio
+
+    @property
+    def spline_speed(self) -> float:
+        """Speed of the flexible spline over that of the wave generator, against the standing
+        gear."""
+        return 0.0 if self.output_gear == "ring_gear" else 1.0 / self.ratio
+
+    @property
+    def period_angle(self) -> float:
+        """Period of the motion, rad of the wave generator against the standing gear: one pitch
+        angle of that gear."""
+        return 2.0 * np.pi / self.teeth(self.standing_gear)
+
+    @property
+    def output_pitch(self) -> float:
+        """Angle of a pitch of the output, deg: a rotation by it with the wave generator locked
+        renames its teeth."""
+        return 360.0 / self.teeth(self.output_gear)
+
+    @property
+    def torque_direction(self) -> float:
+        """Sense about z in which a positive torque turns the output: against its motion, 1 or
+        -1."""
+        return float(-np.sign(self.ratio))
+
+    def internal_torque(self, torque: float) -> float:
+        """Torque about z on the output (N mm) for one against its motion (N·m)."""
+        return self.torque_direction * 1000.0 * torque
+
+    def wave_generator_torque(self, torque: float) -> float:
+        """Mean torque of the wave generator (N mm) by the energy balance, for a torque on the
+        output (N·m)."""
+        return 1000.0 * torque / abs(self.ratio)
+
+    def in_frame_of_result(self, angle: float, wave_generator: float) -> float:
+        """Angle in the frame of the fixed member, from that in the frame in which the drive is
+        computed.
+
+        wave_generator : its angle against the standing gear, in the unit of the angle
+        """
+        return angle - wave_generator if self.wave_generator_is_fixed else angle
