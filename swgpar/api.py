@@ -105,7 +105,7 @@ def new(
             if comm.rank == 0 and path.exists() and not overwrite:
                 raise OutputError(
                     f"{path} exists: replace it with overwrite = true (--overwrite), or give "
-                    f"another name"
+                    "another name"
                 )
         write_from_root(comm, path, as_toml(request, design, table, path.name).encode())
     return design
@@ -581,8 +581,8 @@ def _require(name: str, value: Any) -> None:
     """Refuse what is neither a path nor the content of a file."""
     if not isinstance(value, (str, Path, Mapping)):
         raise InputError(
-            f"{name} is of the type {type(value).__name__}: allowed are a path, a dict or a "
-            f"loaded {name}"
+            f"{name} is of the type {type(value).__name__}: allowed are a path, a dict or a loaded "
+            f"{name}"
         )
 
 

@@ -176,7 +176,7 @@ def _heading(model: JobModel, cam: CamFacets) -> Iterator[str]:
         "** which the moment mz about the origin is the torque of the cam or of the flanks on the "
         "flexible spline",
         f"** facets deviate by up to {cam.sagitta:.3g} mm from the cam and {model.flank_gap():.3g} "
-        f"mm from the flanks",
+        "mm from the flanks",
     )
 
 

@@ -92,8 +92,7 @@ def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
     for k in np.flatnonzero(np.diff(windup) <= 0.0)[:1]:
         raise InputError(
             f"the wind-up does not grow between {torque[k]:.6g} and {torque[k + 1]:.6g} N·m: the "
-            f"format fmu needs a "
-            "stiffness loop whose mean branch rises"
+            "format fmu needs a stiffness loop whose mean branch rises"
         )
     reach = float(np.ptp(windup))
     slopes = PchipInterpolator(windup, torque).derivative()(windup)
@@ -123,8 +122,8 @@ def _ripple_knots(result: DriveData) -> np.ndarray:
     """Knots (n + 1, 3) of the periodic cubic spline through a kinematic error at n even angles."""
     if not result.transmission_error:
         raise InputError(
-            "--ripple needs a run with steps.samples or [deviations]: this one has no transmission "
-            "error"
+            "--ripple needs a run with steps.samples or [deviations]: this one has no "
+            "transmission error"
         )
     table = ripple_table(result.transmission_error)
     angle, error = table["wave_generator_angle_rad"], table["kinematic_error_rad"]

@@ -75,8 +75,7 @@ def write_look_up(result: DriveData, folder: Path) -> list[Path]:
     if not paths:
         raise InputError(
             "the format lookup needs a run with [stiffness], steps.samples or [deviations]: this "
-            "one has neither a "
-            "stiffness loop nor a transmission error"
+            "one has neither a stiffness loop nor a transmission error"
         )
     return paths
 

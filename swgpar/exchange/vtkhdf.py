@@ -33,7 +33,7 @@ def require_fields(result: DriveData, name: str) -> None:
     if not result.increments:
         raise InputError(
             f"the format {name} needs fields, and this run kept none: allowed with output.fields = "
-            f"true"
+            "true"
         )
 
 

@@ -106,8 +106,7 @@ def with_value(table: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
         if not isinstance(target, dict | list):
             raise InputError(
                 f"{show_key(key)} = {show(value)} cannot be applied: {show_key(*names[:depth])} = "
-                f"{show(target)} "
-                "is a value, not a section"
+                f"{show(target)} is a value, not a section"
             )
     if isinstance(target, list):
         raise InputError(

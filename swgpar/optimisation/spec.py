@@ -140,7 +140,7 @@ def _check(section: OptimiseSection) -> None:
         if constraint.at_most is None and constraint.at_least is None:
             raise InputError(
                 f"optimise.constraint {show(constraint.quantity)} has no limit: give at_most or "
-                f"at_least"
+                "at_least"
             )
     for number, first in enumerate(section.first, start=1):
         for key in first:

@@ -190,9 +190,8 @@ def _front(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
     drive = design.drive
     sheet.caption = (
         f"Along the axis, in mm: {drive.teeth_fs} teeth of the flexible spline (bore "
-        f"{2 * design.inner_radius:.5g}), "
-        f"{drive.teeth_rg} of the ring gear, module {drive.module:g}, deflection "
-        f"{design.deflection:.4g}; "
+        f"{2 * design.inner_radius:.5g}), {drive.teeth_rg} of the ring gear, module "
+        f"{drive.module:g}, deflection {design.deflection:.4g}; "
         f"{design.wave_generator.type.replace('_', ' ')} cam. Before it is loaded."
     )
     return sheet
@@ -233,8 +232,7 @@ def _teeth(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
     )
     sheet.caption = (
         f"Teeth at the major axis, in mm: {design.flexible_spline.profile.type.replace('_', ' ')} "
-        f"on "
-        f"{design.ring_gear.profile.type.replace('_', ' ')}, backlash "
+        f"on {design.ring_gear.profile.type.replace('_', ' ')}, backlash "
         f"{max(round(design.backlash, 6), 0.0):.3g} at the pitch circle, face width "
         f"{design.drive.face_width:g}."
     )
@@ -305,8 +303,8 @@ def _meridian(design: DriveDesign) -> Sheet:
     micro = design.micro_geometry
     sheet.caption = (
         "Half section, in mm, undeformed, teeth without their backlash. Micro-geometry: cam "
-        "crowning "
-        f"{micro.wg_crowning:g}, slope {micro.wg_slope:g}; flank crowning {micro.fs_crowning:g}."
+        f"crowning {micro.wg_crowning:g}, slope {micro.wg_slope:g}; flank crowning "
+        f"{micro.fs_crowning:g}."
     )
     return sheet
 

@@ -49,7 +49,7 @@ def drive_report(result: DriveResult) -> bytes:
     return result_page(
         TEMPLATE,
         f"Strain wave gear {design.drive.teeth_fs}/{design.drive.teeth_rg}, {design.load.torque:g} "
-        f"N·m",
+        "N·m",
         RunFacts(result.design_table, summary.versions, summary.ranks, summary.wall_s, memory),
         result.folder,
         result.plot.names,
@@ -73,8 +73,7 @@ def _description(summary: DriveSummary) -> str:
     mesh = f"mesh {Path(summary.recipe).stem}, " if summary.recipe else ""
     return (
         f"{model}, ratio {summary.ratio:g}, {FIXED[drive.layout]}; {mesh}{summary.elements} "
-        f"elements, "
-        f"{summary.increments} increments."
+        f"elements, {summary.increments} increments."
     )
 
 

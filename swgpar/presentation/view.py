@@ -32,7 +32,7 @@ def require_display() -> None:
         reason = f"DISPLAY = {shown} cannot be reached" if shown else "DISPLAY is not set"
         raise InputError(
             f"view needs a display, and {reason}: report.html of the results folder shows the same "
-            f"drive in a browser"
+            "drive in a browser"
         )
 
 

@@ -180,8 +180,7 @@ def _check_case(case: CaseSection, study: StudySection) -> None:
     if not NAME.fullmatch(case.name) or len(case.name) > LONGEST_NAME:
         raise InputError(
             f"study.case.name = {show(case.name)} names no folder: allowed letters, digits and _ . "
-            f", + = -, at most "
-            f"{LONGEST_NAME}"
+            f", + = -, at most {LONGEST_NAME}"
         )
     for override in case.set:
         key, _ = split_override(override)
@@ -194,7 +193,7 @@ def _check_case(case: CaseSection, study: StudySection) -> None:
         if not isinstance(value, dict):
             raise InputError(
                 f"{where}: section.{show_key(name)} = {show(value)} is not a section: allowed a "
-                f"table"
+                "table"
             )
     for name, percent in case.tolerance.items():
         tolerance = f"{where}: tolerance.{show_key(name)}"

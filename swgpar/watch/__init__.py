@@ -118,7 +118,7 @@ def saved(kind: str, done: int, total: int) -> None:
         return
     how = (
         f"{done} of {total} {kind} are saved in {_command.saved}; the same command with --restart "
-        f"continues"
+        "continues"
     )
     if not (done and _command.restarts):
         how = f"nothing is saved in {_command.saved}; the same command starts again"
