@@ -23,8 +23,8 @@ def parts(geometry: DriveGeometry, points: np.ndarray) -> dict[str, np.ndarray]:
     radius, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
     toothed = np.abs(z) <= 0.5 * geometry.face_width * (1.0 + 1e-9)
     inner = radius < geometry.inner_radius + 0.5 * geometry.gears["flexible_spline"].rim
-    found = {"teeth": toothed & ~inner, "inside of the rim": toothed & inner}
-    return found if toothed.all() else found | {"cup behind the teeth": ~toothed}
+    masks = {"teeth": toothed & ~inner, "inside of the rim": toothed & inner}
+    return masks if toothed.all() else masks | {"cup behind the teeth": ~toothed}
 
 
 def largest_by_tooth(values: np.ndarray, chosen: np.ndarray, teeth: int) -> np.ndarray:
@@ -61,8 +61,7 @@ def draw_circumference(
             axes.plot(angle[order], values[order], lw=1.2, label=part)
         axes.set(ylabel=label, xlim=(-180.0, 180.0), xticks=range(-180, 181, 45))
     figure.suptitle(f"flexible spline, largest of every tooth's sector\n{title}", fontsize=10)
-    figure.legend(
-        *rows[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8
-    )
+    handles, labels = rows[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=8)
     rows[-1].set_xlabel("tooth, from the major axis (degrees)")
     return figure

@@ -31,13 +31,17 @@ PITCHES = 2.2
 CAM_GRID = 400
 """Points along each side of the close-up in which the distance from the cam is evaluated."""
 
+Box = tuple[float, float, float, float]
+"""Lowest and largest value along both axes of a figure, mm."""
 
-def colour_limit(grids: Sequence[pyvista.UnstructuredGrid]) -> float:
+
+def colour_limit(*stresses: np.ndarray) -> float:
     """End of the colour range (MPa) of the von Mises stress of several bodies."""
-    return (
-        float(np.percentile(np.concatenate([grid.point_data["vm"] for grid in grids]), PERCENTILE))
-        or 1.0
-    )
+    return float(np.percentile(np.concatenate(stresses), PERCENTILE)) or 1.0
+
+
+def _limit(grids: Sequence[pyvista.UnstructuredGrid]) -> float:
+    return colour_limit(*(grid.point_data["vm"] for grid in grids))
 
 
 def deformed(
@@ -58,17 +62,11 @@ def draw_deformed(
     factor : magnification of the displacements;  title : where in the run this is
     """
     plotter = off_screen_plotter(1400, 1300)
-    limit = colour_limit(grids)
+    limit = _limit(grids)
+    colours = {"scalars": "vm", "cmap": COLOURS, "clim": (0.0, limit), "show_scalar_bar": False}
     for grid in deformed(grids, factor):
         surface = grid.extract_surface(algorithm="dataset_surface")
-        plotter.add_mesh(
-            surface,
-            scalars="vm",
-            cmap=COLOURS,
-            clim=(0.0, limit),
-            smooth_shading=False,
-            show_scalar_bar=False,
-        )
+        plotter.add_mesh(surface, smooth_shading=False, **colours)
     if plane:
         plotter.enable_parallel_projection()
         plotter.view_xy()
@@ -82,13 +80,8 @@ def draw_deformed(
     figure, axes = _figure(1, (9.0, 8.0))
     axes[0].imshow(picture)
     axes[0].set_axis_off()
-    _colour_bar(figure, axes, limit)
-    scale = (
-        "true to scale"
-        if factor == 1.0
-        else f"displacements x {factor:g}, bodies may seem to cross"
-    )
-    _title(figure, title, scale, limit)
+    scale = f"displacements x {factor:g}, bodies may seem to cross"
+    _finish(figure, axes, title, "true to scale" if factor == 1.0 else scale, limit)
     return figure
 
 
@@ -108,31 +101,25 @@ def draw_loaded_teeth(
     counter-clockwise
     z : mm, of the section;  title : where in the run this is
     """
-    limit, pitch = colour_limit(grids), np.pi * geometry.module
-    half = PITCHES * pitch
-    low, ring_gear = geometry.inner_radius - 0.5 * pitch, geometry.gears["ring_gear"]
+    limit, pitch, ring_gear = _limit(grids), np.pi * geometry.module, geometry.gears["ring_gear"]
+    half, low = PITCHES * pitch, geometry.inner_radius - 0.5 * pitch
     high = ring_gear.profile.r_root_circle + min(ring_gear.rim, 0.5 * pitch)
+    box = (-half, half, low, high)
     figure, (axes,) = _figure(1, (9.0, 1.6 + 7.0 * (high - low) / (2.0 * half)))
     if cam is not None:
-        _draw_cam(axes, cam, wg_angle - angle, z, (-half, half, low, high))
+        _draw_cam(axes, cam, wg_angle - angle, z, box)
     for grid in deformed(grids, 1.0):
         cut = grid.slice(normal="z", origin=(0.0, 0.0, z))
         at = rotated(np.asarray(cut.points)[:, :2], -angle)
-        _draw_cut(axes, cut, at, limit, (-half, half, low, high))
-    axes.set(
-        xlim=(-half, half),
-        ylim=(low, high),
-        xlabel="mm, along the circumference",
-        ylabel="radius (mm)",
-    )
-    _colour_bar(figure, [axes], limit)
+        _draw_cut(axes, cut, at, limit, box)
+    axes.set(xlabel="mm, along the circumference", ylabel="radius (mm)")
     ring = "ring gear" if geometry.model != "pancake" or z < 0.0 else "dynamic spline"
     axes.text(0.0, high - 0.15 * pitch, ring, color="w", ha="center", va="top")
     if cam is not None:
         axes.text(0.0, low + 0.1 * pitch, "wave generator", ha="center")
     place = f"teeth at {np.degrees(angle):.1f} degrees from +y"
     where = place if geometry.model == "plane" else f"{place}, section at z {z:.2f} mm"
-    _title(figure, f"{title}; {where}", "true to scale", limit)
+    _finish(figure, [axes], f"{title}; {where}", "true to scale", limit)
     return figure
 
 
@@ -148,8 +135,7 @@ def draw_cup_section(
 
     lobes : of the cam;  wg_angle : rad, of the wave generator;  title : where in the run this is
     """
-    limit, wall = colour_limit(grids), geometry.cup.wall
-    bodies = deformed(grids, 1.0)
+    limit, wall, bodies = _limit(grids), geometry.cup.wall, deformed(grids, 1.0)
     half = 0.5 * geometry.face_width
     length, outer = half + wall.end, geometry.largest_radius
     low = max(min(wall.edge, geometry.inner_radius) - 0.05 * outer, 0.0)
@@ -163,15 +149,9 @@ def draw_cup_section(
             cut = grid.slice(normal=(np.cos(angle), np.sin(angle), 0.0), origin=(0.0, 0.0, 0.0))
             points = np.asarray(cut.points)
             _draw_cut(axes, cut, np.column_stack([points[:, 2], points @ axis]), limit, box)
-        axes.set(
-            xlabel="z (mm), open end at negative z",
-            title=f"through the {name}",
-            xlim=box[:2],
-            ylim=box[2:],
-        )
+        axes.set(xlabel="z (mm), open end at negative z", title=f"through the {name}")
     panels[0].set_ylabel("radius (mm)")
-    _colour_bar(figure, panels, limit)
-    _title(figure, title, "true to scale", limit)
+    _finish(figure, panels, title, "true to scale", limit)
     return figure
 
 
@@ -185,78 +165,47 @@ def _figure(panels: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]
     return figure, axes
 
 
-def _title(figure: Figure, when: str, what: str, limit: float) -> None:
-    figure.suptitle(
-        f"{when}\n{what}; colours end at {limit:.4g} MPa ({PERCENTILE:g} % of the nodes are below)",
-        fontsize=10,
-    )
-
-
-def _colour_bar(figure: Figure, axes: Sequence[Axes], limit: float) -> None:
+def _finish(figure: Figure, axes: Sequence[Axes], when: str, what: str, limit: float) -> None:
+    """Add the title and the range of colours."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    figure.colorbar(
-        ScalarMappable(Normalize(0.0, limit), COLOURS),
-        ax=list(axes),
-        extend="max",
-        shrink=0.8,
-        label="von Mises stress (MPa), nodal averages",
-    )
+    ends = f"colours end at {limit:.4g} MPa ({PERCENTILE:g} % of the nodes are below)"
+    figure.suptitle(f"{when}\n{what}; {ends}", fontsize=10)
+    colours = ScalarMappable(Normalize(0.0, limit), COLOURS)
+    label = "von Mises stress (MPa), nodal averages"
+    figure.colorbar(colours, ax=list(axes), extend="max", shrink=0.8, label=label)
 
 
-def _draw_cut(
-    axes: Axes,
-    cut: pyvista.PolyData,
-    at: np.ndarray,
-    limit: float,
-    box: tuple[float, float, float, float],
-) -> None:
+def _draw_cut(axes: Axes, cut: pyvista.PolyData, at: np.ndarray, limit: float, box: Box) -> None:
     """Draw a plane cut through a body with its outline. at : (n, 2) mm, places of its points in the
     figure"""
     from matplotlib.collections import LineCollection
     from matplotlib.tri import Triangulation
 
+    axes.set(xlim=box[:2], ylim=box[2:])
     if not cut.n_points:
         return
     flat = cut.copy()
     flat.points = np.column_stack([at, np.zeros(len(at))])
-    flat = (
-        flat.clip_box((*box, -1.0, 1.0), invert=False)
-        .extract_surface(algorithm="dataset_surface")
-        .triangulate()
-    )
+    inside = flat.clip_box((*box, -1.0, 1.0), invert=False)
+    flat = inside.extract_surface(algorithm="dataset_surface").triangulate()
     if not flat.n_cells:
         return
-    flat = flat.clean(
-        tolerance=1e-5, absolute=True
-    )  # sectors have nodes of their own where they meet
-    points, triangles = np.asarray(flat.points), flat.regular_faces
-    axes.tripcolor(
-        Triangulation(points[:, 0], points[:, 1], triangles),
-        flat.point_data["vm"],
-        shading="gouraud",
-        cmap=COLOURS,
-        vmin=0.0,
-        vmax=limit,
-        rasterized=True,
-    )
+    # sectors have nodes of their own where they meet
+    flat = flat.clean(tolerance=1e-5, absolute=True)
+    x, y, _ = np.asarray(flat.points).T
+    triangles = Triangulation(x, y, flat.regular_faces)
+    picture = axes.tripcolor(triangles, flat.point_data["vm"], shading="gouraud", cmap=COLOURS)
+    picture.set(clim=(0.0, limit), rasterized=True)
     edges = flat.extract_feature_edges(
         boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False
     )
-    lines = edges.lines.reshape(-1, 3)[:, 1:]
-    axes.add_collection(
-        LineCollection(np.asarray(edges.points)[lines][:, :, :2], colors="#222", linewidths=0.5)
-    )
+    lines = np.asarray(edges.points)[edges.lines.reshape(-1, 3)[:, 1:], :2]
+    axes.add_collection(LineCollection(list(lines), colors="#222", linewidths=0.5))
 
 
-def _draw_cam(
-    axes: Axes,
-    cam: WaveGeneratorSurface,
-    turn: float,
-    z: float,
-    box: tuple[float, float, float, float],
-) -> None:
+def _draw_cam(axes: Axes, cam: WaveGeneratorSurface, turn: float, z: float, box: Box) -> None:
     """Fill the cam at z (mm) where it is in the box. turn : rad, of its major axis from the middle
     of the figure"""
     x, y = np.meshgrid(np.linspace(*box[:2], CAM_GRID), np.linspace(*box[2:], CAM_GRID))

@@ -27,47 +27,29 @@ def draw_haigh(
     summary : of a run with [fatigue];  angle : title of the axis with the angle of the wave
     generator
     """
-    found, strengths = summary.fatigue, summary.design.fatigue
+    fatigue, strengths = summary.fatigue, summary.design.fatigue
     figure, (axes, below) = panels(2, 7.5, 7.5, height_ratios=(1.6, 1.0))
-    fields = sector.fields
-    for number, region in enumerate(found.regions):
-        here = fields["region"] == number
-        hollow = bool(found.regions[region].warning)
-        label = region + (" (depends on the mesh)" if hollow else "")
-        axes.plot(
-            fields["mean"][here],
-            fields["amplitude"][here],
-            "x" if hollow else ".",
-            ms=4,
-            label=label,
-        )
-    limit, tensile = found.fatigue_limit_of_the_part_MPa, strengths.tensile_strength
+    mean, amplitude = sector.fields["mean"], sector.fields["amplitude"]
+    for number, (region, content) in enumerate(fatigue.regions.items()):
+        here = sector.fields["region"] == number
+        mark, words = ("x", " (depends on the mesh)") if content.warning else (".", "")
+        axes.plot(mean[here], amplitude[here], mark, ms=4, label=region + words)
+    limit, tensile = fatigue.fatigue_limit_of_the_part_MPa, strengths.tensile_strength
     most = strengths.yield_strength
-    low = min(0.0, 1.05 * float(fields["mean"].min()))
+    low = min(0.0, 1.05 * float(mean.min()))
     axes.plot([low, 0.0, tensile], [limit, limit, 0.0], "k-", label="Goodman, safety 1")
-    axes.plot(
-        [max(low, -most), 0.0, most],
-        [most + max(low, -most), most, 0.0],
-        "k--",
-        lw=0.8,
-        label="yield",
-    )
-    worst = found.least["goodman"]
-    axes.plot(
-        worst.mean_MPa, worst.amplitude_MPa, "r*", ms=12, label=f"least safety {worst.safety:.3g}"
-    )
+    left = max(low, -most)
+    axes.plot([left, 0.0, most], [most + left, most, 0.0], "k--", lw=0.8, label="yield")
+    worst = fatigue.least["goodman"]
+    label = f"least safety {worst.safety:.3g}"
+    axes.plot(worst.mean_MPa, worst.amplitude_MPa, "r*", ms=12, label=label)
     axes.set(xlabel="mean of the normal stress (MPa)", ylabel="amplitude (MPa)")
-    axes.set(
-        xlim=(low, 1.05 * tensile), ylim=(0.0, 1.1 * max(limit, float(fields["amplitude"].max())))
-    )
+    axes.set(xlim=(low, 1.05 * tensile), ylim=(0.0, 1.1 * max(limit, float(amplitude.max()))))
     axes.set_title("Haigh's diagram, on the critical plane of every node", fontsize=10)
     axes.legend(fontsize=7)
     of_program = "step" in cycle
-    below.plot(
-        cycle["step" if of_program else "wg_angle_deg"],
-        cycle["normal_stress_MPa"],
-        ".-" if of_program else "-",
-    )
+    x, style = ("step", ".-") if of_program else ("wg_angle_deg", "-")
+    below.plot(cycle[x], cycle["normal_stress_MPa"], style)
     what = "point of the load program (step)" if of_program else angle
     below.set(xlabel=what, ylabel="normal stress (MPa)")
     below.set_title(f"cycle where the safety is the least: {worst.region}", fontsize=10)

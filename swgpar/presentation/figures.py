@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from mpi4py import MPI
@@ -33,6 +32,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+T = TypeVar("T")
 
 STRESSES = ("fs_s1", "fs_s3", "fs_vm", "rg_vm")
 """Columns of the history in the figure of stresses."""
@@ -52,27 +52,26 @@ class DriveFigures(FigureSet):
 
     @property
     def drawings(self) -> Drawings:
-        found: dict[str, Callable[[], Figure]] = {"stress": self.stress}
-        if self._result.program:
-            found["torque_against_rotation"] = self.torque_against_rotation
-        else:
-            found["torque_and_transmission_error"] = self.torque_and_transmission_error
-        if self._result.transmission_error:
-            found["transmission_error_spectrum"] = self.transmission_error_spectrum
-        if self._result.pairs:
-            found |= {"pairs": self.pairs, "load_sharing": self.load_sharing}
-            if np.isfinite(self._result.pairs["pressure_MPa"]).any():
-                found["contact_pattern"] = self.contact_pattern
-        if self._result.fatigue is not None:
-            found |= {"haigh": self.haigh, "safety": self.safety}
-        if self._result.balls:
-            found["ball_loads"] = self.ball_loads
-        if self._result.increments:
-            found |= {"deformed_drive": self.deformed, "loaded_teeth": self.loaded_teeth}
-            if self._has_cup:
-                found["cup_section"] = self.cup_section
-            found["stress_around"] = self.stress_around
-        return found
+        result = self._result
+        pressure = result.pairs["pressure_MPa"] if result.pairs else ()
+        available: dict[str, object] = {
+            "stress": True,
+            "torque_against_rotation": result.program,
+            "torque_and_transmission_error": not result.program,
+            "transmission_error_spectrum": result.transmission_error,
+            "pairs": result.pairs,
+            "load_sharing": result.pairs,
+            "contact_pattern": np.isfinite(pressure).any(),
+            "haigh": result.fatigue,
+            "safety": result.fatigue,
+            "ball_loads": result.balls,
+            "deformed_drive": result.increments,
+            "loaded_teeth": result.increments,
+            "cup_section": result.increments and self._has_cup,
+            "stress_around": result.increments,
+        }
+        methods = {name: name for name in available} | {"deformed_drive": "deformed"}
+        return {name: getattr(self, methods[name]) for name, given in available.items() if given}
 
     def stress(self) -> Figure:
         """Largest stresses of both bodies (MPa) against the angle of the wave generator, under
@@ -82,18 +81,10 @@ class DriveFigures(FigureSet):
             self._draw(axes, name, COLUMNS[name].label)
         root = self._result.summary.root_stress
         if root and root.period:
-            angle, value = np.array(root.period).T
-            axes.plot(
-                angle,
-                value,
-                "k^--",
-                ms=4,
-                lw=0.8,
-                label="flexible spline, s1 at the teeth by windows",
-            )
-        axes.set(
-            ylabel="stress (MPa)", title="largest stresses (nodal averages)" + self._over_period()
-        )
+            label = "flexible spline, s1 at the teeth by windows"
+            axes.plot(*np.array(root.period).T, "k^--", ms=4, lw=0.8, label=label)
+        axes.set_title("largest stresses (nodal averages)" + self._over_period())
+        axes.set_ylabel("stress (MPa)")
         axes.set_ylim(bottom=0.0)
         figure.legend(loc="outside lower center", ncols=2, fontsize=8)
         return figure
@@ -125,63 +116,51 @@ class DriveFigures(FigureSet):
 
         Over whole turns with deviations, or over the sampled period of the ideal drive.
         """
-        rows, found = self._result.transmission_error, self._result.summary.transmission_error
-        if not rows or found is None:
-            raise InputError(
-                "this run has no transmission error: allowed with steps.samples or [deviations]"
-            )
+        rows = _needed(
+            self._result.transmission_error,
+            "transmission error",
+            "steps.samples or [deviations]",
+        )
+        summary = self._result.summary.transmission_error
         figure, (upper, lower) = panels(2, 7.0, 6.0)
         error = rows["transmission_error_arcsec"]
-        upper.plot(
-            rows["wg_angle_deg"],
-            error - error.mean(),
-            lw=1.0,
-            marker="o" if len(error) < 40 else None,
-            ms=3,
-        )
-        upper.set(
-            xlabel=self._angle, ylabel="arc seconds", title="transmission error less its mean"
-        )
-        order, amplitude, _ = orders(found.turns, rows)
+        marker = "o" if len(error) < 40 else None
+        upper.plot(rows["wg_angle_deg"], error - error.mean(), lw=1.0, marker=marker, ms=3)
+        upper.set(xlabel=self._angle, ylabel="arc seconds")
+        upper.set_title("transmission error less its mean")
+        order, amplitude, _ = orders(summary.turns, rows)
         lower.vlines(order, 0.0, amplitude, lw=1.2)
-        named = found.spectrum[:4]
-        for line in named:
-            lower.plot(
-                line.order, line.amplitude, "o", ms=4, label=f"{line.order:.4g}: {line.cause}"
-            )
-        lower.set(
-            xlabel="order of the input's turn", ylabel="amplitude (arc seconds)", ylim=(0.0, None)
-        )
-        if named:
+        for line in summary.spectrum[:4]:
+            label = f"{line.order:.4g}: {line.cause}"
+            lower.plot(line.order, line.amplitude, "o", ms=4, label=label)
+        lower.set(xlabel="order of the input's turn", ylabel="amplitude (arc seconds)")
+        lower.set_ylim(0.0, None)
+        if summary.spectrum:
             lower.legend(fontsize=7)
         return figure
 
     def _draw_torque(self, axes: Axes) -> None:
         rotation = self._result.summary.rotation
-        driven = rotation.input
+        driven, expected = rotation.input, rotation.wg_torque_expected_Nmm
         if driven:
             self._draw(axes, "input_torque_Nmm", "ring gear")
+            expected = driven.torque_expected_Nmm
         else:
             self._draw(axes, "wg_torque_Nmm", "wave generator")
-        expected = driven.torque_expected_Nmm if driven else rotation.wg_torque_expected_Nmm
         axes.axhline(expected, color="0.4", ls="--", label="energy balance, T / ratio")
         axes.set(ylabel="torque (N·mm)", title="input torque" + self._over_period())
         axes.legend(fontsize=8)
 
     def _draw_transmission_error(self, axes: Axes) -> None:
         self._draw(axes, "transmission_error", None)
-        axes.set(
-            ylabel="arc seconds", title="transmission error: output angle less its kinematic value"
-        )
+        axes.set_title("transmission error: output angle less its kinematic value")
+        axes.set_ylabel("arc seconds")
 
     def torque_against_rotation(self) -> Figure:
         """Torque on the output (N·m) against its rotation (arc minutes), along a load program."""
-        if not self._result.program:
-            raise InputError(
-                "this run has no load program: allowed with load.program, [stiffness] or "
-                "[ratcheting]"
-            )
-        return torque_against_rotation(self._result.program, self._result.summary)
+        allowed = "load.program, [stiffness] or [ratcheting]"
+        program = _needed(self._result.program, "load program", allowed)
+        return torque_against_rotation(program, self._result.summary)
 
     def pairs(self) -> Figure:
         """Force (N) and largest contact pressure (MPa) of the pairs, over the tooth's angle from
@@ -191,7 +170,7 @@ class DriveFigures(FigureSet):
         the other. Pairs whose contact lies on an edge have hollow marks: their pressure is no
         property of the drive.
         """
-        return draw_pairs(self._pairs(), self._lobes)
+        return draw_pairs(self._pairs(), self._design.lobes)
 
     def load_sharing(self) -> Figure:
         """Share (%) of every pair in the forces between the flanks, over its angle from the major
@@ -199,7 +178,8 @@ class DriveFigures(FigureSet):
 
         All computed increments under load are drawn, and below the number of pairs at these angles.
         """
-        return draw_load_sharing(self._pairs(), self._result.history, self._angle, self._lobes)
+        history, lobes = self._result.history, self._design.lobes
+        return draw_load_sharing(self._pairs(), history, self._angle, lobes)
 
     def haigh(self) -> Figure:
         """Haigh's diagram of all nodes of a sector, and the normal stress over the cycle where the
@@ -207,29 +187,18 @@ class DriveFigures(FigureSet):
 
         Runs with the section [fatigue] have it.
         """
-        return draw_haigh(
-            self._fatigue(), self._result.fatigue_cycle, self._result.summary, self._angle
-        )
+        cycle, summary = self._result.fatigue_cycle, self._result.summary
+        return draw_haigh(self._fatigue(), cycle, summary, self._angle)
 
     def safety(self) -> Figure:
         """One sector of the flexible spline, coloured by Goodman's safety factor."""
         return _as_figure(sector_picture(self._fatigue(), self._result.is_plane))
 
-    @property
-    def _lobes(self) -> int:
-        return self._design.lobes
-
     def _pairs(self) -> dict[str, np.ndarray]:
-        if not self._result.pairs:
-            raise InputError(
-                "this run has no flanks in contact under load: allowed with load.torque above 0"
-            )
-        return self._result.pairs
+        return _needed(self._result.pairs, "flanks in contact under load", "load.torque above 0")
 
     def _fatigue(self) -> SectorFields:
-        if self._result.fatigue is None:
-            raise InputError("this run has no fatigue: allowed with the section [fatigue]")
-        return self._result.fatigue
+        return _needed(self._result.fatigue, "fatigue", "the section [fatigue]")
 
     def _draw(self, axes: Axes, name: str, label: str | None) -> None:
         """Draw a column under load: points where it was computed, and the curve through them."""
@@ -257,35 +226,23 @@ class DriveFigures(FigureSet):
     def ball_loads(self) -> Figure:
         """Loads of a bearing's balls (N) over the angle from the major axis, and the largest during
         the rotation."""
-        balls, bearing = self._result.balls, self._result.summary.bearing
-        if not balls:
-            raise InputError("this run has no balls: allowed with wave_generator.bearing")
+        balls = _needed(self._result.balls, "balls", "wave_generator.bearing")
+        bearing = self._result.summary.bearing
         loaded = balls["step"] >= Stage.LOAD
-        shown = {name: values[loaded] if loaded.any() else values for name, values in balls.items()}
+        if loaded.any():
+            balls = {name: values[loaded] for name, values in balls.items()}
         figure, (upper, lower) = panels(2, 7.0, 6.5)
-        increments = np.unique(shown["increment"])
-        angles = []
+        increments, first = np.unique(balls["increment"], return_index=True)
         for increment in increments:
-            here = shown["increment"] == increment
-            order = np.argsort(shown["cam_angle_deg"][here])
-            upper.plot(
-                shown["cam_angle_deg"][here][order],
-                shown["load_N"][here][order],
-                "o-",
-                ms=3,
-                lw=0.6,
-            )
-            angles.append(shown["wg_angle_deg"][here][0])
-        upper.set(
-            xlabel="angle from the major axis (degrees)",
-            ylabel="ball load (N)",
-            xlim=(-180.0, 180.0),
-        )
-        upper.set_title(
-            f"loads of {len(shown['ball']) // len(increments)} balls at {len(increments)} angles"
-        )
-        peaks = shown["load_N"].reshape(len(increments), -1).max(axis=1)
-        lower.plot(angles, peaks, "o-", ms=4)
+            here = np.flatnonzero(balls["increment"] == increment)
+            here = here[np.argsort(balls["cam_angle_deg"][here])]
+            upper.plot(balls["cam_angle_deg"][here], balls["load_N"][here], "o-", ms=3, lw=0.6)
+        upper.set(xlabel="angle from the major axis (degrees)", ylabel="ball load (N)")
+        upper.set_xlim(-180.0, 180.0)
+        count = len(balls["ball"]) // len(increments)
+        upper.set_title(f"loads of {count} balls at {len(increments)} angles")
+        peaks = balls["load_N"].reshape(len(increments), -1).max(axis=1)
+        lower.plot(balls["wg_angle_deg"][first], peaks, "o-", ms=4)
         fixed = ", balls fixed to the cam" if bearing and bearing.balls_fixed_to_cam else ""
         lower.set(xlabel=self._angle, ylabel="largest ball load (N)" + fixed)
         for axes in (upper, lower):
@@ -298,9 +255,8 @@ class DriveFigures(FigureSet):
         In the plane model over arc length. step : of the history; None for that with the largest
         pressure
         """
-        return draw_contact_pattern(
-            self._pairs(), self._result.contact_lines, step, self._result.is_plane
-        )
+        result = self._result
+        return draw_contact_pattern(self._pairs(), result.contact_lines, step, result.is_plane)
 
     def deformed(self, increment: int = -1, magnification: float = 1.0) -> Figure:
         """The deformed drive, coloured by von Mises stress: seen from its open end, a plane model
@@ -311,40 +267,28 @@ class DriveFigures(FigureSet):
         increment : among those with fields, as in `DriveData.field`
         magnification : of the displacements; above 1 bodies may seem to cross
         """
-        return draw_deformed(
-            self._grids(increment),
-            magnification,
-            plane=self._result.is_plane,
-            title=self._when(increment),
-        )
+        grids, when = self._grids(increment), self._when(increment)
+        return draw_deformed(grids, magnification, plane=self._result.is_plane, title=when)
 
     def loaded_teeth(self, increment: int = -1) -> Figure:
         """Close-up of the pair of flanks with the largest force and the cam below it, by von Mises
         stress.
 
         A cup drive is cut across its axis where the pressure of this pair is the largest. Without a
-        pair in contact
-        the teeth at the major axis are shown. increment : as in `DriveData.field`
+        pair in contact the teeth at the major axis are shown. increment : as in `DriveData.field`
         """
-        result, row = self._result, self._row(increment)
-        cam_angle = self._cam_angle(row)
-        angle, z, pairs = cam_angle, 0.0, result.pairs
-        here = (
-            np.flatnonzero(pairs["increment"] == row + 1) if pairs else np.zeros(0, dtype=np.int64)
-        )
+        row, pairs = self._row(increment), self._result.pairs
+        cam_angle = angle = self._cam_angle(row)
+        z = 0.0
+        here = np.flatnonzero(pairs["increment"] == row + 1) if pairs else ()
         if len(here):
             largest = here[np.argmax(pairs["force_N"][here])]
             angle = cam_angle + float(np.radians(pairs["angle_deg"][largest]))
             z = float(np.nan_to_num(pairs["z_mm"][largest]))
-        return draw_loaded_teeth(
-            self._grids(increment),
-            self._design.geometry,
-            self._design.cam_surface() if self._design.bearing is None else None,
-            cam_angle,
-            angle,
-            z,
-            self._when(increment),
-        )
+        design = self._design
+        cam = design.cam_surface() if design.bearing is None else None
+        grids, when = self._grids(increment), self._when(increment)
+        return draw_loaded_teeth(grids, design.geometry, cam, cam_angle, angle, z, when)
 
     def cup_section(self, increment: int = -1) -> Figure:
         """Sections of the deformed cup along its axis, through the major and the minor axis, by von
@@ -356,14 +300,10 @@ class DriveFigures(FigureSet):
             raise InputError(
                 f'drive.model = "{self._design.drive.model}" has no cup: allowed with "cup"'
             )
-        cam_angle = self._cam_angle(self._row(increment))
-        return draw_cup_section(
-            self._grids(increment),
-            self._design.geometry,
-            self._design.lobes,
-            cam_angle,
-            self._when(increment),
-        )
+        design, when = self._design, self._when(increment)
+        angle = self._cam_angle(self._row(increment))
+        grids = self._grids(increment)
+        return draw_cup_section(grids, design.geometry, design.lobes, angle, when)
 
     def stress_around(self, increment: int = -1) -> Figure:
         """Largest s1 and von Mises stress (MPa) of every tooth's sector of the flexible spline,
@@ -371,14 +311,14 @@ class DriveFigures(FigureSet):
 
         increment : as in `DriveData.field`
         """
-        result, body = self._result, SPLINE
-        sizes = result.summary.bodies[body]
+        result, design, row = self._result, self._design, self._row(increment)
+        sizes = result.summary.bodies[SPLINE]
         return draw_circumference(
-            self._design.geometry,
-            result.mesh(body).points,
-            {name: result.field(name, increment, body) for name in FIELDS},
-            sizes.elements // (sizes.elements_whole // self._design.drive.teeth_fs),
-            float(np.radians(result.history["wg_angle_deg"][self._row(increment)])),
+            design.geometry,
+            result.mesh(SPLINE).points,
+            {name: result.field(name, increment, SPLINE) for name in FIELDS},
+            sizes.elements // (sizes.elements_whole // design.drive.teeth_fs),
+            float(np.radians(result.history["wg_angle_deg"][row])),
             self._when(increment),
         )
 
@@ -414,10 +354,15 @@ class DriveFigures(FigureSet):
 
     def _when(self, increment: int) -> str:
         row = self._row(increment)
-        return (
-            f"increment {row + 1}, wave generator at "
-            f"{self._result.history['wg_angle_deg'][row]:.3g} degrees"
-        )
+        angle = self._result.history["wg_angle_deg"][row]
+        return f"increment {row + 1}, wave generator at {angle:.3g} degrees"
+
+
+def _needed(data: T | None, what: str, allowed: str) -> T:
+    """Data of a result; raises InputError where it has none."""
+    if not data:
+        raise InputError(f"this run has no {what}: allowed with {allowed}")
+    return data
 
 
 def _as_figure(picture: np.ndarray) -> Figure:

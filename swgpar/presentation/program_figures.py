@@ -30,40 +30,29 @@ def torque_against_rotation(program: Mapping[str, np.ndarray], summary: DriveSum
         if not summary.stiffness:  # a stage begins where the one before has ended
             here[first] = True
         label = f"wave generator at {value:.3g}°" if summary.stiffness else str(value)
-        axes.plot(
-            program["rotation_arcmin"][here],
-            program["torque_Nm"][here],
-            "o-",
-            ms=3,
-            lw=1.0,
-            label=label,
-        )
+        rotation, torque = program["rotation_arcmin"][here], program["torque_Nm"][here]
+        axes.plot(rotation, torque, "o-", ms=3, lw=1.0, label=label)
     if summary.stiffness:
         _mark_chords(axes, summary.stiffness)
-    if found := summary.ratcheting:
-        axes.plot(
-            60.0 * found.peak_rotation_deg,
-            found.peak_torque_Nm,
-            "k*",
-            ms=12,
-            label="largest torque",
-        )
-    axes.set(
-        xlabel="rotation of the output by the torque (arc minutes)",
-        ylabel="torque on the output (N·m)",
-    )
-    axes.set_title(
-        "torque against rotation, wave generator locked" if summary.stiffness else "load program"
-    )
+    if ratcheting := summary.ratcheting:
+        peak = 60.0 * ratcheting.peak_rotation_deg, ratcheting.peak_torque_Nm
+        axes.plot(*peak, "k*", ms=12, label="largest torque")
+    axes.set_xlabel("rotation of the output by the torque (arc minutes)")
+    axes.set_ylabel("torque on the output (N·m)")
+    locked = "torque against rotation, wave generator locked"
+    axes.set_title(locked if summary.stiffness else "load program")
     axes.axhline(0.0, color="0.6", lw=0.6)
     axes.legend(fontsize=8)
     return figure
 
 
-def _mark_chords(axes: Axes, found: TorsionalStiffness) -> None:
+def _mark_chords(axes: Axes, stiffness: TorsionalStiffness) -> None:
     """Mark the torques at which the chords of K1, K2 and K3 end."""
-    for share in found.break_points:
-        axes.axhline(share * found.torque_Nm, color="0.4", ls=":", lw=0.8)
-    words = "\n".join(f"{name} = {getattr(found, name):.4g} N·m/rad" for name in ("K1", "K2", "K3"))
-    words += f"\nlost motion {found.lost_motion:.3g}′, hysteresis {abs(found.hysteresis):.2g}′"
+    for share in stiffness.break_points:
+        axes.axhline(share * stiffness.torque_Nm, color="0.4", ls=":", lw=0.8)
+    words = "\n".join(
+        f"{name} = {getattr(stiffness, name):.4g} N·m/rad" for name in ("K1", "K2", "K3")
+    )
+    words += f"\nlost motion {stiffness.lost_motion:.3g}′"
+    words += f", hysteresis {abs(stiffness.hysteresis):.2g}′"
     axes.text(0.02, 0.98, words, transform=axes.transAxes, va="top", fontsize=9)

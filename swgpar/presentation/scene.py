@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from swgpar.presentation.deformed_figures import colour_limit
+
 if TYPE_CHECKING:
     from swgpar.design.sections import GearName
     from swgpar.drive_results.drive_data import DriveData
@@ -20,12 +22,7 @@ if TYPE_CHECKING:
 MOST_NODES = 400_000
 """Nodes of the surface up to which it goes into a report; it then has some 7 MB."""
 
-PERCENTILE = 99.9
-"""Of the von Mises stress: the end of the colour range."""
-
-HEX_FACES = np.array(
-    [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
-)
+HEX_FACES = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
 
 SCRIPT = "presentation/scene.js"
 
@@ -46,19 +43,15 @@ def sector_surface(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     points : (n, 3) mm, of the sector;  cells : (m, 8) hexahedra in VTK order
     """
     faces = cells[:, HEX_FACES].reshape(-1, 4)
-    _, first, count = np.unique(
-        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
-    )
+    corners = np.sort(faces, axis=1)
+    _, first, count = np.unique(corners, axis=0, return_index=True, return_counts=True)
     outside = faces[first[count == 1]]
     axis = points[:, :2].mean(axis=0)
     angle = np.arctan2(points[:, :2] @ [-axis[1], axis[0]], points[:, :2] @ axis)
-    # the sides lie in planes through the axis, at the largest and the smallest angle
-    at = angle[outside]
-    sides = [
-        np.all(np.abs(at - end) < 1e-6 * np.ptp(angle), axis=1)
-        for end in (angle.min(), angle.max())
-    ]
-    quads = outside[~(sides[0] | sides[1])]
+    # the sides lie in planes through the axis, at the smallest and the largest angle
+    ends = np.array([[angle.min()], [angle.max()]])
+    off_ends = np.abs(angle[outside][:, None] - ends) >= 1e-6 * np.ptp(angle)
+    quads = outside[off_ends.any(axis=2).all(axis=1)]
     return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
@@ -71,7 +64,7 @@ def scene(result: DriveData) -> Scene | None:
     if not result.increments:
         return None
     stresses = {body: result.field("vm", body=body) for body in result.gears}
-    limit = float(np.percentile(np.concatenate(list(stresses.values())), PERCENTILE)) or 1.0
+    limit = colour_limit(*stresses.values())
     bodies = [_body(result, body, stresses[body] / limit) for body in result.gears]
     if sum(body.pop("nodes") for body in bodies) > MOST_NODES:
         return None
@@ -97,7 +90,7 @@ def _body(result: DriveData, body: GearName, values: np.ndarray) -> dict[str, An
     sectors = len(cells) // per_sector
     stride = len(points) // sectors
     triangles = sector_surface(points[:stride], cells[:per_sector])
-    used, local = np.unique(triangles, return_inverse=True)
+    used, corners = np.unique(triangles, return_inverse=True)
     chosen = (used + stride * np.arange(sectors)[:, None]).ravel()
     place, shift = points[chosen], result.field("displacement", body=body)[chosen]
     low, span = place.min(axis=0), np.maximum(np.ptp(place, axis=0), 1e-9)
@@ -109,12 +102,12 @@ def _body(result: DriveData, body: GearName, values: np.ndarray) -> dict[str, An
         "low": low.tolist(),
         "span": span.tolist(),
         "reach": reach.tolist(),
-        "points": _text(np.rint((place - low) / span * 65535.0).astype("<u2")),
-        "shifts": _text(np.rint(shift / reach * 32767.0).astype("<i2")),
-        "values": _text(np.rint(np.clip(values[chosen], 0.0, 1.0) * 255.0).astype("<u1")),
-        "faces": _text(local.reshape(-1).astype("<u4")),
+        "points": _text(np.rint((place - low) / span * 65535.0), "<u2"),
+        "shifts": _text(np.rint(shift / reach * 32767.0), "<i2"),
+        "values": _text(np.rint(np.clip(values[chosen], 0.0, 1.0) * 255.0), "<u1"),
+        "faces": _text(corners.reshape(-1), "<u4"),
     }
 
 
-def _text(array: np.ndarray) -> str:
-    return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode()
+def _text(array: np.ndarray, kind: str) -> str:
+    return base64.b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode()

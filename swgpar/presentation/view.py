@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -54,34 +55,28 @@ def view_plotter(result: DriveData, *, off_screen: bool = False) -> pyvista.Plot
     with errors_only():
         plotter = pyvista.Plotter(off_screen=off_screen, title="swgpar", window_size=(1300, 950))
     shown: dict[str, Any] = {"increment": result.increments - 1, "factor": 1.0, "field": "vm"}
-    surfaces: dict[GearName, pyvista.PolyData] = {}
-    places: dict[str, np.ndarray] = {}
+
+    def surface_of(body: GearName) -> pyvista.PolyData:
+        grid = result.grid(shown["increment"], body, whole=True)
+        return grid.extract_surface(algorithm="dataset_surface")
+
+    surfaces = {body: surface_of(body) for body in result.gears}
+    places = {body: surface.points.copy() for body, surface in surfaces.items()}
     actors = {}
-    for body in result.gears:
-        surface = result.grid(-1, body, whole=True).extract_surface(algorithm="dataset_surface")
-        surfaces[body], places[body] = surface, surface.points.copy()
+    for body, surface in surfaces.items():
         surface.point_data["shown"] = surface.point_data["vm"]
-        actors[body] = plotter.add_mesh(
-            surface,
-            scalars="shown",
-            cmap="turbo",
-            smooth_shading=False,
-            show_scalar_bar=False,
-            name=body,
-        )
-    plotter.add_scalar_bar(
-        title=COLOURED["vm"], fmt="%.4g", mapper=actors[result.gears[0]].mapper, vertical=True
-    )
+        colours = {"scalars": "shown", "cmap": "turbo", "show_scalar_bar": False}
+        actors[body] = plotter.add_mesh(surface, smooth_shading=False, name=body, **colours)
+    mapper = actors[result.gears[0]].mapper
+    plotter.add_scalar_bar(title=COLOURED["vm"], fmt="%.4g", mapper=mapper, vertical=True)
 
     def update() -> None:
         largest = []
         for body, surface in surfaces.items():
-            fields = result.grid(shown["increment"], body, whole=True).extract_surface(
-                algorithm="dataset_surface"
-            )
-            surface.points = places[body] + shown["factor"] * fields.point_data["displacement"]
-            surface.point_data["shown"] = fields.point_data[shown["field"]]
-            largest.append(np.percentile(np.abs(surface.point_data["shown"]), PERCENTILE))
+            fields = surface_of(body).point_data
+            surface.points = places[body] + shown["factor"] * fields["displacement"]
+            surface.point_data["shown"] = fields[shown["field"]]
+            largest.append(np.percentile(np.abs(fields[shown["field"]]), PERCENTILE))
         limit = float(max(largest))
         for actor in actors.values():
             actor.mapper.scalar_range = (-limit, 0.0) if shown["field"] == "s3" else (0.0, limit)
@@ -94,33 +89,38 @@ def view_plotter(result: DriveData, *, off_screen: bool = False) -> pyvista.Plot
             update()
 
     if not off_screen:
-        if result.increments > 1:
-            plotter.add_slider_widget(
-                lambda value: set_value("increment", round(value)),
-                (0, result.increments - 1),
-                value=result.increments - 1,
-                title="increment",
-                fmt="%.0f",
-                pointa=(0.05, 0.08),
-                pointb=(0.4, 0.08),
-            )
-        plotter.add_slider_widget(
-            lambda value: set_value("factor", value),
-            (0.0, MOST_MAGNIFIED),
-            value=1.0,
-            title="displacements x",
-            pointa=(0.55, 0.08),
-            pointb=(0.9, 0.08),
-        )
+        _add_sliders(plotter, result.increments - 1, set_value)
     for key, name in zip("123", COLOURED):
         plotter.add_key_event(key, lambda name=name: set_value("field", name))
-    for body in result.gears:
-        plotter.add_key_event(
-            body[0], lambda body=body: actors[body].SetVisibility(not actors[body].GetVisibility())
-        )
+    for body, actor in actors.items():
+        plotter.add_key_event(body[0], lambda a=actor: a.SetVisibility(not a.GetVisibility()))
     keys = "   ".join(f"{body[0]} {body.replace('_', ' ')}" for body in result.gears)
     plotter.add_text(f"1 von Mises   2 s1   3 s3   {keys}   q close", font_size=9)
     if result.is_plane:
         plotter.view_xy()
     update()
     return plotter
+
+
+def _add_sliders(
+    plotter: pyvista.Plotter, last: int, set_value: Callable[[str, float], None]
+) -> None:
+    """Sliders of the increment, if there are several, and of the magnification."""
+    if last > 0:
+        plotter.add_slider_widget(
+            lambda value: set_value("increment", round(value)),
+            (0, last),
+            value=last,
+            title="increment",
+            fmt="%.0f",
+            pointa=(0.05, 0.08),
+            pointb=(0.4, 0.08),
+        )
+    plotter.add_slider_widget(
+        lambda value: set_value("factor", value),
+        (0.0, MOST_MAGNIFIED),
+        value=1.0,
+        title="displacements x",
+        pointa=(0.55, 0.08),
+        pointb=(0.9, 0.08),
+    )
