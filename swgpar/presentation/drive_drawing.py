@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -31,6 +32,9 @@ FILLS = {
     "flexible_spline": "#f0c987",
     "wave_generator": "#d9d9d9",
 }
+
+
+Pixels = tuple[float, float]
 
 
 class Outline(NamedTuple):
@@ -82,14 +86,18 @@ class Sheet:
     def outline(self, points: Sequence[np.ndarray], name: str) -> None:
         """Closed curves of a body, each (n, 2) mm, filled between them."""
         path = " ".join(
-            "M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in (self.at(*p) for p in curve)) + "Z"
+            "M" + "L".join("{:.2f} {:.2f}".format(*self.at(*p)) for p in curve) + "Z"
             for curve in points
         )
         self.outlines.append(Outline(path, FILLS[name], name.replace("_", " ")))
 
-    def line(self, x1: float, y1: float, x2: float, y2: float, style: str = "dim") -> None:
-        """A line from x1, y1 to x2, y2 in pixels."""
-        self.lines.append(Line(x1, y1, x2, y2, style))
+    def line(self, start: Pixels, end: Pixels, style: str = "dim") -> None:
+        """A line between pixels."""
+        self.lines.append(Line(*start, *end, style))
+
+    def axis(self, start: Pixels, end: Pixels) -> None:
+        """A line of an axis between points in mm."""
+        self.line(self.at(*start), self.at(*end), "axis")
 
     def text(self, x: float, y: float, text: str, anchor: str = "middle") -> None:
         """A text at pixels."""
@@ -100,8 +108,8 @@ class Sheet:
         mm."""
         (a, start), (b, _) = self.at(x1, y_from), self.at(x2, y_from)
         for x in (a, b):
-            self.line(x, start, x, y + (4 if y > start else -4), style="thin")
-        self.line(a, y, b, y)
+            self.line((x, start), (x, y + (4 if y > start else -4)), "thin")
+        self.line((a, y), (b, y))
         self.text(0.5 * (a + b), y - 4, text)
 
     def upright(
@@ -110,8 +118,8 @@ class Sheet:
         """A vertical dimension from y1 to y2 mm at x (pixels), with lines from x_from mm."""
         (start, a), (_, b) = self.at(x_from, y1), self.at(x_from, y2)
         for y in (a, b):
-            self.line(start, y, x + (4 if x > start else -4), y, style="thin")
-        self.line(x, a, x, b)
+            self.line((start, y), (x + (4 if x > start else -4), y), "thin")
+        self.line((x, a), (x, b))
         self.text(x + (6 if anchor == "start" else -6), 0.5 * (a + b) + 4, text, anchor)
 
 
@@ -150,18 +158,12 @@ def _curves(design: DriveDesign) -> dict[str, list[np.ndarray]]:
         return place, psi + (v + lobes * half * np.sin(lobes * psi)) / r
 
     place, turned = moved(2.0 * np.pi / drive.teeth_fs * np.arange(drive.teeth_fs))
-    teeth = place[:, None] + rotated(
-        _tooth(design, "flexible_spline")[None] - [0.0, r], turned[:, None]
-    )
+    tooth = _tooth(design, "flexible_spline") - [0.0, r]
+    teeth = place[:, None] + rotated(tooth[None], turned[:, None])
     place, turned = moved(np.linspace(0.0, 2.0 * np.pi, 721)[:-1])
     inside = place + rotated(np.array([[0.0, -0.5 * design.flexible_spline.rim]]), turned)
-    housing = (
-        {"housing": [_circle(design.geometry.outer_radius), _circle(outer)]}
-        if design.housing
-        else {}
-    )
-    return {
-        **housing,
+    curves = {"housing": [_circle(design.geometry.outer_radius), _circle(outer)]}
+    return (curves if design.housing else {}) | {
         "ring_gear": [_circle(outer), ring],
         "flexible_spline": [teeth.reshape(-1, 2), inside],
         "wave_generator": [design.cam().outline(720)],
@@ -178,10 +180,9 @@ def _front(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
     sheet = Sheet(215.0 / outer, 250.0, 265.0, 545.0)
     for name, closed in curves.items():
         sheet.outline(closed, name)
-    for x1, y1, x2, y2 in ((-1.04, 0.0, 1.04, 0.0), (0.0, -1.04, 0.0, 1.04)):
-        sheet.line(
-            *sheet.at(x1 * outer, y1 * outer), *sheet.at(x2 * outer, y2 * outer), style="axis"
-        )
+    reach = 1.04 * outer
+    sheet.axis((-reach, 0.0), (reach, 0.0))
+    sheet.axis((0.0, -reach), (0.0, reach))
     cam = curves["wave_generator"][0]
     width, low, high = float(cam[:, 0].max()), float(cam[:, 1].min()), float(cam[:, 1].max())
     sheet.across(-outer, outer, 0.0, 20.0, f"⌀ {2 * outer:.4g}")
@@ -200,10 +201,8 @@ def _front(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
 def _teeth(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
     pitch = np.pi * design.drive.module
     spline, ring = (design.profile(gear) for gear in GEARS)
-    low, high = (
-        design.major_semi_axis - 0.3 * pitch,
-        ring.r_root_circle + min(design.ring_gear.rim, 0.5 * pitch),
-    )
+    low = design.major_semi_axis - 0.3 * pitch
+    high = ring.r_root_circle + min(design.ring_gear.rim, 0.5 * pitch)
     half = max(1.6 * pitch, 0.5 * (high - low))
     scale = 0.5 * (SIZE - 210.0) / half
     sheet = Sheet(scale, 0.5 * SIZE, 25.0 + scale * high, 50.0 + scale * (high - low))
@@ -211,25 +210,14 @@ def _teeth(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
         if name == "housing":  # beyond the window
             continue
         sheet.outline([_cut(curve, half, low, high) for curve in closed], name)
-    a, edge = 0.5 * design.deflection, SIZE - 90.0
     # dimensions of the spline are drawn where its tooth is deflected to
-    sheet.upright(
-        spline.r_root_circle + a,
-        spline.r_tip_circle + a,
-        0.0,
-        edge,
-        f"{_height(spline):.4g} spline",
-    )
-    sheet.upright(
-        design.major_semi_axis,
-        spline.r_root_circle + a,
-        0.0,
-        edge,
-        f"{design.flexible_spline.rim:.4g} rim",
-    )
-    sheet.upright(
-        ring.r_tip_circle, ring.r_root_circle, -half, 90.0, f"{_height(ring):.4g} ring", "end"
-    )
+    moved, edge = 0.5 * design.deflection, SIZE - 90.0
+    root, tip = spline.r_root_circle + moved, spline.r_tip_circle + moved
+    rim = f"{design.flexible_spline.rim:.4g} rim"
+    sheet.upright(root, tip, 0.0, edge, f"{_height(spline):.4g} spline")
+    sheet.upright(design.major_semi_axis, root, 0.0, edge, rim)
+    depth = f"{_height(ring):.4g} ring"
+    sheet.upright(ring.r_tip_circle, ring.r_root_circle, -half, 90.0, depth, "end")
     sheet.caption = (
         f"Teeth at the major axis, in mm: {design.flexible_spline.profile.type.replace('_', ' ')} "
         f"on {design.ring_gear.profile.type.replace('_', ' ')}, backlash "
@@ -255,51 +243,41 @@ def _cut(curve: np.ndarray, half: float, low: float, high: float) -> np.ndarray:
 def _meridian(design: DriveDesign) -> Sheet:
     cup, wall, width = design.cup, design.cup_sizes.wall, design.drive.face_width
     spline, ring = (design.profile(gear) for gear in GEARS)
-    outer = design.geometry.outer_radius
+    outer, ring_outer = (
+        design.geometry.outer_radius,
+        design.geometry.gears["ring_gear"].outer_radius,
+    )
     back = 0.5 * width
-    length = width + cup.length
+    end, length = back + cup.length, width + cup.length
     top = max(outer, wall.edge)
     scale = min((SIZE - 150.0) / length, 420.0 / top)
     sheet = Sheet(scale, 60.0 + scale * back, 55.0 + scale * top, 100.0 + scale * top)
-    lines = meridian(
-        design.geometry.cup, CupRecipe(cylinder=48 if cup.contour else 1, fillet=24, closed_end=1)
-    )
-    inner_line, outer_line = lines.inner, lines.outer
-    tooth = np.array(
-        [[spline.r_tip_circle, back], [spline.r_tip_circle, -back], [design.inner_radius, -back]]
-    )
-    body = np.concatenate([inner_line, outer_line[::-1], tooth])
-    half = 0.5 * design.wave_generator.face_width
+    recipe = CupRecipe(cylinder=48 if cup.contour else 1, fillet=24, closed_end=1)
+    lines = meridian(design.geometry.cup, recipe)
+    tip, bore = spline.r_tip_circle, design.inner_radius
+    tooth = [[tip, back], [tip, -back], [bore, -back]]
     boxes = {
-        **(
-            {"housing": (design.geometry.gears["ring_gear"].outer_radius, outer, back)}
-            if design.housing
-            else {}
-        ),
-        "ring_gear": (ring.r_tip_circle, design.geometry.gears["ring_gear"].outer_radius, back),
-        "wave_generator": (0.0, design.inner_radius, half),
+        "ring_gear": (ring.r_tip_circle, ring_outer, back),
+        "wave_generator": (0.0, bore, 0.5 * design.wave_generator.face_width),
     }
+    if design.housing:
+        boxes = {"housing": (ring_outer, outer, back)} | boxes
     for name, (r1, r2, reach) in boxes.items():
-        box = np.array([[-reach, r1], [reach, r1], [reach, r2], [-reach, r2]])
-        sheet.outline([box], name)
+        sheet.outline([np.array([[-reach, r1], [reach, r1], [reach, r2], [-reach, r2]])], name)
+    body = np.concatenate([lines.inner, lines.outer[::-1], tooth])
     sheet.outline([body[:, ::-1]], "flexible_spline")
-    sheet.line(
-        *sheet.at(-0.6 * width, 0.0), *sheet.at(back + cup.length + 0.1 * length, 0.0), style="axis"
-    )
-    end = back + cup.length
+    sheet.axis((-0.6 * width, 0.0), (end + 0.1 * length, 0.0))
     sheet.across(-back, back, outer, 22.0, f"{width:g}")
-    sheet.across(back, end, outer_line[0, 0], 44.0, f"{cup.length:g}")
-    bottom = sheet.at(0.0, 0.0)[1]
+    sheet.across(back, end, lines.outer[0, 0], 44.0, f"{cup.length:g}")
     edge = "flange" if wall.outwards else "bore"
     sheet.upright(0.0, wall.edge, end, sheet.at(end, 0.0)[0] + 14.0, f"{edge} r {wall.edge:g}")
-    sheet.upright(0.0, design.inner_radius, -back, 40.0, f"r {design.inner_radius:.4g}", "start")
+    sheet.upright(0.0, bore, -back, 40.0, f"r {bore:.4g}", "start")
     if cup.attachment != "edge":
         _draw_attachment(sheet, design)
-    x, y = sheet.at(
-        back + 0.5 * cup.length, min(radius for _, radius, _, _ in design.cup_sizes.points)
-    )
+    lowest = min(radius for _, radius, _, _ in design.cup_sizes.points)
+    x, y = sheet.at(back + 0.5 * cup.length, lowest)
     sheet.text(x, y + 18.0, f"wall {_thicknesses(design)}, fillet r {cup.fillet_radius:g}")
-    sheet.height = bottom + 20.0
+    sheet.height = sheet.at(0.0, 0.0)[1] + 20.0
     micro = design.micro_geometry
     sheet.caption = (
         "Half section, in mm, undeformed, teeth without their backlash. Micro-geometry: cam "
@@ -312,38 +290,25 @@ def _meridian(design: DriveDesign) -> Sheet:
 def _thicknesses(design: DriveDesign) -> str:
     """Thickness of the wall in words: where it changes from place to place, with that of the closed
     end or flange."""
-    wall = " / ".join(
-        f"{thickness:.3g}" for thickness in _changes([t for _, _, t, _ in design.cup_sizes.points])
-    )
-    end, last = design.cup_sizes.end_thickness, design.cup_sizes.points[-1][2]
-    return (
-        wall
-        if end == last
-        else f"{wall}, {'flange' if design.cup_sizes.wall.outwards else 'end'} {end:.3g}"
-    )
-
-
-def _changes(values: Sequence[float]) -> list[float]:
-    """Values without those that equal the one before."""
-    return [value for k, value in enumerate(values) if k == 0 or value != values[k - 1]]
+    sizes = design.cup_sizes
+    along = [thickness for _, _, thickness, _ in sizes.points]
+    wall = " / ".join(f"{thickness:.3g}" for thickness, _ in groupby(along))
+    if sizes.end_thickness == along[-1]:
+        return wall
+    return f"{wall}, {'flange' if sizes.wall.outwards else 'end'} {sizes.end_thickness:.3g}"
 
 
 def _draw_attachment(sheet: Sheet, design: DriveDesign) -> None:
     """Radius of the clamped ring, or the axis of a bolt with its circle."""
     cup, wall = design.cup, design.cup_sizes.wall
-    x = sheet.at(min(wall.faces), 0.0)[0] - 14.0
+    near, far = min(wall.faces), max(wall.faces)
+    x = sheet.at(near, 0.0)[0] - 14.0
     if cup.attachment == "clamped":
-        sheet.upright(
-            0.0,
-            cup.clamping_radius,
-            min(wall.faces),
-            x,
-            f"clamped r {cup.clamping_radius:g}",
-            "end",
-        )
+        text = f"clamped r {cup.clamping_radius:g}"
+        sheet.upright(0.0, cup.clamping_radius, near, x, text, "end")
         return
     radius = 0.5 * cup.bolt_circle
-    (x1, y), (x2, _) = (sheet.at(z, radius) for z in (min(wall.faces), max(wall.faces)))
-    sheet.line(x1 - 12.0, y, x2 + 12.0, y, style="axis")
+    (x1, y), (x2, _) = sheet.at(near, radius), sheet.at(far, radius)
+    sheet.line((x1 - 12.0, y), (x2 + 12.0, y), "axis")
     text = f"{cup.bolts} bolts ⌀ {cup.washer_diameter:g}, circle ⌀ {cup.bolt_circle:g}"
-    sheet.upright(0.0, radius, min(wall.faces), x, text, "end")
+    sheet.upright(0.0, radius, near, x, text, "end")
