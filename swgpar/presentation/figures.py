@@ -178,8 +178,8 @@ class DriveFigures(FigureSet):
 
         All computed increments under load are drawn, and below the number of pairs at these angles.
         """
-        history, lobes = self._result.history, self._design.lobes
-        return draw_load_sharing(self._pairs(), history, self._angle, lobes)
+        pairs, history = self._pairs(), self._result.history
+        return draw_load_sharing(pairs, history, self._angle, self._design.lobes)
 
     def haigh(self) -> Figure:
         """Haigh's diagram of all nodes of a sector, and the normal stress over the cycle where the
@@ -187,8 +187,8 @@ class DriveFigures(FigureSet):
 
         Runs with the section [fatigue] have it.
         """
-        cycle, summary = self._result.fatigue_cycle, self._result.summary
-        return draw_haigh(self._fatigue(), cycle, summary, self._angle)
+        sector, cycle = self._fatigue(), self._result.fatigue_cycle
+        return draw_haigh(sector, cycle, self._result.summary, self._angle)
 
     def safety(self) -> Figure:
         """One sector of the flexible spline, coloured by Goodman's safety factor."""
