@@ -17,8 +17,6 @@ from swgpar.load.load_states import LoadState
 class PrescribedDisplacement:
     """Nodes that are held at given displacements by stiff springs.
 
-    Parameters
-    ----------
     partition : ownership
     nodes : (n,) local nodes that this rank owns, each once
     displacement : (n, 3) mm
@@ -49,8 +47,6 @@ class PrescribedDisplacement:
 class DeadLoad:
     """Forces that do not depend on the displacement.
 
-    Parameters
-    ----------
     nodes : (n,) local nodes that this rank owns, each once;  forces : (n, 3) N
     """
 

@@ -159,8 +159,6 @@ class NodeMeans(ABC):
 class DistributingCoupling(NodeMeans):
     """Mean motions of a surface of a body.
 
-    Parameters
-    ----------
     partition : ownership
     body : elements of the body on this rank (bound to local nodes);  surface : name of its node set
     images : the model holds half a turn; then only z and the rotation can be non-zero
@@ -232,8 +230,6 @@ class RadialGuide:
 
     Stiff radial springs, as hard as contact; the nodes are free along the circle and the axis.
 
-    Parameters
-    ----------
     coupling : of the outer surface;  area : mm², of the modelled surface;  penalty : MPa / mm
     """
 

@@ -79,8 +79,6 @@ def area_shares(
 class RigidAttachment(NodeMeans):
     """The attached area of a body as a coupling: only its rotation is prescribed or loaded.
 
-    Parameters
-    ----------
     partition : ownership
     body : elements of the body on this rank;  surface : name of its plane faces
     inside : which points of them are attached;  width : mm, of the attached area across its

@@ -72,8 +72,7 @@ class Supports:
     ----------
     partition : ownership
     couplings : six multipliers each, in this order at the end of the vector; none where contacts
-    hold the body, no
-        second one where the ring gear is clamped
+    hold the body, no second one where the ring gear is clamped
     output : index of the coupling of the output
     guide : around the ring gear, or None
     scale : unit of the multipliers and of the grounding: E times the module, N/mm

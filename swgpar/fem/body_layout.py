@@ -24,22 +24,14 @@ from swgpar.meshing.sector import SectorMesh
 class SectorNumbering:
     """Rows of a sector's nodes, of n_node nodes each, -1 where there is none.
 
-    Attributes
-    ----------
-    previous : (n_node,) int64
-        Node of the next sector (on its clockwise side) with which a node on the counter-clockwise
-        side coincides.
-    owned_nodes : (n_owned,) int64
-        Nodes whose unknowns belong to this sector: all but those of the counter-clockwise side and
-        those without unknowns.
-    row : (n_node,) int64
-        Index of a node among the owned ones.
-    end_row : (n_node,) int64
-        Index of a clockwise-side node among those that close an open chain.
-    n_end : int
-        Nodes that close an open chain; 0 for a closed one.
-    without_unknowns : (n_node,) bool
-        Nodes that are fixed, or inside of a condensed sector.
+    previous : (n_node,) node of the next sector (on its clockwise side) with which a node on the
+        counter-clockwise side coincides
+    owned_nodes : (n_owned,) nodes whose unknowns belong to this sector: all but those of the
+        counter-clockwise side and those without unknowns
+    row : (n_node,) index of a node among the owned ones
+    end_row : (n_node,) index of a clockwise-side node among those that close an open chain
+    n_end : nodes that close an open chain; 0 for a closed one
+    without_unknowns : (n_node,) bool nodes that are fixed, or inside of a condensed sector
     """
 
     previous: np.ndarray

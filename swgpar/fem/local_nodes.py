@@ -10,8 +10,6 @@ from swgpar.fem.partition import Partition
 class LocalNodes:
     """The nodes a rank sees: its own, in global order, then ghosts, then additional ghosts.
 
-    Parameters
-    ----------
     needed : global block numbers whose local indices do not depend on the additional ones; negative
     ones are ignored
     additional : more global block numbers, indexed after all of those

@@ -84,15 +84,11 @@ class Partition:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Global block numbers of local nodes of sectors.
 
-        Parameters
-        ----------
         index : (m,) chain indices; for a closed chain one below 0 or above the end is an image
         nodes : (k,) local nodes
 
-        Returns
-        -------
-        number : (m, k) int64, -1 where the node has no unknowns
-        sixths : (m, k) uint8, sixths of a turn by which the owner's vectors must be rotated
+        Returns numbers (m, k), -1 where the node has no unknowns, and sixths of a turn (m, k),
+        uint8, by which the owner's vectors must be rotated.
         """
         b, numbering = self.layouts[body], self.layouts[body].numbering
         index, nodes = np.asarray(index, dtype=np.int64), np.asarray(nodes, dtype=np.int64)

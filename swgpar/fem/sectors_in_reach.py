@@ -25,8 +25,7 @@ class SectorsInReach(ABC):
 
     Parameters
     ----------
-    count : int
-        Sectors of the body in the model.
+    count : sectors of the body in the model
 
     Attributes
     ----------

@@ -58,8 +58,6 @@ class WaveGeneratorSurface:
     The zero level is the surface; away from it h is the distance up to the factor |grad h|, 1.002
     at most here.
 
-    Parameters
-    ----------
     cam : curve of the cross-section at mid-width
     width : mm, face width of the cam
     crowning, slope : mm, at |z| = width / 2 (section 7.12; the sign of the slope is explained

@@ -59,12 +59,8 @@ the other flank."""
 def rotated(vectors: np.ndarray, angle: float | np.ndarray) -> np.ndarray:
     """Rotate vectors about z, counter-clockwise.
 
-    Parameters
-    ----------
-    vectors : (..., 2) or (..., 3)
-        Points or vectors in any unit; a third component is kept.
-    angle : rad
-        Scalar, or an array that broadcasts against ``vectors.shape[:-1]``.
+    vectors : (..., 2) or (..., 3), points or vectors in any unit; a third component is kept
+    angle : rad, scalar, or an array that broadcasts against ``vectors.shape[:-1]``
     """
     c, s = np.cos(angle), np.sin(angle)
     x, y = vectors[..., 0], vectors[..., 1]

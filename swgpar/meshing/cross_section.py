@@ -23,27 +23,17 @@ rim."""
 class CrossSection:
     """Plane mesh of a full tooth, symmetric about the +y axis.
 
-    Attributes
-    ----------
-    coords : (n_node, 2) float64, mm
-    quads : (n_quad, 4) int32
-        Counter-clockwise.
-    s : (n_s + 1,) float64, mm
-        Arc lengths of the flank's nodes, from T to R.
-    flank : (n_s + 1,) int32
-        Nodes of the flank at x > 0.
-    mirror : (n_node,) int32
-        Node at (-x, y).
-    edge : (n_edge,) int32
-        Nodes on the sector's clockwise side, ordered by radius.
-    free : (n_angle + 1,) int32
-        Nodes on the free circle, from the clockwise to the counter-clockwise side.
-    below_root : (n_node,) bool
-        Nodes of the rim: on the interface circle or beyond.
-    root_layer, rim_layer : (n_quad,) bool
-        Quadrilaterals between root and interface circle, and of the lower rim.
-    housing : (n_quad,) bool
-        Quadrilaterals of the rim that belong to a housing.
+    coords : (n_node, 2) mm;  quads : (n_quad, 4), counter-clockwise
+    s : (n_s + 1,) mm, arc lengths of the flank's nodes, from T to R
+    flank : (n_s + 1,) nodes of the flank at x > 0
+    mirror : (n_node,) node at (-x, y)
+    edge : (n_edge,) nodes on the sector's clockwise side, ordered by radius
+    free : (n_angle + 1,) nodes on the free circle, from the clockwise to the counter-clockwise
+        side
+    below_root : (n_node,) bool nodes of the rim: on the interface circle or beyond
+    root_layer, rim_layer : (n_quad,) bool quadrilaterals between root and interface circle, and of
+        the lower rim
+    housing : (n_quad,) bool quadrilaterals of the rim that belong to a housing
     """
 
     coords: Floats
@@ -115,11 +105,7 @@ class NodeFinder:
 def mirrored(half: QuadMesh) -> tuple[QuadMesh, Ints]:
     """Complete the half x >= 0 by its mirror image.
 
-    Returns
-    -------
-    mesh : QuadMesh
-    mirror : (n_node,) int32
-        Node at (-x, y); the nodes on the axis are their own.
+    Returns it and the node (n_node,) at (-x, y); the nodes on the axis are their own.
     """
     coords = half.coords.copy()
     tolerance = 1e-9 * np.abs(coords).max()

@@ -207,8 +207,6 @@ def joined_columns(n_column: int) -> list[int]:
 def transition(below: Ints, above: Ints, between: Ints, groups: list[int]) -> Ints:
     """Return the hexahedra (n, 8) between a station with all columns and one with joined columns.
 
-    Parameters
-    ----------
     below : (n_layer + 1, n_column + 1) nodes;  above : (n_layer + 1, n_group + 1) nodes
     between : (n_layer + 1, 2 * n_three) nodes, two for every three columns that become one
     groups : numbers of columns that become one

@@ -166,22 +166,11 @@ def write_mesh(
     """Write the full drive, all sectors of all bodies, as ``drive_120_122.vtu``, ``.msh`` and
     ``.inp``.
 
-    Parameters
-    ----------
-    meshes : dict of SectorMesh
-    materials : dict of Material
-        Of every body and of a housing.
-    thickness : float, mm
-        Of the plane model.
-    directory : str or Path
-        Made when it does not exist.
-    formats : sequence of str
-        Any of ``vtu``, ``msh``, ``inp``.
+    meshes : by gear;  materials : of every body and of a housing
+    thickness : mm, of the plane model
+    directory : made when it does not exist;  formats : any of ``vtu``, ``msh``, ``inp``
 
-    Returns
-    -------
-    list of Path
-        The files, in the order of `formats`.
+    Returns the files, in the order of `formats`.
     """
     for name in formats:
         if name not in FORMATS:
@@ -213,11 +202,8 @@ def write_mesh(
 def mesh_report(meshes: dict[str, SectorMesh]) -> dict[str, dict[str, float]]:
     """Return counts and worst quality of every body.
 
-    Returns
-    -------
-    dict of dict
-        For each body ``nodes`` and ``elements`` (all sectors), ``sector_elements``, ``volume``
-        (mm³) and the mesh's quality.
+    They are ``nodes`` and ``elements`` (all sectors), ``sector_elements``, ``volume`` (mm³) and the
+    mesh's quality.
     """
     report = {}
     for body, mesh in meshes.items():

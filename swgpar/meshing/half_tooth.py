@@ -97,8 +97,7 @@ class HalfTooth:
     ----------
     profile : ToothProfile
     recipe : ToothRecipe
-    interface, free : float, mm
-        Radii of the interface circle and of the free surface of the rim.
+    interface, free : mm, radii of the interface circle and of the free surface of the rim
     """
 
     def __init__(

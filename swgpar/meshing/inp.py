@@ -84,20 +84,13 @@ def write_inp(
 ) -> None:
     """Write bodies that are the cell sets of `drive`: C3D8I elements, or CPS4 in the plane.
 
-    Parameters
-    ----------
     path : Path
-    drive : meshio.Mesh
-        Its point sets are written as node sets, in capitals.
-    surfaces : dict of (n, 2) int32
-        Element and face of every facet, both from 0.
-    materials : dict of Material
-        Of every body.
-    thickness : float, mm
-        Of the plane model.
-    plane_stress : bool
-        Gives hexahedra a material without transverse contraction along z. With no displacement
-        along z they are then in plane stress.
+    drive : its point sets are written as node sets, in capitals
+    surfaces : (n, 2) element and face of every facet, both from 0
+    materials : of every body
+    thickness : mm, of the plane model
+    plane_stress : gives hexahedra a material without transverse contraction along z. With no
+        displacement along z they are then in plane stress.
 
     Raises InputError for a material that is not the same in all directions across z: its axes are
     not in the file.

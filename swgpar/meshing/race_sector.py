@@ -21,11 +21,8 @@ def race_sector(
     """Sector of the outer race of a bearing, whose outer surface has its nodes opposite those of
     the flexible spline.
 
-    Parameters
-    ----------
     spline : tooth sector of the flexible spline
-    outer, thickness, width : float, mm
-    radial : int, elements through the thickness
+    outer, thickness, width : mm;  radial : elements through the thickness
 
     In the plane the mesh is as wide as the spline's.
     """

@@ -14,15 +14,10 @@ from swgpar.geometry.profiles.flank import ToothProfile
 class FlankGrid:
     """Structured contact surface of one flank of sector 0.
 
-    Attributes
-    ----------
-    nodes : (n_s + 1, n_z + 1) int32
-        Local node numbers: row i at the arc length s[i], column j at z[j].
-    s : (n_s + 1,) float64, mm
-        Arc lengths on the tooth profile, from T (0) to R (the length of the profile).
-    z : (n_z + 1,) float64, mm
-    side : int
-        +1 for the flank at x > 0 (the clockwise one), -1 for its mirror image at x < 0.
+    nodes : (n_s + 1, n_z + 1) local node numbers: row i at the arc length s[i], column j at z[j]
+    s : (n_s + 1,) mm, arc lengths on the tooth profile, from T (0) to R (the length of the profile)
+    z : (n_z + 1,) mm
+    side : +1 for the flank at x > 0 (the clockwise one), -1 for its mirror image at x < 0
     """
 
     nodes: Ints
@@ -36,40 +31,29 @@ class SectorMesh:
     """The tooth sector centred on +y; copy k of it is rotated by ``phase + 2 pi k / n_sectors``
     about z.
 
-    Attributes
-    ----------
-    body : str
-        ``flexible_spline``, ``ring_gear``, ``dynamic_spline`` or ``outer_race``, or ``ring`` for a
-        plain one.
-    n_sectors : int
-        Number of teeth of the full gear.
-    phase : float, rad
-        Angle of sector 0 from +y in the drive, counter-clockwise.
-    coords : (n_node, 3) float64, mm
-    hexes : (n_elem, 8) int32
-        Nodes in VTK order.
-    ccw_nodes, cw_nodes : (n_pair,) int32
-        Nodes on the counter-clockwise and on the clockwise side: the first of sector k coincide
-        with the second of sector k + 1, in this order.
-    faces : dict of (n_face, 4) int32
-        Quadrilaterals whose right-hand normal points out of the material: ``inner`` (flexible
-        spline, the cylinder of the inner radius within the face width), ``end`` (both faces of the
-        cup's closed end or flange) or ``outer`` (ring gear, with its housing if it has one).
-    node_sets : dict of (n,) int32
-        ``bore`` (flexible spline; the rim of a flange) or ``outer`` (ring gear, as above).
-    flanks : tuple of FlankGrid
-        Side +1, then side -1; none on a plain ring, which has no profile either.
+    body : ``flexible_spline``, ``ring_gear``, ``dynamic_spline`` or ``outer_race``, or ``ring`` for
+        a plain one
+    n_sectors : number of teeth of the full gear
+    phase : rad, angle of sector 0 from +y in the drive, counter-clockwise
+    coords : (n_node, 3) mm;  hexes : (n_elem, 8) nodes in VTK order
+    ccw_nodes, cw_nodes : (n_pair,) nodes on the counter-clockwise and on the clockwise side: the
+        first of sector k coincide with the second of sector k + 1, in this order
+    faces : (n_face, 4) quadrilaterals whose right-hand normal points out of the material:
+        ``inner`` (flexible spline, the cylinder of the inner radius within the face width), ``end``
+        (both faces of the cup's closed end or flange) or ``outer`` (ring gear, with its housing if
+        it has one)
+    node_sets : (n,) ``bore`` (flexible spline; the rim of a flange) or ``outer`` (ring gear, as
+        above)
+    flanks : side +1, then side -1; none on a plain ring, which has no profile
+        either
     profile : ToothProfile or None
-    quality : dict of float
-        ``min_scaled_jacobian``, ``min_jacobian`` and ``max_jacobian`` (mm³, determinants at the
-        2x2x2 Gauss points), ``max_aspect_ratio``; of the quadrilaterals (mm², 2x2 points) in the
-        plane model.
-    tooth : (n,) int32
-        Elements of the tooth above its rim; none on a plain ring.
-    housing : (n,) int32
-        Elements of the housing around a ring gear.
-    lower_nodes : (n_node,) int32 or None
-        Plane model: the node of the lower layer that each node moves with; None for a solid.
+    quality : ``min_scaled_jacobian``, ``min_jacobian`` and ``max_jacobian`` (mm³,
+        determinants at the 2x2x2 Gauss points), ``max_aspect_ratio``; of the quadrilaterals (mm²,
+        2x2 points) in the plane model
+    tooth : (n,) elements of the tooth above its rim; none on a plain ring
+    housing : (n,) elements of the housing around a ring gear
+    lower_nodes : (n_node,) of the plane model, the node of the lower layer that each node moves
+        with; None for a solid
     """
 
     body: str

@@ -18,12 +18,9 @@ def grid_quads(grid: Ints) -> Ints:
 def sweep_quads(quads: Ints, rows: Ints) -> Ints:
     """Return the hexahedra (n_quad * n_step, 8) between consecutive copies of a plane mesh.
 
-    Parameters
-    ----------
-    quads : (n_quad, 4) int32
-        Counter-clockwise seen from the end of the sweep; numbers of columns of `rows`.
-    rows : (n_step + 1, n_column) int32
-        Nodes of each copy.
+    quads : (n_quad, 4), counter-clockwise seen from the end of the sweep; numbers of columns of
+        `rows`
+    rows : (n_step + 1, n_column) nodes of each copy
     """
     return (
         np.concatenate((rows[:-1, quads], rows[1:, quads]), axis=-1).reshape(-1, 8).astype(np.int32)
@@ -51,16 +48,11 @@ def symmetric_steps(n: int, ratio: float) -> Floats:
 def axial_stations(width: float, n: int, ratio: float, inner_width: float) -> Floats:
     """Return the coordinates z (n + 1,), mm, of the nodes along the face width.
 
-    Parameters
-    ----------
-    width : float, mm
-        Face width of the gears; nodes lie at both ends.
-    n : int
-        Number of elements.
-    ratio : float
-        Length of the middle elements over that of the outermost ones.
-    inner_width : float, mm
-        Face width of the wave generator; where it is smaller, nodes lie at its ends as well.
+    width : mm, face width of the gears; nodes lie at both ends
+    n : number of elements
+    ratio : length of the middle elements over that of the outermost ones
+    inner_width : mm, face width of the wave generator; where it is smaller, nodes lie at its ends
+        as well
     """
     z = (symmetric_steps(n, ratio) - 0.5) * width
     if inner_width < width:

@@ -168,11 +168,8 @@ def require_sections(model: str, recipe: MeshRecipe) -> None:
 def build_sector_meshes(drive: DriveGeometry, recipe: MeshRecipe) -> dict[str, SectorMesh]:
     """Mesh one tooth sector of each gear.
 
-    Returns
-    -------
-    dict of SectorMesh
-        Keys ``flexible_spline`` (with its slice of the cup), ``ring_gear`` and, in a pancake drive,
-        ``dynamic_spline``.
+    Keys are ``flexible_spline`` (with its slice of the cup), ``ring_gear`` and, in a pancake drive,
+    ``dynamic_spline``.
     """
     require_sections(drive.model, recipe)
     return {gear: build_sector(drive, recipe, gear) for gear in drive.gears}

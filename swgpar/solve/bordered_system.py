@@ -28,8 +28,6 @@ class BorderedSystem:
     step is the one at which its l vanishes. That step is bounded: a drive without touching flanks
     floats, and its step is unlimited. All other unknowns follow the bounded motion.
 
-    Parameters
-    ----------
     partition : ownership;  solver : solves with K'
     reuse : use a factor for later tangents too, see `ReusedFactor`; without effect where the solver
     has none

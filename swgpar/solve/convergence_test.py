@@ -79,8 +79,6 @@ class Decision:
 class ConvergenceTest:
     """Decides after every Newton iteration; changes nothing. Collective.
 
-    Parameters
-    ----------
     problem : that is solved;  settings : tolerances and limits
     """
 

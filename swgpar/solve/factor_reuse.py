@@ -31,8 +31,6 @@ Operation = Callable[[PETSc.Vec, PETSc.Vec], None]
 class ReusedFactor:
     """Decides whether a factor is reused, and solves by GMRES with it.
 
-    Parameters
-    ----------
     like : vector of the system
     multiply, solve : with the present system; with the factor
 

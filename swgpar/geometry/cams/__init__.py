@@ -53,8 +53,6 @@ def make_cam(
 ) -> Cam:
     """Curve of a cam, major axis along +y.
 
-    Parameters
-    ----------
     keys : section [wave_generator] of the design file
     a : mm, major semi-axis (eq. 3.3)
     b : mm, minor semi-axis (eq. 3.4); of no use with rollers

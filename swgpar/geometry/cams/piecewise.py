@@ -50,11 +50,7 @@ class Parabola:
     """Parabola y = height - p x^2 (eq. 3.5), rotated about its apex (0, height) by `tilt`, material
     below.
 
-    Attributes
-    ----------
-    height : float, mm
-    p : float, 1/mm, above 0
-    tilt : float, rad, counter-clockwise
+    height : mm;  p : 1/mm, above 0;  tilt : rad, counter-clockwise
     """
 
     height: float
@@ -107,12 +103,10 @@ class PiecewiseCam:
     lies on, on the point's own side of the major axis: this holds as long as the point is nearer
     than the smallest radius of curvature.
 
-    Attributes
-    ----------
-    pieces : tuple of Piece
-        The upper half, counter-clockwise, from (w, 0), where its normal is (1, 0), to (-w, 0).
-    joints, tangents : (len(pieces) - 1, 2) float64
-        Points between them, mm, and the unit tangents there, counter-clockwise.
+    pieces : the upper half, counter-clockwise, from (w, 0), where its normal is (1,
+        0), to (-w, 0)
+    joints, tangents : (len(pieces) - 1, 2) points between them, mm, and the unit tangents there,
+        counter-clockwise
     """
 
     pieces: tuple[Piece, ...]

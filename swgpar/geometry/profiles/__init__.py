@@ -42,8 +42,6 @@ def make_profile(
 ) -> ToothProfile:
     """Flank of a gear.
 
-    Parameters
-    ----------
     keys : section [flexible_spline.profile] or [ring_gear.profile] of the design file
     teeth : number and sizes of the teeth
     c_P : angular tooth thickness reduction (eq. 3.22); 1 for involutes

@@ -35,8 +35,6 @@ def advise(
 ) -> str:
     """The end of a sentence that refuses a profile; empty where no length alone mends it.
 
-    Parameters
-    ----------
     name : section of the design file
     lengths : keys that may be changed, with their values, mm
     builds : whether the flank can be built with another value of a key

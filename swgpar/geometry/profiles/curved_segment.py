@@ -35,12 +35,9 @@ class CurvePoints:
 class CurvedSegment:
     """A smooth segment x(t), 0 <= t <= 1, run through from the tip towards the root.
 
-    Attributes
-    ----------
     name : str
-    evaluate : callable
-        Gives the `CurvePoints` at parameters (n,); exact, defined a little beyond 0 and 1, with a
-        speed above 0.
+    evaluate : gives the `CurvePoints` at parameters (n,); exact, defined a little beyond 0 and 1,
+        with a speed above 0
     """
 
     name: str

@@ -44,18 +44,11 @@ class FlankSegment(Protocol):
 class Segment:
     """A piece of constant curvature of a flank, run through from the tip towards the root.
 
-    Attributes
-    ----------
-    name : str
-        Name of the segment, for example ``tip`` or ``straight``.
-    start : tuple of float, mm
-        First point (x, y).
-    direction : float, rad
-        Angle of the unit tangent at `start` from +x, counter-clockwise.
-    curvature : float, 1/mm
-        Change of that angle per arc length; 0 for a straight line.
-    length : float, mm
-        Arc length.
+    name : name of the segment, for example ``tip`` or ``straight``
+    start : mm, first point (x, y)
+    direction : rad, angle of the unit tangent at `start` from +x, counter-clockwise
+    curvature : 1/mm, change of that angle per arc length; 0 for a straight line
+    length : mm, arc length
     """
 
     name: str
@@ -105,18 +98,14 @@ class Segment:
 class ToothProfile:
     """One flank, on the side x > 0, of a tooth centred on +y, from its tip end T to its root end R.
 
-    Attributes
-    ----------
-    segments : tuple of FlankSegment
-        The chain, from T to R; segments of no length are left out. The last one is the root: its
-        fillet, which is tangent to the dedendum circle. The flank that works ends where it begins.
-        A first segment with the name ``tip`` is a rounded tip edge; others have other names.
-    external : bool
-        True for teeth that point outwards (flexible spline), False for internal ones (ring gear).
-    r_tip_circle, r_root_circle : float, mm
-        Radii of the addendum and the dedendum circle.
-    n_teeth : int
-        Number of teeth of the gear.
+    segments : the chain, from T to R; segments of no length are left out.
+        The last one is the root: its fillet, which is tangent to the dedendum circle. The flank
+        that works ends where it begins. A first segment with the name ``tip`` is a rounded tip
+        edge; others have other names.
+    external : True for teeth that point outwards (flexible spline), False for internal ones (ring
+        gear)
+    r_tip_circle, r_root_circle : mm, radii of the addendum and the dedendum circle
+    n_teeth : number of teeth of the gear
     """
 
     segments: tuple[FlankSegment, ...]
@@ -217,15 +206,10 @@ class ToothProfile:
     def distance(self, points: ArrayLike) -> tuple[Floats, Floats]:
         """Return the signed distance to the flank and the arc length of the nearest point.
 
-        Parameters
-        ----------
-        points : (n, 2) float64, mm
+        points : (n, 2) mm
 
-        Returns
-        -------
-        distance : (n,) float64, mm
-            Positive outside the material.
-        s : (n,) float64, mm
+        Returns distance : (n,) mm, positive outside the material
+        s : (n,) mm
         """
         points = np.atleast_2d(np.asarray(points, dtype=np.float64))
         best = np.full(len(points), np.inf)
@@ -278,12 +262,9 @@ def check_flank(profile: ToothProfile, tolerance: float = 1e-9) -> None:
     """Refuse a flank that is no flank: broken tangents, ends beside their circles, folded back, or
     outside its half tooth sector.
 
-    Parameters
-    ----------
     profile : ToothProfile
-    tolerance : float
-        Largest relative mismatch of points (to the tip radius) at joints and ends, and of tangents
-        (rad) at joints.
+    tolerance : largest relative mismatch of points (to the tip radius) at joints and ends, and of
+        tangents (rad) at joints
     """
     for before, after in zip(profile.segments, profile.segments[1:], strict=False):
         end, start = np.array([before.length]), np.zeros(1)

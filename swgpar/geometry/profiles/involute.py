@@ -41,8 +41,6 @@ class Cutter(Teeth):
     """Gear and cutter of the same reference profile: external teeth by a rack, internal ones by a
     shaper; mm.
 
-    Attributes
-    ----------
     tip_radius : rounding of the cutter's teeth
     shift : profile shift, in modules: the cutter is set outwards by shift * module
     cutter_teeth : teeth of the shaper

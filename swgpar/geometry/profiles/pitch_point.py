@@ -19,10 +19,7 @@ them."""
 class PitchPointFrame(Teeth):
     """Flank at x > 0 of a tooth centred on +y.
 
-    Attributes
-    ----------
-    c_P : float
-        Angular tooth thickness reduction (eq. 3.22).
+    c_P : angular tooth thickness reduction (eq. 3.22)
     """
 
     c_P: float

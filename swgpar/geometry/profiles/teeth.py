@@ -9,13 +9,10 @@ from dataclasses import dataclass
 class Teeth:
     """Sizes of a gear's teeth.
 
-    Attributes
-    ----------
     n_teeth : int
-    module : float, mm
-    pressure_angle : float, rad
-    addendum, dedendum : float, mm
-        Heights of the tooth above and below the pitch circle, without profile shift.
+    module : mm;  pressure_angle : rad
+    addendum, dedendum : mm, heights of the tooth above and below the pitch circle, without profile
+        shift
     external : bool
     """
 
