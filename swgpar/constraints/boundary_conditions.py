@@ -1,5 +1,4 @@
-"""Boundary conditions of a part that is cut out of the drive: displacements and forces that are
-known.
+"""Known displacements and forces of a part that is cut out of the drive.
 
 Both meet the protocol `ForceTerm`.
 """

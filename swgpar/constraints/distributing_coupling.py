@@ -1,5 +1,4 @@
-"""Distributing coupling on the bore (in the plane on the inner surface) or on the ring gear's outer
-surface.
+"""Distributing coupling on the bore (in the plane the inner surface) or the ring's outer surface.
 
 The coupling ties six quantities of a surface to a reference point without stiffening it: the mean
 displacement, the mean tilts and the mean rotation about z of its nodes, weighted by their area. The
@@ -55,8 +54,7 @@ class Coupling(Protocol):
 
 
 def node_weights(coords: np.ndarray, nodes: np.ndarray, ccw: np.ndarray) -> np.ndarray:
-    """Tributary area of the surface's nodes of one sector (arc length times axial share), closed
-    over the sector.
+    """Area of a sector's surface nodes (arc length times axial share), closed over the sector.
 
     coords : (n, 3) mm, sector 0;  nodes : (k,) local;  ccw : local nodes that the next sector owns
     """
@@ -86,8 +84,7 @@ class NodeMeans(ABC):
     nodes : (n,) local nodes that this rank owns, each once;  undeformed : (n, 3) mm, their places
     weight : (n,) of the nodes in the means, of any sum
     images : the model is a part of the drive; then only z and the rotation can be non-zero
-    fixed_axis : the rotation is that about the drive's axis, and not about the mean place of the
-    nodes
+    fixed_axis : the rotation is about the drive's axis, not about the mean place of the nodes
 
     Attributes
     ----------
@@ -123,8 +120,7 @@ class NodeMeans(ABC):
         return self.comm.allreduce(local, op=MPI.SUM)
 
     def evaluate(self, u: np.ndarray) -> MeanMotion:
-        """Coupled quantities (mm, mm, mm, rad, rad, rad) and their gradients at displacement u
-        (n_local, 3)."""
+        """Coupled quantities (mm and rad) and their gradients at displacement u (n_local, 3) mm."""
         v, w, arm = u[self.nodes], self.weight, self.arm
         mean = self.sum(w[:, None] * v)
         if self.fixed_axis:
@@ -239,8 +235,7 @@ class RadialGuide:
         self.stiffness = penalty * area * coupling.weight
 
     def _radial(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Radii (n,) mm, outward normals (n, 2) and forces along them (n,) N at displacement u
-        (n_local, 3)."""
+        """Radii (n,) mm, outward normals (n, 2) and forces along them (n,) N at u (n_local, 3)."""
         x = self.position + u[self.nodes, :2]
         r = np.hypot(*x.T)
         return r, x / r[:, None], self.stiffness * (r - self.radius)

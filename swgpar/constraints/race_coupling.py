@@ -20,8 +20,7 @@ from swgpar.constraints.distributing_coupling import (
 
 
 class RaceCoupling:
-    """Mean rotation of the race relative to that of the spline and, in space, its mean displacement
-    along z.
+    """Mean rotation of the race relative to the spline and, in space, its mean motion along z.
 
     race : coupling of the race's outer surface;  spline : coupling of the flexible spline
     """
@@ -33,8 +32,7 @@ class RaceCoupling:
         self.active[ROTATION], self.active[Z] = True, race.solid
 
     def evaluate(self, u: np.ndarray) -> MeanMotion:
-        """Relative rotation (rad) and displacement (mm), and their gradients; the other quantities
-        are not used."""
+        """Relative rotation (rad) and displacement (mm), and gradients; the rest is not used."""
         race, spline = self.race.evaluate(u), self.spline.evaluate(u)
         value, against = race.value.copy(), np.zeros_like(spline.gradient)
         value[ROTATION] -= spline.value[ROTATION]

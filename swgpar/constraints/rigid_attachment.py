@@ -1,5 +1,4 @@
-"""Closed end or flange that is clamped or bolted to a rigid flange, which is the output or stands
-still.
+"""Closed end or flange on a rigid flange, which is the output or stands still.
 
 Both faces of the attached area move as one rigid body about the drive's axis. They are bedded on it
 with the stiffness of a contact, per area: no stiffer than what the elements resolve, and no number

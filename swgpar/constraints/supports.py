@@ -1,5 +1,4 @@
-"""Supports and load of the drive: couplings, guide, and the grounding that a factorisation
-needs."""
+"""Supports and load of the drive: couplings, guide, grounding of a factorisation."""
 
 from __future__ import annotations
 
@@ -58,15 +57,13 @@ class FloatingRing:
         return float(self.coupling.evaluate(u).value[ROTATION])
 
     def add_ring_moment(self, u: np.ndarray, moment: float, residual: np.ndarray) -> None:
-        """Add this rank's part of a moment (N mm) on that rotation to residual (n_local, 3) N;
-        collective."""
+        """Add this rank's part of a moment (N mm) on it to residual (n_local, 3) N; collective."""
         total = self.comm.allreduce(moment, op=MPI.SUM)
         residual[self.coupling.nodes] += total * self.coupling.evaluate(u).gradient[ROTATION]
 
 
 class Supports:
-    """The couplings of all bodies that float: of the gears by their indices, then of a bearing's
-    outer race.
+    """The couplings of all bodies that float: of the gears by their indices, then of an outer race.
 
     Parameters
     ----------
@@ -123,8 +120,7 @@ class Supports:
         self._ground_vectors.append(vector)
 
     def grounding(self, u: np.ndarray) -> list[PETSc.Vec]:
-        """Vectors B of what the matrix holds too much at displacement u (n_local, 3) mm: B B^T;
-        collective.
+        """Vectors B of what the matrix holds too much, B B^T, at u (n_local, 3) mm; collective.
 
         One for each supported direction, and one for the free rotation of each rigid attachment.
         """
@@ -211,8 +207,7 @@ class Supports:
             add_diagonal(rows, self.partition, attachment.nodes, attachment.blocks())
 
     def border(self, u: np.ndarray, state: LoadState) -> tuple[list[PETSc.Vec], list[int]]:
-        """Gradients of all prescribed quantities, with the rows of their multipliers; a loaded
-        rotation is last."""
+        """Gradients of prescribed quantities, rows of their multipliers; a loaded one is last."""
         prescribed = self.prescribed(state)
         if state.control == "torque":
             prescribed.append((self.output_gear, ROTATION))
@@ -226,7 +221,6 @@ class Supports:
         return border, [N_COUPLED * i + k for i, k in prescribed]
 
     def reactions(self, multiplier: np.ndarray) -> np.ndarray:
-        """Torques (N mm) about z of the whole drive that support the coupled gears, from the
-        multipliers."""
+        """Torques (N mm) about z of the whole drive that support the gears, by the multipliers."""
         rotations = multiplier[ROTATION::N_COUPLED][: len(self.gear_couplings)]
         return -self.scale * rotations / self.share

@@ -1,5 +1,4 @@
-"""A body of the drive: its name, the mesh of one of its congruent sectors, and what it is made
-of."""
+"""A body of the drive: its name, the mesh of a congruent sector, and what it is made of."""
 
 from __future__ import annotations
 

@@ -53,8 +53,7 @@ class BodyLayout:
     copies : how many times the model makes the whole: 1, 2 or 3
     fixed : (n_fixed,) local nodes that do not move
     condensed : the sector as one element, whose inner nodes have no unknowns; None where they have
-    tooth : the tooth as one element, for sectors whose flanks nothing touches; None where it is not
-    used
+    tooth : the tooth as one element, where nothing touches its flanks; None where it is not used
     """
 
     body: Body

@@ -1,5 +1,4 @@
-"""Parts of a sector whose inside is eliminated: congruent parts share one stiffness of their outer
-nodes.
+"""Parts of a sector without their inside: congruent parts share a stiffness of their outer nodes.
 
 A part is then one element (a superelement, by static condensation) of the nodes that others act on.
 Its inside is linear in a frame that rotates with the outer nodes, as every element is in a frame of
@@ -31,8 +30,7 @@ class CondensedPart:
     outer : (m,) nodes that keep their unknowns;  inner : (k,) nodes that are eliminated;
     inner_coords : (k, 3) mm
     reference : the part as an element of m nodes, without recovery of stress
-    modes : (3 k, 3 m) constraint modes: displacement of the inner nodes by that of the outer ones,
-    in that frame
+    modes : (3 k, 3 m) constraint modes in that frame: displacement of inner by that of outer nodes
     """
 
     outer: np.ndarray
@@ -63,14 +61,12 @@ class CondensedPart:
 
 
 def _about_z(angle: np.ndarray) -> np.ndarray:
-    """Matrices (n, 3, 3) that rotate row vectors by angles (n,) rad about z when multiplied from
-    the right."""
+    """Matrices (n, 3, 3) that rotate row vectors on their left by angles (n,) rad about z."""
     return Rotation.from_euler("z", angle[:, None]).as_matrix().transpose(0, 2, 1)
 
 
 def relative_end_rotation(mesh: SectorMesh, angle: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Rotation (n,) rad of the two ends of sectors relative to each other, at displacements u (n,
-    n_node, 3) mm.
+    """Rotation (n,) rad of the two ends of sectors relative to each other, at u (n, n_node, 3) mm.
 
     angle : (n,) rad, of the sectors
     """
@@ -99,8 +95,7 @@ def condense_sector(mesh: SectorMesh, elements: ReferenceElements) -> CondensedP
 
 
 def condense_tooth(mesh: SectorMesh, elements: ReferenceElements) -> CondensedPart:
-    """The tooth of a solid sector as one element of the nodes on its rim, and of those where its
-    flanks begin.
+    """The tooth of a solid sector as one element of nodes on its rim and where its flanks begin.
 
     The latter give the frame: those on the rim lie close to a plane.
     """
@@ -114,8 +109,7 @@ def condense_tooth(mesh: SectorMesh, elements: ReferenceElements) -> CondensedPa
 def _condense(
     mesh: SectorMesh, elements: ReferenceElements, part: np.ndarray, outer: np.ndarray
 ) -> CondensedPart:
-    """Eliminate all nodes but the `outer` ones from the stiffness of the elements `part` of a
-    sector."""
+    """Eliminate all nodes but `outer` from the stiffness of the elements `part` of a sector."""
     conn, dims = mesh.elements[part], 2 if mesh.plane else 3
     inner = np.setdiff1d(conn, outer)
     n, m, k = len(mesh.coords), len(outer), len(inner)

@@ -1,5 +1,4 @@
-"""Element arrays of the owned sectors: internal forces, tangent blocks, nodal stress, pattern of
-the tangent.
+"""Elements of the owned sectors: internal forces, tangent blocks and pattern, nodal stress.
 
 Every rank computes complete rows of the nodes it owns: its sectors' elements and those of the
 sector before that share nodes with it. No matrix or vector entry is ever sent, and a row's terms
@@ -37,8 +36,7 @@ class AssembledElements:
 
 
 def sectors_seen(partition: Partition, body: str) -> np.ndarray:
-    """Indices (n,) in the chain of the sectors whose elements a rank needs: its own and one on
-    either side.
+    """Indices (n,) in the chain of the sectors that a rank needs: its own and one on either side.
 
     The owned rows need the sector before them, nodal averages of stress need both; none where the
     rank owns none.
@@ -140,8 +138,7 @@ class BodyElements:
         )
 
     def inside_of_teeth(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Own nodes (n,) inside of condensed teeth and their displacement (n, 3) mm, from u
-        (n_local, 3) outside."""
+        """Own nodes (n,) in condensed teeth, their displacement (n, 3) mm by u (n_local, 3)."""
         rows = np.flatnonzero(~self.whole_teeth)
         rows = rows[(rows >= self.owned.start) & (rows < self.owned.stop)]
         tooth = self.layout.tooth
@@ -158,8 +155,7 @@ class BodyElements:
         block_indices: list[np.ndarray] | None = None,
         values: np.ndarray | None = None,
     ) -> None:
-        """Add the body's internal forces to `residual` (n_local, 3) N and tangent blocks (N/mm) to
-        `values`.
+        """Add internal forces to `residual` (n_local, 3) N and tangent blocks (N/mm) to `values`.
 
         u : (n_local, 3) mm;  block_indices : of the elements' blocks of every kind in `values`
         Raises FloatingPointError where an element has collapsed.
@@ -179,8 +175,7 @@ class BodyElements:
                 )
 
     def displacement(self, u: np.ndarray) -> np.ndarray:
-        """Displacement of all nodes of the sectors seen, images rotated; (n_sectors, n_node, 3)
-        mm."""
+        """Displacement (n_sectors, n_node, 3) mm of the sectors seen, images rotated."""
         field = np.where(self.local[..., None] >= 0, u[self.local], 0.0)
         return self.layout.with_inner_nodes(self.sectors, to_images(field, self.sixths))
 
@@ -193,8 +188,7 @@ class BodyElements:
         )
 
     def nodal_stress(self, u: np.ndarray, part: int = 0) -> np.ndarray:
-        """Stress at the nodes of the owned sectors: extrapolated per element, averaged over the
-        elements of a part.
+        """Stress at the nodes of the owned sectors: extrapolated, averaged over elements of a part.
 
         Returns (n_owned, n_node, 6) MPa; components xx, yy, zz, xy, yz, zx in global axes.
         It is zero in sectors without elements, and at nodes that the part has not.
@@ -307,8 +301,7 @@ class Elements:
         return TangentPattern(keys, block_indices, np.flatnonzero(~touched))
 
     def block_keys(self, conn: np.ndarray) -> np.ndarray:
-        """Keys row * n_global + column (n, m * m) of the owned blocks of elements, -1 elsewhere;
-        conn : (n, m)."""
+        """Keys row * n_global + column (n, m * m) of owned blocks, else -1, of elements (n, m)."""
         local = self.local
         number = np.where(conn >= 0, local.number[conn], -1).astype(np.int64)
         row, col = number[:, :, None], number[:, None, :]
@@ -321,11 +314,9 @@ class Elements:
     def rows(
         self, extra: np.ndarray, number: np.ndarray
     ) -> tuple[BlockRows, list[list[np.ndarray]]]:
-        """Rows of the tangent for the elements and further blocks, and the indices of element
-        blocks among them.
+        """Rows of the tangent, and the indices of element blocks among them.
 
-        extra : keys row * n_global + column of contact blocks;  number : (n_local,) int32 global
-        numbers
+        extra : keys row * n_global + column of contact blocks;  number : (n_local,) global numbers
         """
         own_keys = self.pattern.keys
         keys = np.union1d(own_keys, extra) if len(extra) else own_keys
@@ -354,8 +345,7 @@ class Elements:
         rows: BlockRows | None,
         block_indices: list[list[np.ndarray]] | None,
     ) -> None:
-        """Add internal forces to `residual` (n_local, 3) N and tangent blocks (N/mm) to
-        `rows.values`.
+        """Add internal forces to `residual` (n_local, 3) N, tangent blocks (N/mm) to `rows.values`.
 
         u : (n_local, 3) mm;  block_indices : of the element blocks in `rows`, as `rows` gives them
         Raises FloatingPointError where an element has collapsed.

@@ -39,8 +39,7 @@ class LocalNodes:
         return len(self.number)
 
     def index(self, number: np.ndarray) -> np.ndarray:
-        """Local index (int32) of global numbers; -1 where there is none (-1) or this rank does not
-        see it."""
+        """Local index (int32) of global numbers; -1 for -1 and for nodes this rank does not see."""
         number = np.asarray(number)
         own = (number >= self.row_start) & (number < self.row_start + self.n_own)
         found = np.where(own, number - self.row_start, -1)

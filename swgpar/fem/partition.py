@@ -15,8 +15,7 @@ from swgpar.fem.body_layout import BodyLayout
 from swgpar.geometry.rotation import sixths_of_turn
 
 MULTIPLIER_NODES = 2
-"""Blocks appended after the last node for each body that floats: six multipliers of its
-coupling."""
+"""Blocks after the last node for each body that floats: six multipliers of its coupling."""
 
 
 def split(n: int, parts: int) -> np.ndarray:

@@ -20,8 +20,7 @@ from swgpar.fem.elements import BodyElements, Elements
 
 
 class SectorsInReach(ABC):
-    """Which sectors of a closed chain are within reach, or near one that is; the same choice on
-    every rank.
+    """Which sectors of a closed chain are within reach or near; the same choice on every rank.
 
     Parameters
     ----------
@@ -49,8 +48,7 @@ class SectorsInReach(ABC):
         return mask
 
     def update(self, within_reach: np.ndarray, elements: Elements) -> bool:
-        """Choose by the sectors (n,) within reach; returns whether the body's elements have
-        changed."""
+        """Choose by the sectors (n,) within reach; returns whether the elements have changed."""
         missing = self._with_neighbours(within_reach, self.LEAST) & ~self.active
         if (
             not missing.any()

@@ -14,8 +14,7 @@ from swgpar.petsc import PETSc
 
 @dataclass
 class BlockRows:
-    """Blocks of the owned rows, of a symmetric matrix those of the upper triangle, sorted by
-    column.
+    """Blocks of the owned rows, sorted by column; of a symmetric matrix the upper triangle.
 
     start : (n_own + 1,) int64;  column : (n_blocks,) int32 global
     values : (n_blocks, 3, 3) N/mm, values[p, l, k] is entry (k, l) of block p
@@ -70,8 +69,7 @@ def matrix_rows(
 
 
 def create_matrix(partition: Partition, rows: BlockRows, numbered: MatrixRows) -> PETSc.Mat:
-    """Blocked matrix with the pattern of `rows`, not yet filled; a symmetric one keeps its upper
-    triangle."""
+    """Blocked matrix with the pattern of `rows`, to be filled; a symmetric one has one triangle."""
     mat = PETSc.Mat().create(comm=partition.comm)
     n_own = len(numbered.active)
     size = (partition.dims * n_own, partition.dims * numbered.count)
@@ -107,14 +105,12 @@ def fill_matrix(mat: PETSc.Mat, rows: BlockRows, numbered: MatrixRows) -> None:
 def add_diagonal(
     rows: BlockRows, partition: Partition, nodes: np.ndarray, blocks: np.ndarray
 ) -> None:
-    """Add blocks (n, 3, 3) or (3, 3), N/mm, to the diagonal at own nodes (n,), each of them
-    once."""
+    """Add blocks (n, 3, 3) or (3, 3), N/mm, to the diagonal at own nodes (n,), each once."""
     keys = (partition.row_start + nodes.astype(np.int64)) * (partition.n_global + 1)
     rows.values[np.searchsorted(rows.keys, keys)] += blocks
 
 
 def add_unit_diagonal(rows: BlockRows, partition: Partition, value: float) -> None:
-    """Put `value` on the diagonal of the multiplier blocks, which couple through the border
-    only."""
+    """Put `value` on the diagonal of the multipliers, which couple through the border only."""
     nodes = partition.multiplier_nodes - partition.row_start
     add_diagonal(rows, partition, nodes[(nodes >= 0) & (nodes < rows.n_own)], value * np.eye(3))

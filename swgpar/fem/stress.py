@@ -9,8 +9,7 @@ from swgpar.fem.elements import BodyElements
 
 
 def principal(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Largest and smallest principal stress and von Mises stress of (…, 6) tensors xx yy zz xy yz
-    zx (MPa)."""
+    """Largest and smallest principal and von Mises stress, MPa, of (…, 6) xx yy zz xy yz zx."""
     xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
     tensor = np.stack(
         [np.stack([xx, xy, zx], -1), np.stack([xy, yy, yz], -1), np.stack([zx, yz, zz], -1)], -2
@@ -22,8 +21,7 @@ def principal(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def rotated_tensor(stress: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Tensors (..., 6) xx yy zz xy yz zx, rotated about z by angles (rad) that broadcast to
-    (...)."""
+    """Tensors (..., 6) xx yy zz xy yz zx, rotated about z by angles (...) rad."""
     c, s = np.cos(angle), np.sin(angle)
     xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
     return np.stack(

@@ -1,5 +1,4 @@
-"""Distributed vectors of nodal unknowns: creation, ghost values, nodal fields of sectors,
-multipliers."""
+"""Distributed vectors of nodal unknowns: creation, ghost values, fields of sectors, multipliers."""
 
 from __future__ import annotations
 
@@ -51,8 +50,7 @@ class Exchange:
 def read_field(
     partition: Partition, body: str, sectors: np.ndarray, vector: PETSc.Vec
 ) -> np.ndarray:
-    """Nodal values (n_sectors, n_local_nodes, 3) of any sectors of a body, images rotated;
-    collective."""
+    """Nodal values (n_sectors, n_node, 3) of any sectors, images rotated; collective."""
     number, sixths = partition.node_numbers(
         body, sectors, np.arange(len(partition.layouts[body].mesh.coords))
     )
@@ -68,8 +66,7 @@ def read_field(
 def write_field(
     partition: Partition, body: str, sectors: np.ndarray, values: np.ndarray, vector: PETSc.Vec
 ) -> None:
-    """Set the owned entries of `vector` from nodal values (n_sectors, n_local_nodes, 3) of owned
-    sectors."""
+    """Set the owned entries of `vector` from values (n_sectors, n_node, 3) of owned sectors."""
     number, sixths = partition.node_numbers(
         body, sectors, np.arange(len(partition.layouts[body].mesh.coords))
     )

@@ -62,8 +62,7 @@ class BearingSizes:
 def ball_lines(
     cam: Cam, depth: float, angle: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Centres (n, 2) mm of the balls, and normals (n, 2) and curvatures (n,) 1/mm of their curve
-    there.
+    """Centres (n, 2) mm of the balls, normals (n, 2) and curvatures (n,) 1/mm of their curve.
 
     All in the cam's frame; the grooves have the same normals.
 
@@ -84,7 +83,6 @@ def ball_lines(
 
 
 def smallest_curvature_radius(cam: Cam, n: int = 2000) -> float:
-    """Smallest radius of curvature (mm) of the cam's curve at n points of it; inf for straight
-    lines only."""
+    """Smallest radius of curvature (mm) at n points of a cam; inf for straight lines only."""
     largest = float(cam.evaluate(cam.outline(n))[2].max())
     return 1.0 / largest if largest > 0.0 else np.inf

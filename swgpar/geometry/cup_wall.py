@@ -1,5 +1,4 @@
-"""The section of the flexible spline's wall behind its teeth: exact lines of its inner and outer
-surface.
+"""The section of the flexible spline's wall behind its teeth: exact lines of both surfaces.
 
 The wall runs from the back of the teeth to a fillet, and from there inwards as a closed end with a
 bore or outwards as a flange. All lines are straight pieces, arcs and quarters of ellipses.
@@ -31,8 +30,7 @@ class Arc(NamedTuple):
 
 
 class RoundedLine:
-    """Radius over the distance from the back of the teeth: straight pieces whose corners are
-    rounded by arcs.
+    """Radius over the distance from the back of the teeth: a polygon with rounded corners.
 
     points : (n, 2) distance, which increases, and radius, mm;  rounding : (n,) mm, 0 at both ends
     """
@@ -43,15 +41,13 @@ class RoundedLine:
         self._along = sides / np.linalg.norm(sides, axis=1)[:, None]
 
     def turning(self) -> Floats:
-        """Angles (n - 2,) rad by which the line turns at its inner points, positive where it turns
-        outwards."""
+        """Angles (n - 2,) rad by which the line turns at inner points, positive outwards."""
         a, b = self._along[:-1].T, self._along[1:].T
         angle = np.arctan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])
         return np.where(np.abs(angle) < STRAIGHT, 0.0, angle)
 
     def largest_rounding(self) -> Floats:
-        """Radii (n - 2,) mm of arcs that take half of the shorter side at a point; inf where the
-        line is straight."""
+        """Radii (n - 2,) mm of arcs that take half of the shorter side; inf where straight."""
         half = 0.5 * np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         with np.errstate(divide="ignore"):
             return np.minimum(half[:-1], half[1:]) / np.tan(0.5 * np.abs(self.turning()))
@@ -76,8 +72,7 @@ class RoundedLine:
         return [arc for arc in corners if arc is not None]
 
     def pieces(self) -> list[tuple[Floats, Floats, Floats | None]]:
-        """Start, end and centre (2,) of straight pieces, without a centre, and of arcs, one after
-        the other."""
+        """Start, end and centre (2,) of arcs and, without a centre, straight pieces in order."""
         pieces: list[tuple[Floats, Floats, Floats | None]] = []
         at = self.points[0]
         for k, turning in enumerate(self.turning(), 1):
@@ -162,8 +157,7 @@ class CupWall:
 
     @property
     def sizes(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Semi-axes (along r and z, mm) of the fillet's curves on the inner and on the outer
-        line."""
+        """Semi-axes (along r and z, mm) of the fillet's curves on the inner and the outer line."""
         long = self.fillet, self.fillet
         short = self.fillet - self.thickness, self.fillet - self.end_thickness
         return (long, short) if self.outwards else (short, long)
@@ -175,8 +169,7 @@ class CupWall:
         return (self.end, near) if self.outwards else (near, self.end)
 
     def stations(self, usual: Floats, first: float) -> Floats:
-        """Distances (n,) mm of stations, with the corners and the ends of their arcs in place of
-        those close by.
+        """Distances (n,) mm of stations, among them the corners and the ends of their arcs.
 
         usual : (m,) mm, from 0 to `length`;  first : mm, as far as which they stay
         """
@@ -195,8 +188,7 @@ class CupWall:
 
 
 def with_station(stations: Floats, at: float, keep: Floats, room: float = 0.25) -> Floats:
-    """The stations (n,) with one at `at`, unless one that is kept is close: the nearest other one
-    that is close moves.
+    """The stations (n,) with one at `at`, unless a kept one is close; another close one moves.
 
     keep : (m,) stations that do not move;  room : share of the distance to the next one within
     which a station is close to a kept one

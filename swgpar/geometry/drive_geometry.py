@@ -10,8 +10,7 @@ from swgpar.geometry.cup_wall import CupWall
 from swgpar.geometry.profiles import ToothProfile
 
 THICK_CUP = 0.85
-"""Cup thickness over rim thickness above which the cup continues the layers below the root as
-well."""
+"""Cup over rim thickness above which the cup continues the layers below the root as well."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +55,7 @@ class CupGeometry:
 
 @dataclass(frozen=True)
 class FlankCrowning:
-    """Crowning of the flexible spline's flanks: mm at |z| = width / 2, mm, curve ("parabolic" or
-    "circular")."""
+    """Crowning of the flexible spline's flanks: mm at |z| = width / 2, curve (see `crowning`)."""
 
     amount: float
     width: float

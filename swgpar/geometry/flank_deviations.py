@@ -1,5 +1,4 @@
-"""Deviations of a gear's flanks from their ideal places: how far every point of every tooth is
-moved.
+"""Deviations of a gear's flanks from their ideal places: how far every point is moved.
 
 A tooth moves as a rigid body: along the pitch circle (pitch), with the axis of the gear
 (eccentricity, tilt), with a ring that is pressed oval. Its profile deviates along the normal.
@@ -54,8 +53,7 @@ class GearDeviations:
         )
 
     def moved(self, points: np.ndarray, angle: np.ndarray) -> np.ndarray:
-        """Displacement (n_teeth, n, 2) mm of points (n, 2) mm of the tooth at +y, in the frame of
-        each tooth.
+        """Displacement (n_teeth, n, 2) mm, in the teeth's frames, of points (n, 2) mm of one tooth.
 
         angle : (n_teeth,) rad, of the teeth from +y
 
@@ -76,8 +74,7 @@ class GearDeviations:
         return np.stack([along, across], axis=-1)
 
     def profile_height(self, profile: ToothProfile, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Height (n,) mm of the profile over the ideal one at arc lengths s (n,) mm, and its
-        derivative by s.
+        """Height (n,) mm of the profile over the ideal one at s (n,) mm, and its derivative by s.
 
         The slope raises the tip end by half of it and lowers the root end of the active profile by
         half of it. The form is one wave of that height, high at both ends. Both fade out where
@@ -97,8 +94,7 @@ class GearDeviations:
     def heights(
         self, profile: ToothProfile, s: np.ndarray, z: np.ndarray, angle: np.ndarray, side: int
     ) -> np.ndarray:
-        """Height (n_teeth, n) mm of the moved flank over the ideal one along its normal, at s and z
-        (n,) mm.
+        """Height (n_teeth, n) mm of the moved flank along its ideal normal, at s and z (n,) mm.
 
         side : +1 for the clockwise flank, -1 for the other;  angle : (n_teeth,) rad, of the teeth
         """
@@ -114,8 +110,7 @@ class GearDeviations:
     def flank_shift(
         self, profile: ToothProfile, s: np.ndarray, angle: np.ndarray, side: int
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Displacement (n_teeth, n, 2) mm of the flank at s (n,) mm in the frames of the teeth,
-        without tilt.
+        """Displacement (n_teeth, n, 2) mm of flanks at s (n,) mm in the teeth's frames, no tilt.
 
         Returns it and its derivative by s, which changes the tangent. side, angle : as in `heights`
         """

@@ -16,11 +16,9 @@ from swgpar.geometry.cams import Cam
 def crowning(
     amount: float, z: np.ndarray, width: float, shape: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Material removed at the axial coordinates z (n,), mm, and its first two derivatives (mm, -,
-    1/mm).
+    """Material removed at z (n,), mm, and its first two derivatives (mm, -, 1/mm).
 
-    `amount` at |z| = width / 2, nothing at mid-width; "parabolic", or "circular": the arc through
-    the same points.
+    `amount` at |z| = width / 2, nothing at mid-width; "parabolic", or "circular": an arc.
     """
     z = np.asarray(z, dtype=float)
     if amount == 0.0:
@@ -34,8 +32,7 @@ def crowning(
 
 
 def wave(x: np.ndarray, y: np.ndarray, order: int) -> tuple[np.ndarray, ...]:
-    """q = cos(order theta), theta = atan2(-x, y), and its derivatives by x, y, xx, xy and yy; all
-    (n,)."""
+    """q = cos(order theta), theta = atan2(-x, y), and its derivatives by x, y, xx, xy, yy; (n,)."""
     r2 = x * x + y * y
     turned = (y - 1j * x) ** order / np.sqrt(r2) ** order
     q, slope, bend = turned.real, order * turned.imag, order**2 * turned.real
@@ -52,8 +49,7 @@ def wave(x: np.ndarray, y: np.ndarray, order: int) -> tuple[np.ndarray, ...]:
 
 
 class WaveGeneratorSurface:
-    """Level function of the cam with crowning and slope: exact in-plane distance less the radial
-    modification.
+    """Level function of the crowned cam: exact in-plane distance less the radial modification.
 
     The zero level is the surface; away from it h is the distance up to the factor |grad h|, 1.002
     at most here.
@@ -79,8 +75,7 @@ class WaveGeneratorSurface:
         self.crowning, self.slope, self.shape = crowning, slope, shape
 
     def evaluate(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Level h (n,) mm, gradient (n, 3), Hessian (n, 3, 3) 1/mm at points (n, 3) of the cam's
-        frame."""
+        """Level h (n,) mm, gradient (n, 3), Hessian (n, 3, 3) 1/mm at points (n, 3) on the cam."""
         x, y, z = np.asarray(xyz, dtype=float).T
         distance, normal, k = self.cam.evaluate(xyz[:, :2])
         gradient = np.zeros((len(x), 3))
@@ -96,8 +91,7 @@ class WaveGeneratorSurface:
             q, qx, qy, qxx, qxy, qyy = wave(x, y, self.lobes)
             rate = 2.0 * self.slope / self.width
             level = level + rate * z * q
-            for k, value in enumerate((z * qx, z * qy, q)):
-                gradient[:, k] += rate * value
+            gradient += rate * np.column_stack([z * qx, z * qy, q])
             hessian[:, 0, 0] += rate * z * qxx
             hessian[:, 1, 1] += rate * z * qyy
             for (i, j), value in (((0, 1), z * qxy), ((0, 2), qx), ((1, 2), qy)):

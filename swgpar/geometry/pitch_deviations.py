@@ -17,8 +17,7 @@ import numpy as np
 
 
 class PitchTolerances(NamedTuple):
-    """single : f_pT, µm, bound of the difference of neighbouring teeth;  total : F_pT, µm, of any
-    two teeth"""
+    """Bounds, µm. single : f_pT, of neighbours' difference;  total : F_pT, of any two teeth"""
 
     single: float
     total: float
@@ -35,8 +34,7 @@ def pitch_tolerances(diameter: float, module: float, grade: int) -> PitchToleran
 def random_pitch_errors(
     n_teeth: int, tolerances: PitchTolerances, seed: tuple[int, ...]
 ) -> np.ndarray:
-    """Positions (n_teeth,) µm of the teeth on the pitch circle less their theoretical ones, with
-    mean 0.
+    """Positions (n_teeth,) µm, of mean 0, of the teeth on the pitch circle less the theoretical.
 
     Differences of neighbours are drawn from a normal distribution and closed over the circle. They
     are then scaled so that single and total pitch deviation stay in their tolerances and one of

@@ -25,20 +25,17 @@ three lobes to itself among them. Half a turn is exact. The kernels have the sam
 
 
 def sixths_of_turn(copies: int, number: np.ndarray | int) -> np.ndarray:
-    """Sixths of a turn, uint8, of the images with these numbers (n,), any integers; copies : 1, 2
-    or 3."""
+    """Sixths of a turn, uint8, of the images with these integers (n,); copies : 1, 2 or 3."""
     return (np.asarray(number) % copies * (6 // copies)).astype(np.uint8)
 
 
 def to_images(vectors: np.ndarray, sixths: np.ndarray) -> np.ndarray:
-    """Vectors (..., 3) of owners, rotated to their images; sixths : (...) uint8, sixths of a
-    turn."""
+    """Vectors (..., 3) of owners, rotated to their images by sixths (...) of a turn, uint8."""
     return _rotated_by(SIXTHS, vectors, sixths)
 
 
 def to_owners(vectors: np.ndarray, sixths: np.ndarray) -> np.ndarray:
-    """Vectors (..., 3) of images, rotated back to their owners; sixths : (...) uint8, sixths of a
-    turn."""
+    """Vectors (..., 3) of images, rotated back to their owners; sixths as in `to_images`."""
     return _rotated_by(SIXTHS.transpose(0, 2, 1), vectors, sixths)
 
 
@@ -52,8 +49,7 @@ def _rotated_by(matrices: np.ndarray, vectors: np.ndarray, sixths: np.ndarray) -
 
 
 MIRROR = np.array([-1.0, 1.0])
-"""Factors of the components (x, y) of a vector of one flank of the tooth at +y that give those of
-the other flank."""
+"""Factors of (x, y) that give a vector of the other flank of the tooth at +y."""
 
 
 def rotated(vectors: np.ndarray, angle: float | np.ndarray) -> np.ndarray:

@@ -15,8 +15,7 @@ from swgpar.meshing.mapped import MappedBlocks, MeshError, QuadMesh
 from swgpar.meshing.recipe import ToothRecipe
 
 UNDER, ROOT, RIM = 3, 4, 5
-"""Numbers of the blocks below the core and below the root, and of the first block of the lower
-rim."""
+"""Numbers of the blocks below the core and below the root, and of the first of the lower rim."""
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,4 @@
-"""The cup's slice of one tooth sector: the lower rim continued over the wall and the closed end or
-flange."""
+"""The cup's slice of one tooth sector: the lower rim continued to the closed end or flange."""
 
 from __future__ import annotations
 
@@ -17,16 +16,13 @@ from swgpar.meshing.spacing import polar
 from swgpar.meshing.sweep import grid_quads, sweep_line, sweep_quads, symmetric_steps
 
 GROWTH = 1.6
-"""Ratio of the lengths of successive elements between the fillet at the back of the teeth and the
-other ones."""
+"""Ratio of the lengths of successive elements behind the fillet at the back of the teeth."""
 
 
 def cylinder_stations(length: float, recipe: CupRecipe, fillet: float, layers: int) -> Floats:
-    """Distances (n,), mm, of the stations along the cylinder from the back of the teeth, the last
-    one at `length`.
+    """Distances (n,), mm, of the cylinder's stations from the back of the teeth as far as `length`.
 
-    fillet : its radius, mm;  layers : elements along it, from which those behind it grow to the
-    recipe's
+    fillet : its radius, mm;  layers : elements along it, from which those behind it grow
     """
     usual = length * symmetric_steps(recipe.cylinder, recipe.end_ratio)
     if fillet == 0.0:
@@ -45,11 +41,9 @@ def cylinder_stations(length: float, recipe: CupRecipe, fillet: float, layers: i
 
 
 def fillet_points(share: Floats, radius: float) -> tuple[Floats, Floats]:
-    """Points of the fillet at the back of the teeth: height above the wall and distance from the
-    back, mm.
+    """Points of the fillet at the back of the teeth: height above the wall, distance from it, mm.
 
-    share : (n,) of the fillet, -1 at its end on the wall, 0 in its middle, 1 at its end at the back
-    of the teeth
+    share : (n,) of the fillet, -1 at its end on the wall, 0 in its middle, 1 at the teeth
     """
     angle = 0.25 * np.pi * (1.0 + share)
     return radius * (1.0 - np.cos(angle)), radius * (1.0 - np.sin(angle))
@@ -57,8 +51,7 @@ def fillet_points(share: Floats, radius: float) -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True)
 class Meridian:
-    """Stations of the wall in the meridian plane, from the back of the teeth to the bore or the rim
-    of the flange.
+    """Stations of the wall in the meridian plane, from the back of the teeth to the bore or rim.
 
     inner, outer : (n_station, 2) mm, points (r, z) of both surfaces
     wall, end : station at which the fillet begins, and the closed end or flange
@@ -134,8 +127,7 @@ class CupSlice:
     coords : (n, 3) mm, of the nodes that are not those of the toothed part;  hexes : (n_elem, 8)
     cw, ccw : (n_pair,) nodes on the sides of the sector, without those of the toothed part
     bore : (n_bore,) nodes of the bore, or of the rim of the flange
-    end : (n_face, 4) faces of the closed end or flange, on both sides, whose right-hand normal
-    points outwards
+    end : (n_face, 4) faces of closed end or flange, both sides, right-hand normal outwards
     """
 
     coords: Floats
@@ -165,8 +157,7 @@ def wall_grid(section: CrossSection, root_too: bool) -> Ints:
 
 
 def rounded_back(drive: DriveGeometry, section: CrossSection, back: Floats) -> Floats:
-    """Nodes (n_section, 3), mm, of the back of the teeth, those near the corner with the wall moved
-    onto its fillet.
+    """Nodes (n_section, 3), mm, of the back of the teeth, those at the wall moved onto its fillet.
 
     The layer of nodes below the root that is nearest to the end of the fillet becomes its end.
     Without such a layer the fillet has a node in its middle only.
@@ -198,8 +189,7 @@ def rounded_back(drive: DriveGeometry, section: CrossSection, back: Floats) -> F
 
 
 def joined_columns(n_column: int) -> list[int]:
-    """Return numbers of columns that become one: threes, and in the middle single ones that are
-    left over."""
+    """Numbers of columns that become one: threes, and in the middle single ones left over."""
     threes, rest = divmod(n_column // 2, 3)
     return [*[3] * threes, *[1] * (2 * rest), *[3] * threes]
 
@@ -258,8 +248,7 @@ def cup_slice(
     coords: list[Floats] = []
 
     def new_nodes(rz_inner: Floats, rz_outer: Floats, columns: Ints) -> Ints:
-        """Numbers (n_station, n) of nodes on the lines between points (n_station, 2) of the inner
-        and outer surface."""
+        """Numbers (n_station, n) of nodes between points (n_station, 2) of both surfaces."""
         rz = rz_inner[:, None] + fraction[columns, None] * (rz_outer - rz_inner)[:, None]
         points = np.concatenate((polar(rz[..., 0], angle[columns]), rz[..., 1:]), axis=-1)
         number = first + sum(map(len, coords)) + np.arange(rz[..., 0].size, dtype=np.int32)
@@ -281,8 +270,10 @@ def cup_slice(
         length = inner[last + 1, 1] - inner[last, 1]
         pitch = 2.0 * np.pi * drive.inner_radius / drive.gears["flexible_spline"].profile.n_teeth
         share = 1.0 - min(0.5, pitch / (grid.shape[1] - 1) / length)
-        at = ((1.0 - share) * line[[last]] + share * line[[last + 1]] for line in (inner, outer))
-        between = new_nodes(*at, dropped.ravel()).reshape(dropped.shape)
+        on_inner, on_outer = (
+            (1.0 - share) * line[[last]] + share * line[[last + 1]] for line in (inner, outer)
+        )
+        between = new_nodes(on_inner, on_outer, dropped.ravel()).reshape(dropped.shape)
         kept = np.unique(coarse)
         number[joined, kept] = new_nodes(inner[joined], outer[joined], kept)
         hexes.append(transition(number[last][grid], number[last + 1][coarse], between, groups))

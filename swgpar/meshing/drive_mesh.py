@@ -19,8 +19,7 @@ if TYPE_CHECKING:
 
 
 class WholeBody(NamedTuple):
-    """A body with all its teeth. points : (n, 3) mm;  cells : (m, 8), or (m, 4) in the plane model,
-    in VTK order"""
+    """A body with all its teeth. points : (n, 3) mm;  cells : (m, 8), plane (m, 4), VTK order"""
 
     points: np.ndarray
     cells: np.ndarray
@@ -76,8 +75,7 @@ class DriveMesh:
         return write_mesh(self.sectors, self.materials, self.thickness, folder, formats)
 
     def grid(self) -> pyvista.UnstructuredGrid:
-        """The mesh for PyVista; the cell data "body" is 0 for the flexible spline and 1 for the
-        ring gear."""
+        """The mesh for PyVista; the cell data "body" counts the bodies, flexible spline first."""
         import pyvista
 
         bodies = list(self.bodies.values())

@@ -25,8 +25,7 @@ HOUSING = "housing"
 
 
 def sector_numbers(mesh: SectorMesh) -> Ints:
-    """Return the number (n_sectors, n_node) of every sector's nodes in the body; shared nodes have
-    one."""
+    """Numbers (n_sectors, n_node) of every sector's nodes in the body; shared nodes have one."""
     own = (
         np.ones(len(mesh.coords), dtype=bool)
         if not mesh.plane
@@ -43,8 +42,7 @@ def sector_numbers(mesh: SectorMesh) -> Ints:
 
 
 def whole_body(mesh: SectorMesh) -> tuple[Floats, Ints]:
-    """Return the nodes (n, 3), mm, and elements (m, 8 or 4) of all sectors, numbered as by
-    `sector_numbers`."""
+    """Nodes (n, 3), mm, and elements (m, 8 or 4) of all sectors; numbers of `sector_numbers`."""
     numbers = sector_numbers(mesh)
     angle = mesh.phase + 2.0 * np.pi / mesh.n_sectors * np.arange(mesh.n_sectors)[:, None]
     x, y, z = mesh.coords.T
@@ -66,8 +64,7 @@ def named_nodes(mesh: SectorMesh) -> dict[str, Ints]:
 
 
 def named_surfaces(meshes: dict[str, SectorMesh]) -> dict[str, Ints]:
-    """Return element and face (n, 2), both from 0, of the surfaces of all bodies, numbered one
-    after another."""
+    """Element and face (n, 2), both from 0, of the surfaces of all bodies, one after another."""
     surfaces, first = {}, 0
     for mesh in meshes.values():
         quads = dict(mesh.faces)
@@ -89,8 +86,7 @@ def named_surfaces(meshes: dict[str, SectorMesh]) -> dict[str, Ints]:
 
 
 def element_numbers(mesh: SectorMesh) -> Ints:
-    """Numbers (n_sectors, n_elem), from 0, of the elements of a whole body: one part after the
-    other, by sectors."""
+    """Numbers (n_sectors, n_elem), from 0, of a body's elements: part after part, by sectors."""
     number, first = np.empty((mesh.n_sectors, len(mesh.elements)), dtype=np.int32), 0
     for part in mesh.parts:
         count = mesh.n_sectors * len(part)
@@ -163,8 +159,7 @@ def write_mesh(
     directory: str | Path,
     formats: Sequence[str] = FORMATS,
 ) -> list[Path]:
-    """Write the full drive, all sectors of all bodies, as ``drive_120_122.vtu``, ``.msh`` and
-    ``.inp``.
+    """Write all sectors of all bodies as ``drive_120_122.vtu``, ``.msh`` and ``.inp``.
 
     meshes : by gear;  materials : of every body and of a housing
     thickness : mm, of the plane model
@@ -202,8 +197,7 @@ def write_mesh(
 def mesh_report(meshes: dict[str, SectorMesh]) -> dict[str, dict[str, float]]:
     """Return counts and worst quality of every body.
 
-    They are ``nodes`` and ``elements`` (all sectors), ``sector_elements``, ``volume`` (mm³) and the
-    mesh's quality.
+    ``nodes`` and ``elements`` (all sectors), ``sector_elements``, ``volume`` (mm³), the quality.
     """
     report = {}
     for body, mesh in meshes.items():

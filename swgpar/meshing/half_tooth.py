@@ -16,8 +16,7 @@ one is the same with the radial direction reversed)::
     |  lower rim |     |
     '------------'-----'    free circle: inside of the flexible spline, outside of the ring gear
 
-Three lines meet at I: the flank is smooth at K, so a block that had its corner there would be
-degenerate.
+Three lines meet at I: the flank is smooth at K, where a block's corner would be degenerate.
 """
 
 from __future__ import annotations
@@ -42,8 +41,7 @@ Sides = tuple[Floats, Floats, Floats, Floats]
 def stations(profile: ToothProfile, first: float, last: float, n: int) -> Floats:
     """Return n + 1 arc lengths from `first` to `last`, mm.
 
-    The ends of the segments are among them when there are elements enough; else the distances are
-    equal.
+    The ends of segments are among them where elements suffice; else the distances are equal.
     """
     margin = 1e-9 * profile.length
     breaks = profile.breaks[(profile.breaks > first + margin) & (profile.breaks < last - margin)]
@@ -56,8 +54,7 @@ def stations(profile: ToothProfile, first: float, last: float, n: int) -> Floats
 
 
 def inclination(profile: ToothProfile, s: Floats) -> Floats:
-    """Return the angle (n,), rad, of the flank's normal above the tangential direction, towards the
-    tip."""
+    """Angle (n,), rad, of the flank's normal above the tangential direction, towards the tip."""
     x, y = profile.point(s).T
     towards_tip = (
         np.stack((x, y), axis=-1) / np.hypot(x, y)[:, None] * (1.0 if profile.external else -1.0)
@@ -132,8 +129,7 @@ class HalfTooth:
         return s_root, np.concatenate((profile.point(s_root), land[1:]))
 
     def blocks(self) -> list[Sides]:
-        """Return the sides of all blocks: cap, side, core, under, root, the lower rim under tooth
-        and root."""
+        """Sides of all blocks: cap, side, core, under, root, lower rim under tooth and root."""
         recipe, interface = self.recipe, self.interface
         side = self.profile.point(self.s_side)
         k, q = side[0], side[-1]
@@ -167,8 +163,7 @@ class HalfTooth:
     def _core_sides(
         self, side: Floats, i: Floats, a: Floats, j: Floats, w: Floats
     ) -> tuple[Floats, Floats]:
-        """Nodes (n, 2) from I to J and on the centre line from A to W, for the nodes `side` (n, 2)
-        from K to Q; mm."""
+        """Nodes (n, 2) from I to J and from A to W, for `side` (n, 2) from K to Q; mm."""
         k, q = side[0], side[-1]
         # the inner line lies between the flank's shape (good for the side) and a straight one (for
         # the core)
@@ -186,8 +181,7 @@ class HalfTooth:
         return angles, polar(self.interface, angles)
 
     def _split_angle(self, q: Floats) -> float:
-        """Return the polar angle of B, rad: between a line square to the root arc and even
-        widths."""
+        """Polar angle of B, rad: between a line square to the root arc and even widths."""
         recipe = self.recipe
         n_base = recipe.tip + recipe.layers
         uniform = self.half_pitch * n_base / (n_base + recipe.root)

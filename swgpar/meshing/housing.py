@@ -17,11 +17,9 @@ GROWTH = 1.6
 
 
 def housing_radii(ring: GearGeometry, thickness: float, recipe: ToothRecipe) -> Floats:
-    """Radii (n + 1,), mm, of the circles between the layers of the housing; one circle where its
-    thickness is 0.
+    """Radii (n + 1,), mm, of circles between the housing's layers; one where its thickness is 0.
 
-    The first layer is about as thick as those of the ring gear's rim, each of the others `GROWTH`
-    times the one before.
+    The first layer is about as thick as those of the rim, others `GROWTH` times the one before.
     """
     inner = ring.profile.r_root_circle + ring.rim
     if thickness == 0.0:
@@ -33,8 +31,7 @@ def housing_radii(ring: GearGeometry, thickness: float, recipe: ToothRecipe) -> 
 
 
 def with_housing(section: CrossSection, radii: Floats) -> CrossSection:
-    """The cross-section with a layer of quadrilaterals beyond its free circle for each of `radii`
-    but the first."""
+    """The cross-section with a layer beyond its free circle for each of `radii` but the first."""
     layers, width, known = len(radii) - 1, len(section.free), len(section.coords)
     if not layers:
         return section

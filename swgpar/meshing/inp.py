@@ -1,5 +1,4 @@
-"""The mesh as an input file of CalculiX or Abaqus: what a job needs besides supports, loads and
-steps.
+"""The mesh as an input file of CalculiX or Abaqus: a job without supports, loads and steps.
 
 Nodes, elements, node sets, element-face surfaces for contact, the material and the sections: a job
 names the file by *INCLUDE and goes on with its *BOUNDARY and *STEP.
@@ -22,15 +21,13 @@ HEX_FACES = np.array(
     [[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]]
 )
 QUAD_FACES = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
-"""Nodes of the faces S1, S2, ... of an element of these programs, a hexahedron's clockwise seen
-from outside."""
+"""Nodes of the faces S1, S2, ... of these programs, a hexahedron's clockwise from outside."""
 
 
 def element_faces(mesh: SectorMesh, quads: Ints) -> Ints:
     """Element and face (n, 2), both from 0, of surface quadrilaterals (n, 4) of one sector.
 
-    In the plane, where a quadrilateral spans both layers of nodes, the face is an edge of the
-    element.
+    In the plane a quadrilateral spans both layers of nodes; the face is an element's edge.
     """
     if mesh.plane:
         quads = mesh.lower_nodes[quads]
@@ -62,8 +59,7 @@ def _constants(material: Material, plane_stress: bool) -> str:
     if not np.allclose(s, alike, rtol=1e-9, atol=1e-9 * s[0, 0]):
         raise InputError(
             "the axes of a material have no place in the format inp: allowed a law that is the "
-            "same in all directions "
-            "across z"
+            "same in all directions across z"
         )
     e, shear, shear_z = 1.0 / s[0, 0], 1.0 / s[3, 3], 1.0 / s[4, 4]
     nu, nu_z = -s[0, 1] * e, 0.0 if plane_stress else -s[0, 2] * e
@@ -92,8 +88,7 @@ def write_inp(
     plane_stress : gives hexahedra a material without transverse contraction along z. With no
         displacement along z they are then in plane stress.
 
-    Raises InputError for a material that is not the same in all directions across z: its axes are
-    not in the file.
+    Raises InputError for materials that differ by direction across z: the file has no axes.
 
     meshio's own writer of this format has neither these element types nor surfaces.
     """

@@ -10,16 +10,14 @@ from swgpar.errors import InputError
 from swgpar.meshing.sector import SectorMesh
 
 FLAT = 1e-3
-"""Cells smaller than this share of the median cell volume are not used: their weights are dominated
-by round-off."""
+"""Share of the median cell volume below which cells are not used: round-off rules their weights."""
 
 NEIGHBOURS = 4
 """Nearest nodes whose cells are tried for a point outside of all cells."""
 
 
 def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:
-    """Matrix (n_fine, n_coarse) that maps nodal values of the coarse sector to the nodes of the
-    fine one.
+    """Matrix (n_fine, n_coarse) that maps nodal values of the coarse sector to the fine one.
 
     The values are linear in the Delaunay tetrahedra (triangles in the plane) of the coarse nodes,
     in cylindrical coordinates, in which rim and cup are flat. Values at nodes outside are
@@ -46,8 +44,7 @@ def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:
 
 
 def _cells(mesh: Delaunay, known: np.ndarray, sought: np.ndarray) -> np.ndarray:
-    """Cell (n,) of each of the points `sought` (n, dims), or the adjacent one for a point
-    outside."""
+    """Cell (n,) of each of the points `sought` (n, dims), or for one outside the adjacent."""
     cell = mesh.find_simplex(sought, tol=1e-9)
     volume = np.abs(np.linalg.det(known[mesh.simplices[:, 1:]] - known[mesh.simplices[:, :1]]))
     usable = volume > FLAT * np.median(volume)

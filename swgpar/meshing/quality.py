@@ -56,8 +56,7 @@ def aspect_ratios(coords: Floats, elements: Ints) -> Floats:
 def element_quality(coords: Floats, elements: Ints) -> dict[str, float]:
     """Return the worst quality of a mesh.
 
-    coords : (n_node, 3) mm;  elements : (n_elem, 8) hexahedra, or (n_elem, 4) quadrilaterals in the
-    plane, counter-clockwise
+    coords : (n_node, 3) mm;  elements : (n_elem, 8), or (n_elem, 4) in the plane, counter-clockwise
 
     ``min_scaled_jacobian``, at the corners, 1 for a box; ``min_jacobian`` and ``max_jacobian``, mm³
     or mm², determinants at the 2x2x2 or 2x2 Gauss points; ``max_aspect_ratio``, longest over

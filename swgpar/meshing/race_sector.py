@@ -18,8 +18,7 @@ SAME = 1e-9
 def race_sector(
     spline: SectorMesh, outer: float, thickness: float, width: float, radial: int
 ) -> SectorMesh:
-    """Sector of the outer race of a bearing, whose outer surface has its nodes opposite those of
-    the flexible spline.
+    """Sector of a bearing's outer race, with outer nodes opposite those of the flexible spline.
 
     spline : tooth sector of the flexible spline
     outer, thickness, width : mm;  radial : elements through the thickness
@@ -34,19 +33,16 @@ def race_sector(
 
 
 def race_grid(race: SectorMesh, surface: str) -> np.ndarray:
-    """Nodes (n_around + 1, n_z) of the surface ``inner`` or ``outer`` of a race's sector, clockwise
-    side first."""
+    """Nodes (n_around + 1, n_z) of the surface ``inner`` or ``outer``, clockwise side first."""
     angle, z = _grid(race, surface)
     nodes = np.unique(race.faces[surface])
     return nodes.reshape(len(z), len(angle)).T
 
 
 def opposite_cells(spline: SectorMesh, race: SectorMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Cells of the race's outer surface opposite the spline's faces ``inner``, by their first
-    nodes.
+    """Cells of the race's outer surface opposite the spline's faces ``inner``, by first nodes.
 
-    Returns columns (n_face,) around and layers (n_face,) along z; layer -1 beyond the width of the
-    race.
+    Returns columns (n_face,) around and layers (n_face,) along z, -1 beyond the race's width.
     """
     angle, z = _grid(race, "outer")
     corners = spline.coords[spline.faces["inner"]]

@@ -10,8 +10,7 @@ from swgpar.input.quantities import Section, quantity, show, show_key
 from swgpar.input.toml_file import read_toml, validate
 
 RECIPES = ("coarse", "forces", "medium", "full", "plane_coarse", "plane", "plane_fine")
-"""Names of the recipes that belong to the package, coarse to fine: of the cup drive, of the plane
-model."""
+"""Names of the package's recipes, coarse to fine: of the cup drive, of the plane model."""
 
 
 class ToothRecipe(Section):
@@ -90,8 +89,7 @@ class MeshRecipe(Section):
 
 
 def is_recipe_name(mesh: str | Path) -> bool:
-    """Whether `mesh` is a plain word, which names a recipe of the package, and not the path of a
-    file."""
+    """Whether `mesh` is a plain word, which names a recipe of the package, and no path."""
     path = Path(mesh)
     return path.name == str(path) and not path.suffix
 

@@ -1,5 +1,4 @@
-"""Mesh recipes with other element counts: coarser meshes for a start, finer ones for an
-accuracy."""
+"""Mesh recipes with other element counts: coarser for a start, finer for an accuracy."""
 
 from __future__ import annotations
 
@@ -16,8 +15,7 @@ RATIO = 1.5
 
 
 def with_counts(recipe: MeshRecipe, count: Callable[[str, str, int], int]) -> MeshRecipe:
-    """The recipe with ``count(section, name, elements)`` in place of every element count. Gradings
-    stay.
+    """The recipe with ``count(section, name, elements)`` for every element count; gradings stay.
 
     The parity of the elements along the face width is kept, so that its middle stays a node or an
     element: a crowned cam touches there. With another parity the ring takes a shape that differs by
@@ -48,8 +46,7 @@ def coarser(recipe: MeshRecipe) -> MeshRecipe:
 
 
 def resized(recipe: MeshRecipe, ratio: float) -> MeshRecipe:
-    """The recipe with so many times the elements in every direction; raises InputError where a
-    count is too large."""
+    """The recipe with `ratio` times the elements in every direction; InputError if too many."""
     return with_counts(
         recipe, lambda _, name, count: max(SMALLEST.get(name, 1), round(ratio * count))
     )

@@ -1,5 +1,4 @@
-"""Crowning in the mesh: the flank's nodes move inwards, the inside of the tooth follows
-smoothly."""
+"""Crowning in the mesh: flank nodes move inwards, the inside of the tooth follows smoothly."""
 
 from __future__ import annotations
 

@@ -28,8 +28,7 @@ class FlankGrid:
 
 @dataclass(frozen=True)
 class SectorMesh:
-    """The tooth sector centred on +y; copy k of it is rotated by ``phase + 2 pi k / n_sectors``
-    about z.
+    """The tooth sector centred on +y; copy k is rotated by ``phase + 2 pi k / n_sectors`` about z.
 
     body : ``flexible_spline``, ``ring_gear``, ``dynamic_spline`` or ``outer_race``, or ``ring`` for
         a plain one
@@ -52,8 +51,7 @@ class SectorMesh:
         2x2 points) in the plane model
     tooth : (n,) elements of the tooth above its rim; none on a plain ring
     housing : (n,) elements of the housing around a ring gear
-    lower_nodes : (n_node,) of the plane model, the node of the lower layer that each node moves
-        with; None for a solid
+    lower_nodes : (n_node,) plane model: the lower node that each moves with; None for a solid
     """
 
     body: str
@@ -79,18 +77,15 @@ class SectorMesh:
 
     @property
     def elements(self) -> Ints:
-        """Nodes of the finite elements: the hexahedra, or their lower faces in the plane model;
-        (n_elem, 8 or 4)."""
+        """Nodes (n_elem, 8 or 4) of the hexahedra, or of their lower faces in the plane model."""
         return self.hexes if not self.plane else self.hexes[:, :4]
 
     @property
     def parts(self) -> tuple[Ints, ...]:
-        """Elements of each material: those of the gear, then those of its housing if there is
-        one."""
+        """Elements of each material: those of the gear, then those of a housing."""
         every = np.arange(len(self.hexes), dtype=np.int32)
         return (np.setdiff1d(every, self.housing), self.housing) if len(self.housing) else (every,)
 
     def nodes_of(self, part: int) -> Ints:
-        """Nodes (n,) of a part, those on its boundary with the other one included; in the plane of
-        both layers."""
+        """Nodes (n,) of a part, those on its boundary included; in the plane of both layers."""
         return np.unique(self.hexes[self.parts[part]])

@@ -1,8 +1,6 @@
-"""Elements and nodes of tooth sectors by their recipe, without a mesh: what a run will need is
-known before it begins.
+"""Elements and nodes of tooth sectors by their recipe: known before a mesh is made.
 
-The numbers follow from the blocks of half a tooth (`half_tooth.py`) and from the sweep
-(`tooth_sector.py`, `cup.py`).
+They follow from the blocks of half a tooth (`half_tooth.py`) and the sweep (`tooth_sector.py`).
 """
 
 from __future__ import annotations
@@ -23,8 +21,7 @@ class SectorCounts:
     n_sectors : teeth of the gear
     elements, nodes : of the sector; in the plane those of one layer
     shared : nodes on one of its sides, which belong to the next sector as well
-    outer : nodes of the outer surface of a ring gear or its housing, without those shared ones; 0
-    for a flexible spline
+    outer : nodes of the outer surface of a ring gear or housing, but for shared ones; else 0
     """
 
     n_sectors: int

@@ -14,8 +14,7 @@ def polar(radius: float | Floats, angle: float | Floats) -> Floats:
 
 
 def line(start: Floats, end: Floats, fractions: Floats) -> Floats:
-    """Return the points (n, 2) at the `fractions` (n,) of the straight line from `start` to
-    `end`."""
+    """Points (n, 2) at the `fractions` (n,) of the straight line from `start` to `end`."""
     return start + np.asarray(fractions)[:, None] * (end - start)
 
 
@@ -31,8 +30,7 @@ def graded(n: int, ratio: float) -> Floats:
 
 
 def share(total: int, lengths: Floats) -> NDArray[np.intp]:
-    """Share `total` elements out in proportion to `lengths` (k,), at least one each (total >=
-    k)."""
+    """Share `total` >= k elements out in proportion to `lengths` (k,), at least one each."""
     counts = np.ones(len(lengths), dtype=np.intp)
     for _ in range(total - len(lengths)):
         counts[np.argmax(lengths / counts)] += 1
@@ -40,8 +38,7 @@ def share(total: int, lengths: Floats) -> NDArray[np.intp]:
 
 
 def split_count(n: int, first: float, second: float) -> tuple[int, int]:
-    """Share `n` elements between two lengths, mm, at least one each; a length of nothing gets
-    none."""
+    """Share `n` elements between two lengths, mm, at least one each; none for no length."""
     if min(first, second) <= 1e-9 * max(first, second):
         return (n, 0) if first > second else (0, n)
     counts = share(n, np.array((first, second)))

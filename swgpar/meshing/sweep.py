@@ -1,5 +1,4 @@
-"""Sweeping a plane mesh through stations: hexahedra, and the quadrilaterals that its lines leave
-behind."""
+"""Sweeping a plane mesh through stations: hexahedra, and quadrilaterals behind its lines."""
 
 from __future__ import annotations
 
@@ -9,8 +8,7 @@ from swgpar.geometry.arrays import Floats, Ints
 
 
 def grid_quads(grid: Ints) -> Ints:
-    """Quadrilaterals (n * m, 4) of a grid of nodes (n + 1, m + 1), from row to row and along its
-    columns."""
+    """Quadrilaterals (n * m, 4) of a grid of nodes (n + 1, m + 1), by rows, then columns."""
     corners = (grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:])
     return np.stack(corners, axis=-1).reshape(-1, 4)
 
@@ -37,8 +35,7 @@ def sweep_line(line: Ints, rows: Ints) -> Ints:
 
 
 def symmetric_steps(n: int, ratio: float) -> Floats:
-    """Return n + 1 numbers from 0 to 1; the middle steps are `ratio` times as long as those at both
-    ends."""
+    """Return n + 1 numbers from 0 to 1; middle steps are `ratio` times as long as the outermost."""
     middle = np.abs((np.arange(n) + 0.5) / n * 2.0 - 1.0)
     reach = 1.0 - 1.0 / n  # of the outermost step
     steps = ratio ** (1.0 - middle / reach) if n > 1 else np.ones(1)
@@ -51,8 +48,7 @@ def axial_stations(width: float, n: int, ratio: float, inner_width: float) -> Fl
     width : mm, face width of the gears; nodes lie at both ends
     n : number of elements
     ratio : length of the middle elements over that of the outermost ones
-    inner_width : mm, face width of the wave generator; where it is smaller, nodes lie at its ends
-        as well
+    inner_width : mm, face width of the wave generator; if smaller, nodes lie at its ends too
     """
     z = (symmetric_steps(n, ratio) - 0.5) * width
     if inner_width < width:

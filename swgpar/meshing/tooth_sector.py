@@ -53,8 +53,7 @@ def _relief(
 
 
 def _elements(quads: NDArray[np.bool_], layers: int) -> Ints:
-    """Return the elements (n,) of the quadrilaterals of a mask (n_quad,), in all layers along the
-    face width."""
+    """Elements (n,) of the quadrilaterals of a mask (n_quad,), in all layers."""
     return np.flatnonzero(np.tile(quads, layers)).astype(np.int32)
 
 
@@ -64,8 +63,7 @@ def tooth_recipe(recipe: MeshRecipe, gear: str) -> ToothRecipe:
 
 
 def gap_elements(drive: DriveGeometry, recipe: MeshRecipe) -> int:
-    """Elements along the gap between both ring gears of a pancake drive: as long as the others, one
-    at least."""
+    """Elements along the gap of a pancake's ring gears: as long as the others, at least one."""
     gap = drive.gears["dynamic_spline"].ends[0] - drive.gears["ring_gear"].ends[1]
     return max(1, round(gap / (drive.face_width - gap) * 2 * recipe.face_width.elements))
 
@@ -94,8 +92,7 @@ def _stations(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> Floats:
 def build_sector(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> SectorMesh:
     """Mesh the tooth sector of a gear; one layer of it for the plane model.
 
-    Raises InputError for a recipe or a profile that gives elements with a Jacobian that is not
-    above 0.
+    Raises InputError for a recipe or profile with an element whose Jacobian is not above 0.
     """
     counts = tooth_recipe(recipe, gear)
     profile = drive.gears[gear].profile
@@ -168,8 +165,7 @@ def require_sections(model: str, recipe: MeshRecipe) -> None:
 def build_sector_meshes(drive: DriveGeometry, recipe: MeshRecipe) -> dict[str, SectorMesh]:
     """Mesh one tooth sector of each gear.
 
-    Keys are ``flexible_spline`` (with its slice of the cup), ``ring_gear`` and, in a pancake drive,
-    ``dynamic_spline``.
+    Keys ``flexible_spline`` (with its cup), ``ring_gear`` and, in a pancake, ``dynamic_spline``.
     """
     require_sections(drive.model, recipe)
     return {gear: build_sector(drive, recipe, gear) for gear in drive.gears}

@@ -46,12 +46,10 @@ import numpy as np
 from mpi4py import MPI
 
 MAX_ITERATIONS_FACTOR, HALVING = 8, 10
-"""Largest number of Newton iterations of a solve over `solver.max_iterations`; iterations in which
-a residual has to halve beyond these."""
+"""Most iterations over `solver.max_iterations`; iterations in which a residual has to halve."""
 
 PATIENCE, MIN_DECREASE = 8, 0.9
-"""Number of iterations in which the residual has to fall below this share of its smallest value
-before."""
+"""Iterations in which the residual has to fall below this share of its smallest value before."""
 
 
 def fingerprint(comm: MPI.Comm, parts: Iterable[np.ndarray]) -> int:
@@ -70,8 +68,7 @@ def is_decreasing(residuals: Sequence[float], within: int, share: float) -> bool
 
 
 def is_exhausted(residuals: Sequence[float], allowed: int) -> bool:
-    """Whether Newton's iteration with these residuals, from the first one on, has used up its
-    iterations."""
+    """Whether Newton's iteration with these residuals, from the first one on, is used up."""
     return len(residuals) > allowed and not is_decreasing(residuals, HALVING, 0.5)
 
 
@@ -83,8 +80,7 @@ class VisitedSets:
         self.last: int | None = None
 
     def returns(self, active_set: int, residual: float) -> bool:
-        """Whether the set `active_set` was left meanwhile and returns without a smaller
-        residual."""
+        """Whether the set was left meanwhile and returns without a smaller residual."""
         before = self.best.get(active_set, np.inf)
         returned = active_set != self.last and residual >= before < np.inf
         self.best[active_set], self.last = min(before, residual), active_set

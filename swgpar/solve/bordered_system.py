@@ -13,24 +13,21 @@ from swgpar.solve.linear_solver import LinearSolver
 
 
 class BorderedSystem:
-    """Preconditioner (PETSc `PC` of type python) for [K, C^T; C, 0] with solutions of K' = K + B
-    B^T.
+    """PETSc `PC` of type python for [K, C^T; C, 0] with solutions of K' = K + B B^T.
 
     K alone is singular while the drive floats; the grounded K' is not. With Z = K'^-1 [B, C^T] the
     small system
 
         (1 - B^T Z_B) s + B^T Z_C l = B^T z,     C Z_B s - C Z_C l = r_l - C z,     z = K'^-1 r_u
 
-    gives x = z + Z_B s - Z_C l exactly, whether K is symmetric or not. The grounding has no
-    influence on x.
+    gives x = z + Z_B s - Z_C l exactly, whatever K and the grounding are.
 
     The last border is the motion of the output. Where it is loaded and not prescribed, its Newton
     step is the one at which its l vanishes. That step is bounded: a drive without touching flanks
     floats, and its step is unlimited. All other unknowns follow the bounded motion.
 
     partition : ownership;  solver : solves with K'
-    reuse : use a factor for later tangents too, see `ReusedFactor`; without effect where the solver
-    has none
+    reuse : use a factor for later tangents too, see `ReusedFactor`; only if the solver is one
 
     K has no rows of nodes that nothing acts on. Their part of every solution is zero.
     """
@@ -177,8 +174,7 @@ class BorderedSystem:
         self.solve_with_factor(right, x, self.bound)
 
     def multiply(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
-        """y = [K' - B B^T, C^T; C, 0] x of the last `set_system`; multipliers that it does not use
-        stand alone."""
+        """y = [K' - B B^T, C^T; C, 0] x of the last system; unused multipliers stand alone."""
         n, last = (
             self.partition.n_multipliers,
             self.partition.comm.rank == self.partition.comm.size - 1,
@@ -202,8 +198,7 @@ class BorderedSystem:
         moved.destroy()
 
     def solve_with_factor(self, right: PETSc.Vec, x: PETSc.Vec, bound: float | None = None) -> None:
-        """Solution of the system of the factor; without `bound` the output moves freely where it is
-        loaded."""
+        """Solution with the factor; without `bound` the output moves freely where it is loaded."""
         if not self.failed:
             self.solve_grounded(right, x)
         if self.failed or self.solver.failure:

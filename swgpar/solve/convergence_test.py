@@ -1,5 +1,4 @@
-"""What is decided after every Newton iteration: whether it goes on, and what changes before the
-next one."""
+"""What is decided after every Newton iteration: whether it goes on, and what changes before."""
 
 from __future__ import annotations
 
@@ -23,20 +22,17 @@ SOFT_TOLERANCE = 1e-2
 """Residual over contact force at which a run with softened penalties ends."""
 
 FREEZING_POWER = 0.6
-"""Power of the tolerance that gives the residual over contact force below which segments are
-frozen.
+"""Power of the tolerance that gives the relative residual below which segments are frozen.
 
 Newton's iteration is then quadratic: the next step or the one after it is the last. With segments
 frozen at 1e-3 the input torque depends on the path to the solution by 4e-5 where teeth are wedged,
 at 1e-4 by 1e-6. Frozen later, a solve takes some iterations more."""
 
 MAX_REPEATED_SEARCHES = 12
-"""Contact searches of a solve because nodes have moved: each begins the iteration anew, with its
-patience."""
+"""Contact searches of a solve because nodes have moved: each begins the iteration anew."""
 
 SEARCH_DISTANCE = 0.25
-"""Displacement (modules) of a node since the last contact search after which a Newton iteration
-searches again."""
+"""Displacement (modules) of a node since the last search after which there is another one."""
 
 ROUND_OFF_SHARE = 0.05
 """Share of the round-off below which a residual counts as zero; runs reach 0.01 to 0.06 of it."""
@@ -101,8 +97,7 @@ class ConvergenceTest:
     ) -> Decision:
         """The decision for a state whose last residual has this norm (N).
 
-        descending : the line search is descending already;  bounded : flanks may touch, steps are
-        bounded
+        descending : the line search descends already;  bounded : flanks may touch, so are steps
         """
         time_limit = passed(self.problem.partition.comm)
         if time_limit is not None:
@@ -136,8 +131,7 @@ class ConvergenceTest:
         return self.problem.moved_since_search() > SEARCH_DISTANCE * self.problem.module
 
     def _is_round_off(self, state: SolveState, iteration: int, norm: float) -> bool:
-        """Whether a residual is round-off: that of positions with 16 digits, or one near it that
-        does not decrease."""
+        """Whether a residual is round-off of positions with 16 digits, or is near it and stalls."""
         stalled = iteration > 1 and state.residuals[-1] > STALL * state.residuals[-2]
         return norm <= (1.0 if stalled else ROUND_OFF_SHARE) * self.problem.round_off
 

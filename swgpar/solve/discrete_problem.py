@@ -40,8 +40,7 @@ from swgpar.petsc import PETSc
 from swgpar.solve.torque_control import TorqueControl
 
 FORCE_FLOOR = 1e-6
-"""Contact force below which a residual is not judged by it, as a share of E times the module
-squared."""
+"""Contact force, over E times the module squared, below which no residual is judged by it."""
 
 
 @dataclass(frozen=True)
@@ -97,8 +96,7 @@ class DiscreteProblem:
     equilibrium
     matrix : the tangent of the last `tangent`;  rows : its blocks on this rank;  matrix_rows :
     which of them it has
-    round_off : N, largest force that a last-digit error of the positions makes, of the last
-    `tangent`
+    round_off : N, of the last `tangent`, largest force by a last-digit error of the positions
     """
 
     def __init__(
@@ -178,8 +176,7 @@ class DiscreteProblem:
         return self.exchange(self.x if x is None else x)
 
     def positions(self) -> np.ndarray:
-        """Undeformed positions (n_local, 3) mm as their owners see them; zero for the
-        multipliers."""
+        """Undeformed positions (n_local, 3) mm as owners see them; zero for multipliers."""
         out = np.zeros((len(self.local_nodes), 3))
         for body in self.elements.bodies.values():
             seen, position = body.local >= 0, to_owners(body.positions(), body.sixths)
@@ -199,8 +196,7 @@ class DiscreteProblem:
     # -- contact search ----------------------------------------------------------------------------
 
     def search(self, state: LoadState) -> None:
-        """Find the flanks and faces that can meet at the present x; make room for them in the
-        tangent; collective."""
+        """Find the flanks and faces that can meet at x; make room in the tangent; collective."""
         with self.phases("search"):
             self.complete()
             self._searched = self.x.array_r.copy()
@@ -253,8 +249,7 @@ class DiscreteProblem:
     def _facing_pairs(
         self, flanks: FlankContact, state: LoadState, margin: float
     ) -> list[FlankPair]:
-        """Pairs of flanks that can meet at x, of this rank; none while the flanks are switched
-        off."""
+        """Pairs of flanks of this rank that can meet at x; none while they are switched off."""
         if not flanks.is_active(state):
             return []
         u = self.displacement()
@@ -265,8 +260,7 @@ class DiscreteProblem:
         return [pair for pair in pairs if flanks.takes_part(pair)]
 
     def _choose_modelled_sectors(self) -> None:
-        """Leave out sectors of the ring gear, and condense teeth, that are out of reach;
-        collective."""
+        """Leave out ring-gear sectors, and condense teeth, that are out of reach; collective."""
         within: dict[str, list[np.ndarray]] = {}
         near: dict[str, np.ndarray] = {}
         for flanks in self.flanks:
@@ -302,8 +296,7 @@ class DiscreteProblem:
         return bool(self.partition.comm.allreduce(int(any(overlooked)), op=MPI.MAX))
 
     def set_pattern(self, pattern: np.ndarray) -> None:
-        """Make room in the tangent for contact blocks, keys row * n_global + column (n,), where
-        they are other ones."""
+        """Make room in the tangent for contact blocks, keys row * n_global + column (n,)."""
         with self.phases("pattern"):
             changed = self.pattern is None or not np.array_equal(pattern, self.pattern)
             if not self.partition.comm.allreduce(int(changed), op=MPI.MAX):
@@ -327,8 +320,7 @@ class DiscreteProblem:
     def _evaluate_terms(
         self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
     ) -> np.ndarray:
-        """Add the forces and blocks of all force terms; returns keys of blocks that the pattern
-        lacks."""
+        """Add the forces and blocks of all terms; returns keys of blocks that the pattern lacks."""
         missing = [term.evaluate(u, state, residual, rows) for term in self.force_terms]
         return np.concatenate([NO_KEYS, *missing])
 
@@ -354,8 +346,7 @@ class DiscreteProblem:
         return ResidualInfo(float(contact_force), collapsed)
 
     def tangent(self, u: np.ndarray, state: LoadState) -> np.ndarray:
-        """Fill `matrix`, the grounded tangent K' = K + B B^T, at displacement u (n_local, 3) mm;
-        collective.
+        """Fill `matrix`, the grounded tangent K' = K + B B^T, at u (n_local, 3) mm; collective.
 
         Symmetric: without friction, where residual and tangent are derivatives of a potential
         (`symmetric`). With it all blocks are stored, also where nothing slips.
@@ -396,8 +387,7 @@ class DiscreteProblem:
         return float(np.finfo(float).eps * self._extent * np.sqrt(squares))
 
     def closing_rotation(self, state: LoadState) -> float:
-        """Rotation (rad) of the output that brings flanks together, see `TorqueControl`; after a
-        search. Collective."""
+        """Rotation (rad) of the output that brings flanks together, after a search; collective."""
         self.search(state)
         return self.torque_control.closing_rotation(self.displacement(), state)
 

@@ -1,5 +1,4 @@
-"""A factor that is reused for later systems: GMRES on the present system, preconditioned by the old
-factor.
+"""A factor that serves later systems: GMRES on the present one, preconditioned by the old factor.
 
 One factorisation costs as much as some 4 solves with it in the plane, 5 (coarse) to 15 (full) in
 the cup drive, the analysis of another pattern once or twice that, and from one Newton iteration to
@@ -68,8 +67,7 @@ class ReusedFactor:
         self.ksp.destroy()
 
     def renew(self, layout: tuple[int, ...]) -> None:
-        """The factor is that of the present system now. layout : what a system must share to be
-        served"""
+        """The factor is that of the present system now. layout : what a later one must share"""
         self.fresh, self.discarded, self.layout = True, False, layout
         self.fewest, self.surplus, self.last = MAX_ITERATIONS, 0, 0
 

@@ -15,8 +15,7 @@ FACTORISATIONS = ("lu", "cholesky")
 """PETSc's preconditioners that are factors."""
 
 USUAL_PRICE = 10.0
-"""Solves that take as long as a factorisation, for packages that do not count their operations: 4
-to 15 with MUMPS."""
+"""Solves as long as a factorisation, where the package does not count: 4 to 15 with MUMPS."""
 
 QUASI_DENSE, NESTED_DISSECTION = 6, 4
 """Orderings of the unknowns for MUMPS (its ICNTL(7)) in the plane and of solids: with nested
@@ -35,13 +34,11 @@ INTENSITY = 40.0
 large ones."""
 
 ANALYSIS = 1.0
-"""Factorisations that cost as much as the analysis of another pattern: 0.8 to 1.4 in the loaded
-drive on full and forces."""
+"""Factorisations that cost as much as the analysis of a pattern: 0.8 to 1.4 on full and forces."""
 
 
 class Factor(LinearSolver):
-    """A factor of any package: PETSc's own, SuperLU_DIST and others. LU, which all of them have,
-    unless options say."""
+    """A factor of any package: PETSc's own, SuperLU_DIST and others. LU unless options say."""
 
     is_factor = True
     ksp_type = "preonly"
@@ -59,8 +56,7 @@ class Factor(LinearSolver):
         return 0.0 if self.matrix is None or self.failure else USUAL_PRICE
 
     def solve_many(self, rights: np.ndarray, guesses: np.ndarray) -> np.ndarray:
-        """Solutions (n, m) for right sides (n, m), all at once: a solve is bound by reading the
-        factor."""
+        """Solutions (n, m) for right sides (n, m) at once: reading the factor limits a solve."""
         solutions = np.zeros_like(rights)
         if self.failure or not rights.shape[1]:
             return solutions
@@ -79,8 +75,7 @@ class Factor(LinearSolver):
 
 @dataclass(frozen=True)
 class FactorCounts:
-    """What MUMPS counts: entries of the factor, operations of its making, estimated memory of all
-    ranks (GB)."""
+    """What MUMPS counts: entries of the factor, operations, estimated memory of all ranks (GB)."""
 
     entries: float
     operations: float
@@ -88,8 +83,7 @@ class FactorCounts:
 
 
 class MumpsFactor(Factor):
-    """A factor of MUMPS, Cholesky's where the matrices are symmetric; made again with more memory
-    where it ran out."""
+    """A factor of MUMPS, Cholesky's of symmetric matrices; made again where memory ran out."""
 
     def __init__(self, kind: MatrixKind, options_prefix: str) -> None:
         self._memory_share = 60  # per cent above MUMPS' estimate
@@ -125,8 +119,7 @@ class MumpsFactor(Factor):
         return storage.replace("seq", "").replace("mpi", "") in (blocked, "aij")
 
     def set_up(self) -> None:
-        """Factorise, and again with more memory where MUMPS ran out of what it had estimated
-        (users' guide, section 8).
+        """Factorise; with more memory where the estimate was too low (users' guide, section 8).
 
         Raises OutOfMemoryError.
         """
@@ -165,8 +158,7 @@ class MumpsFactor(Factor):
         )
 
     def price(self, matrix: PETSc.Mat) -> float:
-        """From counts and not from measured seconds, so that a run makes the same decisions every
-        time."""
+        """From counts, not from measured seconds, so that runs repeat the same decisions."""
         counts = None if self.matrix is None else self.counts()
         if counts is None or not counts.entries:
             return 0.0

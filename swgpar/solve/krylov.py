@@ -1,5 +1,4 @@
-"""Krylov methods with a preconditioner: any of PETSc's, and smoothed aggregation as the program
-sets it up."""
+"""Krylov methods with any of PETSc's preconditioners, and the program's smoothed aggregation."""
 
 from __future__ import annotations
 
@@ -41,8 +40,7 @@ class KrylovSolver(LinearSolver):
         if ksp_type in NO_SOLVERS and pc_type not in EXACT:
             raise InputError(
                 f"options of PETSc: -{self.options_prefix}ksp_type {ksp_type} "
-                f"{NO_SOLVERS[ksp_type]}: "
-                "take gmres, or leave the option out"
+                f"{NO_SOLVERS[ksp_type]}: take gmres, or leave the option out"
             )
         options: dict[str, object] = {"ksp_rtol": 1e-6, "ksp_max_it": 2000}
         if ksp_type in JUDGE_BY_RIGHT_SIDE:

@@ -12,13 +12,11 @@ from swgpar.petsc import PETSc
 from swgpar.solve.bordered_system import BorderedSystem
 
 CONSTRAINT_SHARE = 0.1
-"""Share of the slope up to which constraints may contribute to it; the slope is then that of the
-potential."""
+"""Share of the slope up to which constraints may contribute: it is then the potential's."""
 
 
 class LineSearch:
-    """Newton step with a line search along the potential: the `PC` (type python) of SNES's linear
-    solve.
+    """Newton step with a line search along the potential: the `PC` (type python) of SNES.
 
     Contact switches on and off along a step, so that a full step can overshoot by orders of
     magnitude. The step is scaled by t in (0, 1] such that the slope F(x - t step) . step has fallen
@@ -39,8 +37,7 @@ class LineSearch:
     Parameters
     ----------
     system : linear system of the step;  x : present state;  phases : wall seconds
-    residual : sets its second argument to the residual at the first; returns whether an element has
-    collapsed
+    residual : sets its second argument to that at the first; returns whether an element collapsed
 
     Attributes
     ----------
@@ -64,8 +61,7 @@ class LineSearch:
         self.descending, self.max_node_step = False, np.inf
 
     def _residual(self, step: PETSc.Vec, t: float) -> bool:
-        """Set `force` to the residual after t times the step; returns whether an element has
-        collapsed there."""
+        """Set `force` to the residual after t times the step; returns if an element collapsed."""
         # rounded as SNES does it with the scaled step, so that it meets the same point
         step.copy(self.trial)
         self.trial.scale(t)

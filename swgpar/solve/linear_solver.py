@@ -27,8 +27,7 @@ class OptionDefaults:
         self._own: dict[str, set[str]] = {}
 
     def set(self, prefix: str, defaults: Mapping[str, object]) -> None:
-        """Set the options that the user has not set, and remove those of other solvers of the
-        prefix."""
+        """Set options that the user has not set; remove those of other solvers of the prefix."""
         options, own = PETSc.Options(prefix), self._own.setdefault(prefix, set())
         for name in own - set(defaults):
             options.delValue(name)
@@ -71,8 +70,7 @@ REASONS = {
 class LinearSolver(ABC):
     """Solves with one matrix after the other, by PETSc's `KSP` with the options of a prefix.
 
-    All methods are collective. A solver that fails says so: its answers are then of no use,
-    `failure` says why.
+    All methods are collective. After a failure answers are of no use, `failure` says why.
 
     Parameters
     ----------
@@ -116,13 +114,11 @@ class LinearSolver(ABC):
         """PETSc options for a Krylov method, by their names without the prefix."""
 
     def reads(self, storage: str) -> bool:
-        """Whether the preconditioner reads matrices of PETSc's type `storage`; others are converted
-        to AIJ."""
+        """Whether the preconditioner reads PETSc's type `storage`; others are converted to AIJ."""
         return storage.endswith("aij") and not storage.endswith("baij")
 
     def price(self, matrix: PETSc.Mat) -> float:
-        """Solves that take as long as the next `prepare` with this matrix; 0 where nothing is to be
-        reused."""
+        """Solves as long as the next `prepare` with this matrix; 0: nothing is to be reused."""
         return 0.0
 
     # -- of all kinds ------------------------------------------------------------------------------
@@ -162,8 +158,7 @@ class LinearSolver(ABC):
         """Make the factor, or set up the preconditioner.
 
         active : (n,) own nodes that the matrix has rows of
-        keep : the same Mat is filled with other values later, and what is made of it now is to be
-        kept
+        keep : the Mat is filled with other values later, and what is made of it now is kept
         """
         if self.failure:
             self.renew()  # MUMPS does not try again by itself, and then solves without a factor
@@ -185,8 +180,7 @@ class LinearSolver(ABC):
         self.ksp.setUp()
 
     def operator(self, matrix: PETSc.Mat, positions: np.ndarray) -> PETSc.Mat:
-        """The matrix as the preconditioner reads it. positions : (n, 2 or 3) mm, of the nodes with
-        rows"""
+        """The matrix as the preconditioner reads it. positions : (n, 2 or 3) mm, of its nodes"""
         if self.reads(matrix.getType()):
             return matrix
         if self._converted is not None:
@@ -201,8 +195,7 @@ class LinearSolver(ABC):
         )
 
     def solve(self, right: np.ndarray, guess: np.ndarray | None = None) -> np.ndarray:
-        """Solution (n,) for a right side (n,), of this rank's rows. guess : (n,) or None for
-        zero"""
+        """Solution (n,) for a right side (n,), of this rank's rows. guess : (n,); None: zero"""
         self._into.array[:] = right
         iterates = guess is not None and self.ksp.getType() != PETSc.KSP.Type.PREONLY
         if iterates:
@@ -216,8 +209,7 @@ class LinearSolver(ABC):
         return self._out.array_r.copy()
 
     def solve_many(self, rights: np.ndarray, guesses: np.ndarray) -> np.ndarray:
-        """Solutions (n, m) for right sides (n, m); zero from the first one on that fails. guesses :
-        (n, m)"""
+        """Solutions for right sides and from guesses, (n, m); zero from the first failure on."""
         solutions = np.zeros_like(rights)
         for k in range(rights.shape[1]):
             solution = self.solve(rights[:, k], guesses[:, k])

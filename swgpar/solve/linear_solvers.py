@@ -31,13 +31,11 @@ FOR_SYMMETRIC = {
 
 
 def make_linear_solver(linear: str, kind: MatrixKind, options_prefix: str) -> LinearSolver:
-    """The linear solver that PETSc's options name, and where they name none that of
-    `solver.linear`; collective.
+    """The linear solver that PETSc's options name, else that of `solver.linear`; collective.
 
     linear : one of `LINEAR_SOLVERS`;  kind : of the matrices;  options_prefix : of PETSc's options
 
-    A preconditioner without a Krylov method gets one that fits. Raises InputError for options that
-    do not fit.
+    A preconditioner alone gets a Krylov method that fits. Raises InputError if options do not fit.
     """
     options = PETSc.Options(options_prefix)
     pc_type, package = (
@@ -48,8 +46,7 @@ def make_linear_solver(linear: str, kind: MatrixKind, options_prefix: str) -> Li
         if value in names and not kind.symmetric:
             raise InputError(
                 f"options of PETSc: -{options_prefix}{option} {value} needs a symmetric tangent, "
-                f"and friction "
-                "makes it unsymmetric: take gmres with lu or another preconditioner"
+                "and friction makes it unsymmetric: take gmres with lu or another preconditioner"
             )
     chosen = linear_solver(linear)
     if pc_type or package:

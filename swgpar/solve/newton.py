@@ -1,8 +1,6 @@
-"""Equilibrium of one load state: Newton's iteration on SNES, contact searches, cycle breaker,
-augmentation.
+"""Equilibrium of one load state: Newton's iteration, searches, cycle breaker, augmentation.
 
-A solve goes through phases (`Phase`). Every phase is one run of SNES; `NewtonSolver` decides by its
-outcome which phase follows:
+A solve goes through phases (`Phase`), each one run of SNES, whose outcome decides which follows:
 
     SOFTENED   contact is being established: reduced penalties, loose tolerance
     FULL       full penalties; segments of the flanks are cut anew until the solution is near
@@ -44,20 +42,16 @@ SOFT_PENALTIES = (1e-3, 3e-2)
 """Shares of the penalty of the first rough runs, while contact is established."""
 
 MAX_FURTHER_SEARCHES = 3
-"""Further contact searches of a solve, in states where flanks touch that the last search left
-out."""
+"""Further contact searches of a solve, where flanks touch that the last search left out."""
 
 MAX_NODE_STEP = 0.2
-"""Largest displacement (modules) of a node in a Newton step while flanks may touch: the tangent
-ignores clearances."""
+"""Largest step (modules) of a node while flanks may touch: the tangent ignores clearances."""
 
 SETTLED = 0.1
-"""Residual over the contact force above which contacts change too much, before the rotation, for an
-old factor."""
+"""Residual over contact force above which, before the rotation, an old factor is of no use."""
 
 MAX_FRICTION_ROUNDS, FRICTION_AGREEMENT = 20, 1e-3
-"""Largest number of problems with given friction bounds, and the relative agreement of the last
-two."""
+"""Most problems with given friction bounds, and the relative agreement of the last two."""
 
 
 PETSC_REASONS = {
@@ -71,8 +65,7 @@ PETSC_REASONS = {
 """SNES's reason for each verdict, None to go on."""
 
 IterationMonitor = Callable[[LoadState, int, float], None]
-"""Called after every Newton iteration with load state, iteration and residual over the contact
-force."""
+"""Called after every Newton iteration with load state, iteration, residual over contact force."""
 
 
 class NewtonSolver:
@@ -224,8 +217,7 @@ class NewtonSolver:
         max_iterations: int | None = None,
         search: bool = True,
     ) -> SolveResult:
-        """Solve for equilibrium from the present x; x is the solution, or not valid when the result
-        says not converged.
+        """Solve for equilibrium from the present x; x is the solution if the result converged.
 
         establish_contact : contacts are switched on: approach through softened penalties
         max_iterations : of all phases together, at most a multiple of that of the settings; None
@@ -303,8 +295,7 @@ class NewtonSolver:
         self.problem.scale_penalties(share)
 
     def _after_failure(self, state: SolveState) -> None:
-        """Go back to what the cycle breaker or the step before an augmentation has found, or end
-        the solve."""
+        """Go back to the solution of the cycle breaker or before an augmentation, or end."""
         self.system.discard_factor()
         breaker, before = state.breaker, state.before_augmentation
         if breaker.solution is not None and state.iterations < state.max_iterations:
@@ -329,8 +320,7 @@ class NewtonSolver:
             state.result = SolveResult(False, state.iterations, state.residual, text)
 
     def _after_frozen(self, state: SolveState) -> None:
-        """Repeat with friction bounds from the present pressures until they agree; then cut the
-        segments anew."""
+        """Repeat with bounds from present pressures until they agree; then cut segments anew."""
         breaker = state.breaker
         change, top = self.problem.segments.freeze_friction_bounds()
         if breaker.rounds < MAX_FRICTION_ROUNDS and change > FRICTION_AGREEMENT * top:
@@ -343,8 +333,7 @@ class NewtonSolver:
         self.problem.segments.release()
 
     def _after_converged(self, state: SolveState) -> None:
-        """Search again where contact was overlooked; else augment while the penetration is too
-        large; else accept."""
+        """Search again where contact was overlooked; else augment if it penetrates; else accept."""
         problem, settings = self.problem, self.settings
         state.breaker.solution = None
         if problem.overlooked(state.load_state):

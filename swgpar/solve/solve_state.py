@@ -32,8 +32,7 @@ class Outcome(enum.Enum):
 
 @dataclass(frozen=True)
 class SolveResult:
-    """Result of a solve: whether it converged, Newton iterations, last residual over the contact
-    force, reason."""
+    """Result of a solve: Newton iterations, last residual over the contact force, reason."""
 
     converged: bool
     iterations: int
@@ -67,8 +66,7 @@ class CycleBreaker:
     active : segments and friction bounds are frozen, and the line search is descending
     started : it is or was active; afterwards the iteration starts close to the solution
     rounds : problems with given friction bounds that were solved
-    solution : state found with frozen segments, as long as the iteration with segments cut anew has
-    not converged
+    solution : found with frozen segments, until the iteration with segments cut anew converges
     """
 
     active: bool = False
@@ -79,8 +77,7 @@ class CycleBreaker:
 
 @dataclass
 class AcceptableState:
-    """State before an augmentation: acceptable if the augmentation fails. multipliers : of all
-    penalty contacts, MPa"""
+    """State before an augmentation that may fail. multipliers : of all penalty contacts, MPa"""
 
     residual: float
     x: PETSc.Vec
@@ -124,8 +121,7 @@ class SolveState:
 
     @property
     def phase(self) -> Phase:
-        """Phase of the present run, from its penalty, the cycle breaker and the augmentations so
-        far."""
+        """Phase of the present run, from its penalty, the cycle breaker and the augmentations."""
         if self.penalty_share != 1.0:
             return Phase.SOFTENED
         if self.breaker.active:
@@ -142,11 +138,9 @@ class SolveState:
         here = self.load_state
         return (
             f"the time limit of {self.time_limit:g} s (solver.time_limit) has passed in step "
-            f"{here.step} "
-            f"({here.stage.label}) at a wave-generator angle of {np.degrees(here.angle):.4g} "
-            f"degrees, after "
-            f"{self.iterations} Newton iterations, residual {self.residual:.1e} of the contact "
-            f"force"
+            f"{here.step} ({here.stage.label}) at a wave-generator angle of "
+            f"{np.degrees(here.angle):.4g} degrees, after {self.iterations} Newton iterations, "
+            f"residual {self.residual:.1e} of the contact force"
         )
 
 

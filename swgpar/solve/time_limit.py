@@ -1,5 +1,4 @@
-"""The time limit of a run, for all solvers that work for it: on its own mesh and on coarser
-ones."""
+"""The time limit of a run, for all its solvers: on its own mesh and on coarser ones."""
 
 from __future__ import annotations
 
@@ -25,8 +24,7 @@ def limited(seconds: float | None) -> Iterator[None]:
 
 
 def passed(comm: MPI.Comm) -> float | None:
-    """The limit (s) when it has passed by the clock of rank 0, else None; collective where there is
-    a limit."""
+    """The limit (s) if passed by the clock of rank 0, else None; collective where there is one."""
     limit = _limit.get()
     if limit is None:
         return None

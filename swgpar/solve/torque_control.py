@@ -13,8 +13,7 @@ from swgpar.load.load_states import LoadState
 
 
 class TorqueControl:
-    """Bounds and closes the clearance of the flanks that carry the torque; all methods are
-    collective.
+    """Bounds and closes the clearance of the flanks that carry the torque; all is collective.
 
     supports : of the drive;  clearances : of the flanks, one for each ring gear
     """
@@ -23,8 +22,7 @@ class TorqueControl:
         self.supports, self.clearances = supports, clearances
 
     def output_step_bound(self, state: LoadState) -> float | None:
-        """Bound of the output's motion in a Newton step, in units of the last border; None where it
-        is prescribed."""
+        """Bound of the output's motion in a step, in units of the last border, or None."""
         if state.control != "torque":
             return None
         return self.supports.scale * min(
@@ -33,12 +31,10 @@ class TorqueControl:
         )
 
     def closing_rotation(self, u: np.ndarray, state: LoadState) -> float:
-        """Rotation (rad) of the output, in the direction of the torque of `state`, that brings
-        flanks together.
+        """Rotation (rad) of the output, along the torque of `state`, that brings flanks together.
 
         They are those of the output, or where the flexible spline rotates with it those of the
-        fixed ring gear. 0 where they are so close that a Newton step does the rest, or where none
-        is near.
+        fixed ring gear. 0 where a Newton step does the rest, or where none is near.
 
         u : (n_local, 3) mm, of the last search
         """
@@ -53,7 +49,6 @@ class TorqueControl:
         return self.supports.output_gear != SPLINE_COUPLING and flanks.ring_motion.floats
 
     def _loaded_side(self, flanks: FlankContact, state: LoadState) -> int:
-        """Side of the flanks that carry the torque of `state`, on the flexible spline or on the
-        ring gear."""
+        """Side of the flanks that carry the torque, on the flexible spline or the ring gear."""
         counter_clockwise = (state.torque >= 0.0) != self._is_output(flanks)
         return LOADED_SIDE if counter_clockwise else -LOADED_SIDE

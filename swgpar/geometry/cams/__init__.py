@@ -37,8 +37,7 @@ class Cam(Protocol):
     """
 
     def evaluate(self, xy: np.ndarray) -> SignedDistance:
-        """Signed distance, outward normal and Hessian factor at points (n, 2), mm, near the
-        curve."""
+        """Signed distance, outward normal and Hessian factor at points (n, 2) mm near it."""
 
     def outline(self, n: int) -> np.ndarray:
         """About n points of the surface (n, 2), mm.
@@ -86,8 +85,7 @@ def taut_length(cam: Cam, n: int = 7200) -> float:
 
 
 def pin_travel(cam: Cam, radius: float, lobes: int = 2, n: int = 7200) -> float:
-    """How far the pins, each a lobe of the cam, are drawn in towards the axis to fit into the
-    circle `radius`.
+    """How far the pins, each a lobe of the cam, are drawn in to fit into the circle `radius`.
 
     In mm; half the deflection for a cam that first touches at its tips, more when it bulges beside
     them (the pins of section 3.2 are the halves of the cam).

@@ -1,5 +1,4 @@
-"""Oval cam: arcs of one radius about the major axis, of another one about the minor axis, that join
-smoothly.
+"""Oval cam: arcs of two radii, about the major and the minor axis, that join smoothly.
 
 Along an arc the bending of the spline does not change. Of all shapes with the same deflection, arcs
 of the half angle 45 degrees have the least largest bending: 0.80 of that on an ellipse.

@@ -1,5 +1,4 @@
-"""Four-roller cam (section 3.2.4): rollers at +-beta from the major axis that reach to the circle
-of radius a."""
+"""Four-roller cam (section 3.2.4): rollers at +-beta from the major axis inside of radius a."""
 
 from __future__ import annotations
 
@@ -14,8 +13,7 @@ from swgpar.geometry.cams.piecewise import Circle
 
 @dataclass(frozen=True)
 class FourRollerCam:
-    """Rollers of `radius` (mm) whose centres lie at the angles +-beta (rad) from +y and from -y, (a
-    - radius) out."""
+    """Rollers of `radius` (mm), centres at +-beta (rad) from +y and from -y, (a - radius) out."""
 
     a: float
     beta: float
@@ -28,11 +26,9 @@ class FourRollerCam:
         return float(reach * np.sin(self.beta)), float(reach * np.cos(self.beta))
 
     def evaluate(self, xy: np.ndarray) -> SignedDistance:
-        """Signed distance to the nearest roller, its outward normal and Hessian factor at points
-        (n, 2), mm.
+        """Distance to the nearest roller, its normal and Hessian factor at points (n, 2), mm.
 
-        On the two axes the nearest roller changes, and the normal with it: points there are far
-        from the surface.
+        On the axes the nearest roller and the normal change, far from the surface.
         """
         xy = np.asarray(xy, dtype=float)
         sign = np.where(xy < 0.0, -1.0, 1.0)
@@ -47,8 +43,7 @@ class FourRollerCam:
 
 
 def four_roller(a: float, beta: float, radius: float, name: str = "r_4") -> FourRollerCam:
-    """Cam of four rollers that keep clear of each other (section 5.5.1); lengths in mm, `beta` in
-    rad."""
+    """Cam of four rollers that keep clear of each other (section 5.5.1); mm, `beta` in rad."""
     # neighbours at +-beta: (a - r) sin beta > r, and r < a / 2 keeps the opposite pairs apart
     small = min(beta, 0.5 * np.pi - beta)
     limit = a * np.sin(small) / (1.0 + np.sin(small))

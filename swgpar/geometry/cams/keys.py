@@ -79,8 +79,7 @@ class Parabolic(_Reduced, SideKeys):
 
 
 class AsymmetricParabolic(_Reduced):
-    """Section 5.7; right and left on the upper lobe, both rotated by the rotational angle
-    lambda."""
+    """Section 5.7; right and left on the upper lobe, both rotated by lambda."""
 
     type: Literal["asymmetric_parabolic"] = quantity("asymmetric_parabolic", text="kind of cam")
     rotational_angle: float = quantity(

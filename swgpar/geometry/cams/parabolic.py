@@ -25,8 +25,7 @@ from swgpar.geometry.cams.piecewise import Circle, Parabola, PiecewiseCam
 
 @dataclass(frozen=True)
 class Side:
-    """One side of a lobe: parabola coefficient a_p (1/mm), length C_p (of b) and connector radius
-    r_c (mm).
+    """One side of a lobe: parabola coefficient a_p (1/mm), length C_p (of b), connector r_c (mm).
 
     `name` is that of its section in the design file.
     """
@@ -39,8 +38,7 @@ class Side:
 
 @dataclass(frozen=True)
 class Quarter:
-    """Solved right quarter: `start`, `end` of the connector arc, mm; angles `alpha`, `theta` of the
-    normals, rad."""
+    """Solved right quarter: ends of the connector arc, mm; angles of the normals there, rad."""
 
     start: np.ndarray
     end: np.ndarray
@@ -51,8 +49,7 @@ class Quarter:
 
 
 def solve_quarter(parabola: Parabola, b: float, side: Side) -> Quarter:
-    """Arcs that lead from the parabola's end at x = C_p b to (b, 0), mm; refuses when there are
-    none."""
+    """Arcs from the parabola's end at x = C_p b to (b, 0), mm; refuses when there are none."""
     name, C_p, r_c = side.name, side.C_p, side.r_c
     end, normal = parabola.at(C_p * b)
     theta = float(np.arctan2(normal[1], normal[0]))
@@ -61,16 +58,14 @@ def solve_quarter(parabola: Parabola, b: float, side: Side) -> Quarter:
     if not 0.0 < b - end[0] < end[1] * np.tan(0.5 * theta):
         raise InputError(
             f"{name}.a_p = {parabola.p:g} with {name}.C_p = {C_p:g} cannot be closed at the minor "
-            f"axis: allowed are a "
-            "smaller a_p or another C_p, so that the parabola ends above the connector's reach and "
-            "inside b"
+            "axis: allowed are a smaller a_p or another C_p, so that the parabola ends above the "
+            "connector's reach and inside b"
         )
     limit = (b - end[0]) / (1.0 - np.cos(theta))
     if r_c >= limit:
         raise InputError(
             f"{name}.r_c = {r_c:g} is out of range: allowed above 0 to below {limit:.6g} mm, where "
-            f"the connector arc "
-            "passes the minor semi-axis"
+            "the connector arc passes the minor semi-axis"
         )
     center = end - r_c * normal
     alpha = float(2.0 * np.arctan2(b - r_c - center[0], center[1]))
@@ -81,8 +76,7 @@ def solve_quarter(parabola: Parabola, b: float, side: Side) -> Quarter:
 
 
 def parabolic(a: float, b: float, right: Side, left: Side, tilt: float = 0.0) -> PiecewiseCam:
-    """Parabolic cam with semi-axes a (along y) and b, mm; `tilt` (rad) rotates the parabolas about
-    their apexes."""
+    """Parabolic cam with semi-axes a (along y) and b, mm; `tilt` (rad) about the apexes."""
     r = solve_quarter(Parabola(a, right.a_p, tilt), b, right)
     # the left side is the mirror image of a right side with the opposite tilt
     m = solve_quarter(Parabola(a, left.a_p, -tilt), b, left)

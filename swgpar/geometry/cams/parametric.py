@@ -13,8 +13,7 @@ MOST_STEPS = 30
 
 
 class ParametricCam(ABC):
-    """Closed curve X(t) with points x + i y (mm) as complex numbers, counter-clockwise from the tip
-    on +y, 0 <= t <= 2 pi."""
+    """Closed curve X(t), 0 <= t <= 2 pi, of points x + i y (mm), counter-clockwise from +y."""
 
     @abstractmethod
     def curve(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -14,8 +14,7 @@ class Piece(Protocol):
     """A part of a circle, a line or a parabola."""
 
     def evaluate(self, xy: np.ndarray) -> SignedDistance:
-        """Signed distance, normal and k at points (n, 2), mm, of the whole circle, line or
-        parabola."""
+        """Signed distance, normal and k at points (n, 2), mm, of the whole curve."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +46,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Parabola:
-    """Parabola y = height - p x^2 (eq. 3.5), rotated about its apex (0, height) by `tilt`, material
-    below.
+    """Parabola y = height - p x^2 (eq. 3.5), rotated about its apex by `tilt`, material below.
 
     height : mm;  p : 1/mm, above 0;  tilt : rad, counter-clockwise
     """
@@ -62,8 +60,7 @@ class Parabola:
         return np.array([[c, -s], [s, c]])
 
     def at(self, x: float) -> tuple[np.ndarray, np.ndarray]:
-        """Point (2,) mm and outward unit normal (2,) at the abscissa x of the parabola's own frame
-        (eqs 3.5, 3.7)."""
+        """Point (2,) mm and outward normal (2,) at the abscissa x, own frame (eqs 3.5, 3.7)."""
         point = np.array([x, -self.p * x * x])
         normal = np.array([2.0 * self.p * x, 1.0]) / np.hypot(1.0, 2.0 * self.p * x)
         return self._rotation() @ point + (0.0, self.height), self._rotation() @ normal
@@ -105,8 +102,7 @@ class PiecewiseCam:
 
     pieces : the upper half, counter-clockwise, from (w, 0), where its normal is (1,
         0), to (-w, 0)
-    joints, tangents : (len(pieces) - 1, 2) points between them, mm, and the unit tangents there,
-        counter-clockwise
+    joints, tangents : (len(pieces) - 1, 2) points between them, mm, and counter-clockwise tangents
     """
 
     pieces: tuple[Piece, ...]
@@ -114,8 +110,7 @@ class PiecewiseCam:
     tangents: np.ndarray
 
     def evaluate(self, xy: np.ndarray) -> SignedDistance:
-        """Signed distance, outward normal and Hessian factor at points (n, 2), mm, near the
-        curve."""
+        """Signed distance, outward normal and Hessian factor at points (n, 2) mm near the curve."""
         xy = np.asarray(xy, dtype=float)
         sign = np.where(xy[:, 1] < 0.0, -1.0, 1.0)
         upper = xy * sign[:, None]

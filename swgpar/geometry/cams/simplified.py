@@ -1,5 +1,4 @@
-"""Simplified cam (section 3.2.1): two semicircles joined by straight lines, tips on the major
-axis."""
+"""Simplified cam (section 3.2.1): semicircles joined by straight lines, tips on the major axis."""
 
 from __future__ import annotations
 
@@ -9,8 +8,7 @@ from swgpar.geometry.cams.piecewise import Circle, Line, PiecewiseCam
 
 
 def simplified(a: float, radius: float) -> PiecewiseCam:
-    """Semicircles of `radius` (eq. 3.2) about (0, +-(a - radius)), all in mm; a circle when radius
-    = a."""
+    """Semicircles of `radius` (eq. 3.2) about (0, +-(a - radius)), mm; a circle if radius = a."""
     height = a - radius
     return PiecewiseCam(
         pieces=(

@@ -47,8 +47,7 @@ def make_profile(
     c_P : angular tooth thickness reduction (eq. 3.22); 1 for involutes
     c_l : share of the straight segment above the pitch point; 0.5 for involutes
     gear : name of the gear's section, for messages
-    partner : the other gear's flank and the motion of the flexible spline's tooth; conjugate
-    profiles need them
+    partner : of conjugate profiles, the other flank and the motion of the flexible spline's tooth
 
     Raises InputError where the keys give no flank.
     """
@@ -65,8 +64,7 @@ def make_profile(
 def _advice(
     keys: ExternalProfile | InternalProfile, teeth: Teeth, c_P: float, c_l: float, gear: str
 ) -> str:
-    """What to change in keys that give no flank, as the end of a sentence; empty if the reason says
-    it."""
+    """What to change in keys that give no flank, to end a sentence; empty if the reason says it."""
 
     def builds(**values: float) -> bool:
         try:

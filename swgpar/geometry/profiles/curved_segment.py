@@ -13,16 +13,14 @@ from scipy.spatial import cKDTree
 from swgpar.geometry.arrays import Floats
 
 PANELS, ORDER = 64, 6
-"""Panels of the arc length's table and Gauss points in each: round-off for the smooth curves of a
-tooth."""
+"""Panels of the arc length's table and Gauss points in each: round-off on a tooth's curves."""
 
 
 @dataclass(frozen=True)
 class CurvePoints:
     """A curve at parameters t (n,).
 
-    point : (n, 2) mm;  angle : (n,) rad, of the tangents;  speed : (n,) mm, |dx/dt|;  angle_rate :
-    (n,) rad, d angle/dt
+    point : (n, 2) mm;  angle : (n,) rad, of tangents;  speed : |dx/dt|, mm;  angle_rate : rad
     """
 
     point: Floats
@@ -45,8 +43,7 @@ class CurvedSegment:
 
     @cached_property
     def _table(self) -> tuple[Floats, Floats]:
-        """Gauss points and weights on (0, 1), and arc lengths (PANELS + 1,), mm, at the ends of the
-        panels."""
+        """Gauss points and weights on (0, 1), arc lengths (PANELS + 1,) mm at ends of panels."""
         point, weight = np.polynomial.legendre.leggauss(ORDER)
         return np.stack((0.5 * (point + 1.0), 0.5 * weight)), self._lengths(
             0.5 * (point + 1.0), 0.5 * weight
@@ -76,8 +73,7 @@ class CurvedSegment:
         return CubicHermiteSpline(ends, t, 1.0 / self.evaluate(t).speed)
 
     def parameter(self, s: Floats) -> Floats:
-        """Return the parameters (n,) at the arc lengths `s` : (n,) mm, by Newton's method from the
-        table."""
+        """Parameters (n,) at the arc lengths `s` : (n,) mm, by Newton's method from the table."""
         s = np.asarray(s, dtype=np.float64)
         t = self._inverse(s)
         for _ in range(6):
@@ -105,8 +101,7 @@ class CurvedSegment:
         return cKDTree(self.evaluate(np.linspace(0.0, 1.0, 257)).point)
 
     def nearest(self, points: Floats) -> Floats:
-        """Return the local arc length (n,), mm, of the point of the segment nearest to `points` (n,
-        2), mm."""
+        """Local arc lengths (n,), mm, of the points nearest to `points` (n, 2), mm."""
         t = self._samples.query(points)[1] / 256.0
         moving = np.arange(len(points))  # points whose iteration goes on
         for _ in range(20):

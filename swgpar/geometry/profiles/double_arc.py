@@ -40,8 +40,7 @@ def straight_length(
 def double_arc(
     frame: PitchPointFrame, c_l: float, r_addendum: float, r_dedendum: float, name: str = "profile"
 ) -> ToothProfile:
-    """Build the flank; lengths in mm, `c_l` is the share of the straight segment above the pitch
-    point."""
+    """Build the flank; mm, `c_l` is the share of the straight segment above the pitch point."""
     length = straight_length(frame, c_l, r_dedendum, name)
     s, star, n = frame.sign, frame.base_angle, frame.normal
     top, bottom = (

@@ -15,8 +15,7 @@ from swgpar.geometry.arrays import Floats
 
 
 class FlankSegment(Protocol):
-    """A smooth piece of a flank, run through from the tip towards the root; local arc lengths s in
-    mm."""
+    """A smooth piece of a flank, from the tip towards the root; local arc lengths s in mm."""
 
     @property
     def name(self) -> str:
@@ -36,8 +35,7 @@ class FlankSegment(Protocol):
         """Change of that angle per arc length (n,), 1/mm, at `s` : (n,)."""
 
     def nearest(self, points: Floats) -> Floats:
-        """Local arc lengths (n,), mm, of the points of the segment nearest to `points` (n, 2),
-        mm."""
+        """Local arc lengths (n,), mm, of the points nearest to `points` (n, 2), mm."""
 
 
 @dataclass(frozen=True)
@@ -77,8 +75,7 @@ class Segment:
         )
 
     def nearest(self, points: Floats) -> Floats:
-        """Return the local arc length (n,), mm, of the point of the segment nearest to `points` (n,
-        2), mm."""
+        """Local arc lengths (n,), mm, of the points nearest to `points` (n, 2), mm."""
         offset = points - np.asarray(self.start)
         tangent = np.array((np.cos(self.direction), np.sin(self.direction)))
         along = offset @ tangent
@@ -156,8 +153,7 @@ class ToothProfile:
         return s, index, s - self.breaks[index]
 
     def _gather(self, quantity: str, s: ArrayLike, *shape: int) -> Floats:
-        """Values (n, *shape) of the segments' method `quantity` at the arc lengths `s` (n,) that
-        lie on them."""
+        """Values (n, *shape) of the segments' method `quantity` at the arc lengths `s` (n,)."""
         s, index, local = self._split(s)
         values = np.empty((s.size, *shape))
         for k, segment in enumerate(self.segments):
@@ -181,8 +177,7 @@ class ToothProfile:
         return self._side * np.stack((-np.sin(direction), np.cos(direction)), axis=-1)
 
     def curvature(self, s: ArrayLike) -> Floats:
-        """Return the curvature (n,), 1/mm: d tangent / d s = curvature * normal; negative where
-        convex."""
+        """Curvature (n,), 1/mm: d tangent / d s = curvature * normal; negative where convex."""
         return self._side * self._gather("signed_curvature", s)
 
     def crowning_weight(self, s: ArrayLike) -> Floats:
@@ -228,14 +223,12 @@ class ToothProfile:
         return np.copysign(best, side), foot
 
     def polar_angle(self, s: ArrayLike) -> Floats:
-        """Return the angle (n,), rad, between the tooth's centre line and the points at `s` : (n,)
-        mm."""
+        """Angle (n,), rad, between the tooth's centre line and the points at `s` : (n,) mm."""
         x, y = self.point(s).T
         return np.arctan2(x, y)
 
     def thickness(self, radius: float) -> float:
-        """Return the thickness of the tooth along the circle of `radius`, mm, that its flank
-        crosses once."""
+        """Thickness of the tooth along the circle of `radius`, mm, that its flank crosses once."""
 
         def beyond(s: float) -> float:
             return float(np.hypot(*self.point(s)[0])) - radius
@@ -259,12 +252,10 @@ class ToothProfile:
 
 
 def check_flank(profile: ToothProfile, tolerance: float = 1e-9) -> None:
-    """Refuse a flank that is no flank: broken tangents, ends beside their circles, folded back, or
-    outside its half tooth sector.
+    """Refuse a flank that is broken, ends beside its circles, folds back, or leaves its half tooth.
 
     profile : ToothProfile
-    tolerance : largest relative mismatch of points (to the tip radius) at joints and ends, and of
-        tangents (rad) at joints
+    tolerance : relative mismatch of points (to the tip radius), and of tangents (rad) at joints
     """
     for before, after in zip(profile.segments, profile.segments[1:], strict=False):
         end, start = np.array([before.length]), np.zeros(1)

@@ -1,5 +1,4 @@
-"""The involute flank with its fillet: external teeth cut by a rack, internal ones by a shaper
-(section 3.3.1).
+"""The involute flank with its fillet: external teeth by a rack, internal by a shaper (3.3.1).
 
 Generation about the pitch point I, with the gear's axis at (0, -r_P) from it: while the gear turns
 clockwise by psi (the generating angle) the rack moves by r_P psi, or the shaper turns by psi N /
@@ -10,8 +9,7 @@ passes through I. So
 n with
   n = (cos alpha, s sin alpha), w = r_b (psi + alpha_P), where alpha_P is half the angular thickness
   of the tooth;
-- the rounded tip of the cutter, of radius rho about C(psi), touches at K = C (1 + rho / |C|) with n
-= -C / |C|.
+- the rounded cutter tip, radius rho about C(psi), touches at K = C (1 + rho / |C|), n = -C / |C|.
 
 The flank is x = R(psi) (K - O): K in the gear's frame. s = +1 for external, -1 for internal teeth.
 """
@@ -32,14 +30,12 @@ from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.geometry.profiles.teeth import Teeth
 
 Center = Callable[[Floats], tuple[Floats, Floats]]
-"""Centre C (n, 2) mm of the rounded tip of the cutter, and dC/dpsi (n, 2), at generating angles psi
-(n,)."""
+"""Centre C (n, 2) mm of the cutter's rounded tip, and dC/dpsi (n, 2), at psi (n,)."""
 
 
 @dataclass(frozen=True)
 class Cutter(Teeth):
-    """Gear and cutter of the same reference profile: external teeth by a rack, internal ones by a
-    shaper; mm.
+    """Gear and cutter of one reference profile: external teeth by a rack, internal by a shaper; mm.
 
     tip_radius : rounding of the cutter's teeth
     shift : profile shift, in modules: the cutter is set outwards by shift * module
@@ -83,8 +79,7 @@ class Cutter(Teeth):
         return 0.5 * self.cutter_teeth * self.module
 
     def contact_distance(self, radius: float) -> float:
-        """Distance w from the pitch point, along the line of action, at which the involute reaches
-        `radius`; mm."""
+        """Distance w from the pitch point at which the involute reaches `radius`; mm."""
         base = np.sqrt(radius**2 - self.r_base**2)
         return self.sign * (base - self.r_base * np.tan(self.pressure_angle))
 
@@ -94,20 +89,17 @@ def _check_tip(cut: Cutter, limit: float, name: str) -> None:
     if limit <= 0.0:
         raise InputError(
             f"{name}.pressure_angle = {np.degrees(cut.pressure_angle):g} is out of range: allowed "
-            f"are smaller angles, "
-            "for which the cutter's tooth does not end in a point"
+            "are smaller angles, for which the cutter's tooth does not end in a point"
         )
     if cut.tip_radius >= limit:
         raise InputError(
             f"{name}.cutter_radius = {cut.tip_radius:g} is out of range: allowed above 0 to below "
-            f"{limit:.6g} mm, "
-            "where the cutter's tooth has no flat tip left"
+            f"{limit:.6g} mm, where the cutter's tooth has no flat tip left"
         )
 
 
 def _rack_tip(cut: Cutter, name: str) -> tuple[float, float, Center]:
-    """Generating angles at the start and the end of the fillet, and C (n, 2) with dC/dpsi (n,
-    2)."""
+    """Generating angles at the ends of the fillet, and C (n, 2) with dC/dpsi (n, 2)."""
     tangent, rho = np.tan(cut.pressure_angle), cut.tip_radius
     rise = (1.0 - np.sin(cut.pressure_angle)) / np.cos(cut.pressure_angle)
     # centre of the rounding: from the tooth's centre line, and below the pitch line
@@ -131,8 +123,7 @@ def _shaper_tip(cut: Cutter, name: str) -> tuple[float, float, Center]:
     r_c = r_g + cut.depth - rho
 
     def margin(radius: float) -> float:
-        """Polar angle between the middle of the shaper's tooth and the centre of a rounding of this
-        radius."""
+        """Polar angle from the middle of the shaper's tooth to the centre of such a rounding."""
         roll = np.arccos(r_b / (r_g + cut.depth - radius))
         thickness = np.pi / cut.cutter_teeth - cut.half_thickness * ratio
         return thickness + np.tan(alpha) - alpha - (np.tan(roll) - roll) - radius / r_b
@@ -154,8 +145,7 @@ def _shaper_tip(cut: Cutter, name: str) -> tuple[float, float, Center]:
 
 
 Contact = Callable[[Floats], tuple[Floats, Floats, Floats, Floats]]
-"""K (n, 2) mm, dK/dpsi (n, 2), angle of the normal (n,) rad and its derivative (n,) at generating
-angles psi (n,)."""
+"""K (n, 2) mm, dK/dpsi (n, 2), angle of the normal (n,) rad and its rate (n,) at psi (n,)."""
 
 
 def _curve(cut: Cutter, name: str, ends: tuple[float, float], contact: Contact) -> CurvedSegment:
@@ -185,8 +175,7 @@ def _curve(cut: Cutter, name: str, ends: tuple[float, float], contact: Contact) 
 def involute(cut: Cutter, name: str = "profile") -> ToothProfile:
     """Build the flank: involute from the addendum circle, fillet down to the dedendum circle.
 
-    name : section of the design file, for messages. Raises InputError where gear and cutter give no
-    flank.
+    name : section of the design file, for messages. Raises InputError where there is no flank.
     """
     _check_sizes(cut, name)
     s = cut.sign
@@ -237,8 +226,7 @@ def _check_sizes(cut: Cutter, name: str) -> None:
     if cut.r_tip_circle <= cut.r_base:
         raise InputError(
             f"{name}.pressure_angle = {np.degrees(cut.pressure_angle):g} is out of range: allowed "
-            f"are angles whose "
-            f"base circle ({cut.r_base:.6g} mm) lies inside the addendum circle "
+            f"are angles whose base circle ({cut.r_base:.6g} mm) lies inside the addendum circle "
             f"({cut.r_tip_circle:.6g} mm)"
         )
     if cut.depth <= 0.0 or cut.addendum + cut.sign * cut.shift * cut.module <= 0.0:
@@ -247,14 +235,12 @@ def _check_sizes(cut: Cutter, name: str) -> None:
         )
         raise InputError(
             f"{name}.shift = {cut.shift:g} is out of range: allowed above {low:g} to below "
-            f"{high:g} modules, where the "
-            "pitch circle crosses the teeth"
+            f"{high:g} modules, where the pitch circle crosses the teeth"
         )
 
 
 def _check_shaper(cut: Cutter, w_tip: float, name: str) -> None:
-    """The shaper's involute must exist where it cuts the ring's tips: above the shaper's own base
-    circle."""
+    """The shaper's involute must exist where it cuts the ring's tips: above its base circle."""
     least = int(np.ceil(2.0 * w_tip / (cut.module * np.sin(cut.pressure_angle)) + 1e-9))
     if not least <= cut.cutter_teeth < cut.n_teeth:
         raise InputError(
@@ -286,6 +272,5 @@ def _check_trimming(cut: Cutter, profile: ToothProfile, center: Center, name: st
     if clear.min(initial=np.inf) < cut.tip_radius - 1e-6 * cut.module:
         raise InputError(
             f"{name}.cutter_teeth = {cut.cutter_teeth} is out of range: allowed are fewer teeth, "
-            f"so that the shaper "
-            "does not trim the tips of the ring's teeth"
+            "so that the shaper does not trim the tips of the ring's teeth"
         )

@@ -1,5 +1,4 @@
-"""The sections [flexible_spline.profile] and [ring_gear.profile]: one set of keys for each `type`
-of profile."""
+"""The sections [flexible_spline.profile] and [ring_gear.profile]: keys of each `type`."""
 
 from __future__ import annotations
 
@@ -82,8 +81,7 @@ class ShaperInvolute(_Involute):
 
 
 class Conjugate(ProfileKeys):
-    """The envelope of the other gear's flank in the motion of its tooth
-    (docs/theory/conjugate.md)."""
+    """Envelope of the other flank in the motion of its tooth (docs/theory/conjugate.md)."""
 
     thickness_key = "backlash"
 

@@ -11,8 +11,7 @@ from swgpar.geometry.profiles.flank import Segment, ToothProfile
 from swgpar.geometry.profiles.teeth import Teeth
 
 Piece = tuple[str, np.ndarray, float, float, float]
-"""Name, start, inclination, convexity and length of a segment, as `PitchPointFrame.segment` takes
-them."""
+"""Name, start, inclination, convexity and length of a segment, see `PitchPointFrame.segment`."""
 
 
 @dataclass(frozen=True)
@@ -59,8 +58,7 @@ class PitchPointFrame(Teeth):
         return np.array([np.cos(beta), self.sign * np.sin(beta)])
 
     def inclination(self, center: np.ndarray) -> float:
-        """Inclination, rad, of the normal common to an arc about `center` (2,) and to a circle
-        about the axis."""
+        """Inclination, rad, of the normal common to arcs about `center` (2,) and about the axis."""
         x, y = self.sign * center / np.hypot(*center)
         return float(np.arctan2(self.sign * y, x))
 
@@ -69,8 +67,7 @@ class PitchPointFrame(Teeth):
     ) -> Segment:
         """Segment from `start` (2,), mm, where the normal's inclination is beta.
 
-        `convexity` is its curvature, 1/mm, above 0 where the tooth is convex, and `length` its arc
-        length, mm.
+        `convexity` is its curvature, 1/mm, above 0 where convex, `length` its arc length, mm.
         """
         direction = beta - 0.5 * np.pi if self.external else 0.5 * np.pi - beta
         return Segment(
@@ -82,8 +79,7 @@ class PitchPointFrame(Teeth):
         )
 
     def profile(self, pieces: list[Piece], name: str) -> ToothProfile:
-        """Flank of `pieces` from tip to root; those of no length are left out, a negative length is
-        refused.
+        """Flank of `pieces` from tip to root without those of no length; refuses a negative one.
 
         name : section of the design file, for the message
         """

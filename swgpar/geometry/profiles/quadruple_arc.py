@@ -1,5 +1,4 @@
-"""The quadruple-circular-arc (QCA) flank: tip, addendum, straight, dedendum and root (section
-3.3.3).
+"""The quadruple-circular-arc (QCA) flank: tip, addendum, straight, dedendum, root (section 3.3.3).
 
 With s = +1 for external and -1 for internal teeth, the normals n of `PitchPointFrame` and its
 inclination alpha* at the pitch point P:
@@ -21,8 +20,7 @@ from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 
 
 def _closing_angle(radius: Callable[[float], float], target: float, refusal: str) -> float:
-    """Smallest angle in (0, pi/2) at which `radius` (mm) is `target`; raises InputError with
-    `refusal` without one.
+    """Smallest angle in (0, pi/2) at which `radius` (mm) is `target`; else InputError(`refusal`).
 
     Long arcs reach their circle twice: `radius` has one extremum in between.
     """
@@ -45,8 +43,7 @@ def quadruple_arc(
     r_root: float,
     name: str = "profile",
 ) -> ToothProfile:
-    """Build the flank; lengths in mm, `c_l` is the share of the straight segment above the pitch
-    point."""
+    """Build the flank; mm, `c_l` is the share of the straight segment above the pitch point."""
     s, star, n = frame.sign, frame.base_angle, frame.normal
     top = frame.pitch_point + c_l * straight_l * frame.towards_tip
     bottom = frame.pitch_point - (1.0 - c_l) * straight_l * frame.towards_tip

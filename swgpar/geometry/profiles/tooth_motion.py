@@ -52,16 +52,14 @@ class Pose:
 
 @dataclass(frozen=True)
 class ToothMotion:
-    """Motion on the neutral line `line` of a drive with the tooth numbers `teeth_fs` and
-    `teeth_rg`."""
+    """Motion on the neutral line `line` of a drive with these tooth numbers."""
 
     line: NeutralLine
     teeth_fs: int
     teeth_rg: int
 
     def pose(self, psi: Floats) -> Pose:
-        """Pose of the tooth of the flexible spline in its slot, at the material angles psi (n,)
-        rad."""
+        """Pose of the flexible spline's tooth in its slot, at the material angles psi (n,) rad."""
         line, q = self.line, self.teeth_fs / self.teeth_rg
         tilt, tilt1, tilt2 = line.tilt(psi)
         around, slip = np.exp(1j * (psi + tilt)), line.radius * (1.0 + tilt1) - line.stretched
@@ -84,8 +82,7 @@ class ToothMotion:
         return replace(self, line=replace(self.line, amplitudes=amplitudes))
 
     def mirrored(self, points: np.ndarray) -> np.ndarray:
-        """Points x + i y (n,), mm, between the slot's frame and that of the ring gear's tooth
-        clockwise of it.
+        """Points x + i y (n,) mm between the frames of the slot and the tooth clockwise of it.
 
         The image is a mirror image, so that the flank at x > 0 of that tooth is the one that faces
         the slot. The same function leads back.
