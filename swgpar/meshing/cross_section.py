@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.meshing.half_tooth import HalfTooth
-from swgpar.meshing.mapped import MappedBlocks, MeshError, QuadMesh
+from swgpar.meshing.mapped import QuadMesh, mapped_mesh
 from swgpar.meshing.recipe import ToothRecipe
 
 UNDER, ROOT, RIM = 3, 4, 5
@@ -53,13 +53,9 @@ def cross_section(
 ) -> CrossSection:
     """Mesh the cross-section of one tooth and its rim; parameters as for `HalfTooth`."""
     half = HalfTooth(profile, recipe, interface, free)
-    mapped = MappedBlocks(scale=half.half_pitch * profile.r_tip_circle)
-    for sides in half.blocks():
-        mapped.add_block(*sides)
-    mesh, _ = mapped.generate()
+    mesh = mapped_mesh(half.blocks(), scale=half.half_pitch * profile.r_tip_circle)
     flank_points = profile.point(half.s)
-    find = NodeFinder(mesh.coords, 1e-6 * mapped.scale)
-    flank = find(flank_points)
+    _, flank = cKDTree(mesh.coords).query(flank_points)
     mesh.coords[flank] = flank_points
     edge = np.flatnonzero(
         np.abs(np.arctan2(*mesh.coords.T) - half.half_pitch) < 1e-9 * half.half_pitch
@@ -76,7 +72,7 @@ def cross_section(
         coords=full.coords,
         quads=full.quads,
         s=half.s,
-        flank=flank,
+        flank=flank.astype(np.int32),
         mirror=mirror,
         edge=edge.astype(np.int32),
         free=on_free.astype(np.int32),
@@ -85,20 +81,6 @@ def cross_section(
         rim_layer=rim_layer,
         housing=np.zeros(len(full.quads), dtype=bool),
     )
-
-
-class NodeFinder:
-    """Nodes by their coordinates: `find(points)` gives the node (n,) at each of the `points` (n,
-    2), mm."""
-
-    def __init__(self, coords: Floats, tolerance: float) -> None:
-        self.tree, self.tolerance = cKDTree(coords), tolerance
-
-    def __call__(self, points: Floats) -> Ints:
-        distance, node = self.tree.query(points)
-        if np.any(distance > self.tolerance):
-            raise MeshError("a given boundary node is missing from the cross-section")
-        return node.astype(np.int32)
 
 
 def mirrored(half: QuadMesh) -> tuple[QuadMesh, Ints]:

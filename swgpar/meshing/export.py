@@ -17,6 +17,7 @@ from swgpar.materials import Material
 from swgpar.meshing.inp import element_faces, write_inp
 from swgpar.meshing.quality import hex_volumes
 from swgpar.meshing.sector import SectorMesh
+from swgpar.meshing.sweep import grid_quads
 
 FORMATS = ("vtu", "msh", "inp")
 
@@ -69,11 +70,7 @@ def named_surfaces(meshes: dict[str, SectorMesh]) -> dict[str, Ints]:
     for mesh in meshes.values():
         quads = dict(mesh.faces)
         if mesh.flanks:
-            grids = [flank.nodes for flank in mesh.flanks]
-            corners = [
-                np.stack([g[:-1, :-1], g[1:, :-1], g[1:, 1:], g[:-1, 1:]], axis=-1) for g in grids
-            ]
-            quads["flanks"] = np.concatenate([corner.reshape(-1, 4) for corner in corners])
+            quads["flanks"] = np.concatenate([grid_quads(flank.nodes) for flank in mesh.flanks])
         number = first + element_numbers(mesh)
         for name, facets in quads.items():
             element, face = element_faces(mesh, facets).T

@@ -18,15 +18,10 @@ def gmsh_model(name: str) -> Iterator[ModuleType]:
 
     owner = not gmsh.isInitialized()
     if owner:
-        with (
-            hidden_variables()
-        ):  # Gmsh has a PETSc of its own, which reads files and takes signals as the other
-            arguments = [
-                "gmsh",
-                "-v",
-                "0",
-                NO_FILES,
-            ]  # without the warning that the option is not one of Gmsh
+        # Gmsh has a PETSc of its own, which reads files and takes signals as the other. -v 0: no
+        # warning that the option is not one of Gmsh
+        arguments = ["gmsh", "-v", "0", NO_FILES]
+        with hidden_variables():
             gmsh.initialize(argv=arguments, readConfigFiles=False, interruptible=False)
         watch.rearm()
     try:

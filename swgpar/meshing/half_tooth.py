@@ -25,6 +25,7 @@ import numpy as np
 
 from swgpar.geometry.arrays import Floats
 from swgpar.geometry.profiles.flank import ToothProfile
+from swgpar.meshing.mapped import Sides
 from swgpar.meshing.recipe import ToothRecipe
 from swgpar.meshing.spacing import even, graded, line, polar, share, split_count
 
@@ -33,9 +34,6 @@ TIP_NORMAL, ROOT_NORMAL = np.radians(60.0), np.radians(45.0)
 
 DEEP_LEAN = 0.4
 """Least polar angle at the interface circle of the line that begins at Q, over that of Q."""
-
-Sides = tuple[Floats, Floats, Floats, Floats]
-"""Nodes (n, 2), mm, on the bottom, right, top and left side of a block."""
 
 
 def stations(profile: ToothProfile, first: float, last: float, n: int) -> Floats:
