@@ -261,7 +261,8 @@ def cup_slice(
     last = last_full_station(lines, recipe.cup, drive.module)
     full, joined = slice(1, last + 1), slice(last + 1, None)
     number[full, columns] = new_nodes(inner[full], outer[full], columns)
-    hexes = [sweep_quads(grid_quads(grid), number[: last + 1])]
+    continued = np.isin(section.quads, grid).all(axis=1)
+    hexes = [sweep_quads(section.quads[continued], number[: last + 1])]
     if recipe.cup.joined_columns:
         groups = joined_columns(grid.shape[1] - 1)
         ends = np.concatenate(([0], np.cumsum(groups)))
@@ -277,7 +278,7 @@ def cup_slice(
         kept = np.unique(coarse)
         number[joined, kept] = new_nodes(inner[joined], outer[joined], kept)
         hexes.append(transition(number[last][grid], number[last + 1][coarse], between, groups))
-        hexes.append(sweep_quads(grid_quads(coarse), number[joined]))
+        hexes.append(sweep_quads(np.roll(grid_quads(coarse), 1, axis=1), number[joined]))
         grid = coarse
     edge = section.edge[np.isin(section.edge, columns)]
     at_end = number[lines.end :]
