@@ -23,11 +23,7 @@ class PrescribedDisplacement:
     """
 
     def __init__(
-        self,
-        partition: Partition,
-        nodes: np.ndarray,
-        displacement: np.ndarray,
-        stiffness: float,
+        self, partition: Partition, nodes: np.ndarray, displacement: np.ndarray, stiffness: float
     ) -> None:
         self.partition, self.nodes = partition, nodes
         self.displacement, self.stiffness = displacement, stiffness
