@@ -45,7 +45,8 @@ def bearing_shares(model: DriveModel, state: LoadState) -> dict[str, ComplianceS
 
     def race_forces(u: np.ndarray) -> np.ndarray:
         forces = np.zeros_like(u)
-        problem.elements.bodies[OUTER_RACE].assemble(u, forces)
+        for part in problem.elements.bodies[OUTER_RACE].assembled:
+            part.assemble(u, forces)
         return forces
 
     def ball_forces(u: np.ndarray, growth: float) -> tuple[np.ndarray, float]:

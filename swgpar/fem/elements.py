@@ -7,6 +7,7 @@ are summed in the same order on any number of ranks.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,6 +34,18 @@ class AssembledElements:
     rotation: np.ndarray
     conn: np.ndarray
     sixths: np.ndarray
+
+    def assemble(
+        self,
+        u: np.ndarray,
+        residual: np.ndarray | None,
+        block_indices: np.ndarray | None = None,
+        values: np.ndarray | None = None,
+    ) -> None:
+        """Add their internal forces and tangent blocks, see `Elements.assemble`."""
+        if len(self.conn):
+            frames = self.reference, self.rotation, self.conn, self.sixths
+            assemble_elements(self.matrices, *frames, u, residual, block_indices, values)
 
 
 def sectors_seen(partition: Partition, body: str) -> np.ndarray:
@@ -148,32 +161,6 @@ class BodyElements:
         inner = tooth.inner_displacement(angle, u[self.local[np.ix_(rows, tooth.outer)]])
         return self.local[np.ix_(rows, tooth.inner)].ravel(), inner.reshape(-1, 3)
 
-    def assemble(
-        self,
-        u: np.ndarray,
-        residual: np.ndarray | None,
-        block_indices: list[np.ndarray] | None = None,
-        values: np.ndarray | None = None,
-    ) -> None:
-        """Add internal forces to `residual` (n_local, 3) N and tangent blocks (N/mm) to `values`.
-
-        u : (n_local, 3) mm;  block_indices : of the elements' blocks of every kind in `values`
-        Raises FloatingPointError where an element has collapsed.
-        """
-        for k, elements in enumerate(self.assembled):
-            if len(elements.conn):
-                assemble_elements(
-                    elements.matrices,
-                    elements.reference,
-                    elements.rotation,
-                    elements.conn,
-                    elements.sixths,
-                    u,
-                    residual,
-                    None if block_indices is None else block_indices[k],
-                    values,
-                )
-
     def displacement(self, u: np.ndarray) -> np.ndarray:
         """Displacement (n_sectors, n_node, 3) mm of the sectors seen, images rotated."""
         field = np.where(self.local[..., None] >= 0, u[self.local], 0.0)
@@ -231,13 +218,12 @@ class TangentPattern:
     """Blocks of the tangent's owned rows that elements, multipliers and the diagonal need.
 
     keys : sorted row * n_global + column of the blocks
-    block_indices : of each body's and kind's (n, m * m) element blocks among the keys, -1 for
-    blocks of other ranks
+    block_indices : of each kind's (n, m * m) element blocks among the keys, -1 for other ranks'
     nodes_without_elements : (n,) owned local nodes, which have no blocks
     """
 
     keys: np.ndarray
-    block_indices: list[list[np.ndarray]]
+    block_indices: list[np.ndarray]
     nodes_without_elements: np.ndarray
 
 
@@ -259,15 +245,20 @@ class Elements:
         self.partition, self.symmetric = partition, symmetric
         needed = [
             partition.node_numbers(
-                k, sectors_seen(partition, k), np.arange(len(layout.mesh.coords))
+                name, sectors_seen(partition, name), np.arange(len(layout.mesh.coords))
             )[0].ravel()
-            for k, layout in partition.layouts.items()
+            for name, layout in partition.layouts.items()
         ]
         self.local = LocalNodes(partition, np.concatenate([*needed, partition.multiplier_nodes]))
         self.bodies = {
             name: BodyElements(partition, name, self.local) for name in partition.layouts
         }
         self.pattern = self._pattern()
+
+    @property
+    def assembled(self) -> list[AssembledElements]:
+        """Elements that this rank assembles, by bodies and kinds."""
+        return [part for body in self.bodies.values() for part in body.assembled]
 
     def renew_pattern(self) -> None:
         """Take over what was chosen of the bodies' elements."""
@@ -276,28 +267,20 @@ class Elements:
     def _pattern(self) -> TangentPattern:
         partition, local = self.partition, self.local
         touched = np.zeros(local.n_own, dtype=bool)
-        for elements in (part for body in self.bodies.values() for part in body.assembled):
+        for elements in self.assembled:
             conn = elements.conn
             touched[conn[(conn >= 0) & (conn < local.n_own)]] = True
         multipliers = partition.multiplier_nodes
         own = multipliers - local.row_start
         touched[own[(own >= 0) & (own < local.n_own)]] = True
-        blocks = [
-            [self.block_keys(part.conn) for part in body.assembled] for body in self.bodies.values()
-        ]
-        diagonal = local.row_start + np.flatnonzero(touched)
-        keys = [
-            *(block.ravel() for body in blocks for block in body),
-            diagonal * partition.n_global + diagonal,
-        ]
+        blocks = [self.block_keys(elements.conn) for elements in self.assembled]
+        nodes = local.row_start + np.flatnonzero(touched)
         if local.n_own and local.row_start + local.n_own == partition.n_global:
-            keys.append(multipliers * partition.n_global + multipliers)
+            nodes = np.union1d(nodes, multipliers)
+        keys = [*(block.ravel() for block in blocks), nodes * (partition.n_global + 1)]
         keys = np.unique(np.concatenate(keys))
         keys = keys[keys >= 0]
-        block_indices = [
-            [np.where(block >= 0, np.searchsorted(keys, block), -1) for block in body]
-            for body in blocks
-        ]
+        block_indices = [np.where(own >= 0, np.searchsorted(keys, own), -1) for own in blocks]
         return TangentPattern(keys, block_indices, np.flatnonzero(~touched))
 
     def block_keys(self, conn: np.ndarray) -> np.ndarray:
@@ -311,9 +294,7 @@ class Elements:
         )
         return keys.reshape(len(conn), conn.shape[1] ** 2)
 
-    def rows(
-        self, extra: np.ndarray, number: np.ndarray
-    ) -> tuple[BlockRows, list[list[np.ndarray]]]:
+    def rows(self, extra: np.ndarray, number: np.ndarray) -> tuple[BlockRows, list[np.ndarray]]:
         """Rows of the tangent, and the indices of element blocks among them.
 
         extra : keys row * n_global + column of contact blocks;  number : (n_local,) global numbers
@@ -333,27 +314,20 @@ class Elements:
             keys,
             self.symmetric,
         )
-        return rows, [
-            [np.where(own >= 0, index[own], -1) for own in body]
-            for body in self.pattern.block_indices
-        ]
+        return rows, [np.where(own >= 0, index[own], -1) for own in self.pattern.block_indices]
 
     def assemble(
         self,
         u: np.ndarray,
         residual: np.ndarray | None,
         rows: BlockRows | None,
-        block_indices: list[list[np.ndarray]] | None,
+        block_indices: Sequence[np.ndarray] | None,
     ) -> None:
         """Add internal forces to `residual` (n_local, 3) N, tangent blocks (N/mm) to `rows.values`.
 
         u : (n_local, 3) mm;  block_indices : of the element blocks in `rows`, as `rows` gives them
         Raises FloatingPointError where an element has collapsed.
         """
-        for k, body in enumerate(self.bodies.values()):
-            body.assemble(
-                u,
-                residual,
-                None if block_indices is None else block_indices[k],
-                None if rows is None else rows.values,
-            )
+        values = None if rows is None else rows.values
+        for k, part in enumerate(self.assembled):
+            part.assemble(u, residual, None if block_indices is None else block_indices[k], values)

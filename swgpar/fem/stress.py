@@ -7,15 +7,13 @@ from mpi4py import MPI
 
 from swgpar.fem.elements import BodyElements
 
+TENSOR = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])
+"""Indices of the components xx yy zz xy yz zx in a tensor (3, 3)."""
+
 
 def principal(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Largest and smallest principal and von Mises stress, MPa, of (…, 6) xx yy zz xy yz zx."""
-    xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
-    tensor = np.stack(
-        [np.stack([xx, xy, zx], -1), np.stack([xy, yy, yz], -1), np.stack([zx, yz, zz], -1)], -2
-    )
-    values = np.linalg.eigvalsh(tensor)
-    s1, s2, s3 = values[..., 2], values[..., 1], values[..., 0]
+    s3, s2, s1 = np.moveaxis(np.linalg.eigvalsh(stress[..., TENSOR]), -1, 0)
     mises = np.sqrt(0.5 * ((s1 - s2) ** 2 + (s2 - s3) ** 2 + (s3 - s1) ** 2))
     return s1, s3, mises
 
@@ -47,13 +45,8 @@ def body_fields(body: BodyElements, u: np.ndarray) -> dict[str, np.ndarray]:
         nodes = np.setdiff1d(mesh.nodes_of(part), mesh.nodes_of(0))
         tensor[:, nodes] = body.nodal_stress(u, part)[:, nodes]
     s1, s3, mises = principal(tensor)
-    return {
-        "displacement": body.displacement(u)[body.owned],
-        "stress": tensor,
-        "s1": s1,
-        "s3": s3,
-        "vm": mises,
-    }
+    displacement = body.displacement(u)[body.owned]
+    return {"displacement": displacement, "stress": tensor, "s1": s1, "s3": s3, "vm": mises}
 
 
 def part_maxima(
@@ -73,13 +66,6 @@ def part_maxima(
 
 def maxima(comm: MPI.Comm, fields: dict[str, np.ndarray]) -> dict[str, float]:
     """Maxima over the whole body (MPa): s1, s3 (positive in compression) and vm."""
-    local = np.array(
-        [
-            fields["s1"].max(initial=-np.inf),
-            (-fields["s3"]).max(initial=-np.inf),
-            fields["vm"].max(initial=0.0),
-        ]
-    )
-    total = np.empty(3)
-    comm.Allreduce(local, total, op=MPI.MAX)
-    return dict(zip(("s1", "s3", "vm"), total.tolist()))
+    s1 = fields["s1"].max(initial=-np.inf)
+    values = {"s1": s1, "s3": -fields["s3"].min(initial=np.inf), "vm": fields["vm"].max(initial=0)}
+    return {name: float(comm.allreduce(value, op=MPI.MAX)) for name, value in values.items()}

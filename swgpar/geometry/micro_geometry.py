@@ -31,35 +31,52 @@ def crowning(
     return radius - root, z / root, radius**2 / root**3
 
 
-def wave(x: np.ndarray, y: np.ndarray, order: int) -> tuple[np.ndarray, ...]:
-    """q = cos(order theta), theta = atan2(-x, y), and its derivatives by x, y, xx, xy, yy; (n,)."""
+Waves = tuple[np.ndarray, tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
+"""A function of x and y, (n,), its derivatives by x and y, and those by xx, xy and yy."""
+
+
+def _two_waves(x: np.ndarray, y: np.ndarray) -> Waves:
+    """cos 2 theta = (y^2 - x^2) / r^2."""
     r2 = x * x + y * y
-    turned = (y - 1j * x) ** order / np.sqrt(r2) ** order
-    q, slope, bend = turned.real, order * turned.imag, order**2 * turned.real
-    a, b = -y / r2, x / r2  # derivatives of theta
-    square, product = a * a - b * b, a * b
+    q = (y * y - x * x) / r2
+    qx, qy = -2.0 * x * (1.0 + q) / r2, 2.0 * y * (1.0 - q) / r2
+    qxx = (-2.0 * (1.0 + q) - 4.0 * x * qx) / r2
+    qyy = (2.0 * (1.0 - q) - 4.0 * y * qy) / r2
+    qxy = (-2.0 * x * qy - 2.0 * y * qx) / r2
+    return q, (qx, qy), (qxx, qxy, qyy)
+
+
+def _three_waves(x: np.ndarray, y: np.ndarray) -> Waves:
+    """cos 3 theta = cos theta (2 cos 2 theta - 1), cos theta = y / r."""
+    q, (qx, qy), (qxx, qxy, qyy) = _two_waves(x, y)
+    r = np.hypot(x, y)
+    p, px, py = y / r, -x * y / r**3, x * x / r**3
+    pxx, pxy, pyy = (
+        y * (2.0 * x * x - y * y) / r**5,
+        x * (2.0 * y * y - x * x) / r**5,
+        -3.0 * x * x * y / r**5,
+    )
+    f = 2.0 * q - 1.0
     return (
-        q,
-        -slope * a,
-        -slope * b,
-        2.0 * slope * product - bend * a * a,
-        -slope * square - bend * product,
-        -2.0 * slope * product - bend * b * b,
+        p * f,
+        (px * f + 2.0 * p * qx, py * f + 2.0 * p * qy),
+        (
+            pxx * f + 4.0 * px * qx + 2.0 * p * qxx,
+            pxy * f + 2.0 * (px * qy + py * qx + p * qxy),
+            pyy * f + 4.0 * py * qy + 2.0 * p * qyy,
+        ),
     )
 
 
 class WaveGeneratorSurface:
     """Level function of the crowned cam: exact in-plane distance less the radial modification.
 
-    The zero level is the surface; away from it h is the distance up to the factor |grad h|, 1.002
-    at most here.
+    The zero level is the surface; away from it h is the distance but for |grad h|, 1.002 at most.
 
     cam : curve of the cross-section at mid-width
     width : mm, face width of the cam
-    crowning, slope : mm, at |z| = width / 2 (section 7.12; the sign of the slope is explained
-    above)
-    shape : "parabolic" or "circular", of the crowning
-    lobes : 2 or 3, of the cam
+    crowning, slope : mm, at |z| = width / 2 (section 7.12; sign of the slope: above)
+    shape : "parabolic" or "circular", of the crowning;  lobes : 2 or 3, of the cam
     """
 
     def __init__(
@@ -88,13 +105,15 @@ class WaveGeneratorSurface:
         gradient[:, 2] += dc
         hessian[:, 2, 2] += ddc
         if self.slope:
-            q, qx, qy, qxx, qxy, qyy = wave(x, y, self.lobes)
+            q, (qx, qy), (qxx, qxy, qyy) = (_two_waves if self.lobes == 2 else _three_waves)(x, y)
             rate = 2.0 * self.slope / self.width
             level = level + rate * z * q
-            gradient += rate * np.column_stack([z * qx, z * qy, q])
+            gradient[:, 0] += rate * z * qx
+            gradient[:, 1] += rate * z * qy
+            gradient[:, 2] += rate * q
             hessian[:, 0, 0] += rate * z * qxx
             hessian[:, 1, 1] += rate * z * qyy
-            for (i, j), value in (((0, 1), z * qxy), ((0, 2), qx), ((1, 2), qy)):
-                hessian[:, i, j] += rate * value
-                hessian[:, j, i] = hessian[:, i, j]
+            for i, j, value in ((0, 1, rate * z * qxy), (0, 2, rate * qx), (1, 2, rate * qy)):
+                hessian[:, i, j] += value
+                hessian[:, j, i] += value
         return level, gradient, hessian

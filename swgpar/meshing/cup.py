@@ -272,7 +272,7 @@ def cup_slice(
         pitch = 2.0 * np.pi * drive.inner_radius / drive.gears["flexible_spline"].profile.n_teeth
         share = 1.0 - min(0.5, pitch / (grid.shape[1] - 1) / length)
         on_inner, on_outer = (
-            (1.0 - share) * line[[last]] + share * line[[last + 1]] for line in (inner, outer)
+            line[[last]] + share * (line[[last + 1]] - line[[last]]) for line in (inner, outer)
         )
         between = new_nodes(on_inner, on_outer, dropped.ravel()).reshape(dropped.shape)
         kept = np.unique(coarse)

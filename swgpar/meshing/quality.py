@@ -35,7 +35,7 @@ def jacobian_matrices(coords: Floats, elements: Ints, scale: float) -> Floats:
     corners = CORNERS if elements.shape[1] == 8 else PLANE_CORNERS
     gradient = shape_gradients(corners, scale * corners)
     x = coords[elements][..., : corners.shape[1]]
-    return np.einsum("eai,qak->eqik", x, gradient, optimize=True)
+    return np.einsum("eai,qak->eqik", x, gradient)
 
 
 def hex_volumes(coords: Floats, hexes: Ints) -> Floats:

@@ -142,7 +142,7 @@ class DiscreteProblem:
         self.pattern: np.ndarray | None = None
         self.rows: BlockRows | None = None
         self.matrix_rows: MatrixRows | None = None
-        self.block_indices: list[list[np.ndarray]] = []
+        self.block_indices: list[np.ndarray] = []
         self.matrix: PETSc.Mat | None = None
         self._extent = largest(partition.comm, float(np.abs(self.positions()).max(initial=0.0)))
         self.round_off = 0.0
