@@ -78,16 +78,13 @@ def node_weights(coords: np.ndarray, nodes: np.ndarray, ccw: np.ndarray) -> np.n
 class NodeMeans(ABC):
     """Mean motions of nodes of a body; meets the protocol `Coupling`.
 
-    Parameters
-    ----------
     partition : ownership
     nodes : (n,) local nodes that this rank owns, each once;  undeformed : (n, 3) mm, their places
     weight : (n,) of the nodes in the means, of any sum
     images : the model is a part of the drive; then only z and the rotation can be non-zero
     fixed_axis : the rotation is about the drive's axis, not about the mean place of the nodes
 
-    Attributes
-    ----------
+    Attributes:
     total : sum of the weights of all ranks;  weight : (n,) over that sum
     """
 

@@ -65,8 +65,6 @@ class FloatingRing:
 class Supports:
     """The couplings of all bodies that float: of the gears by their indices, then of an outer race.
 
-    Parameters
-    ----------
     partition : ownership
     couplings : six multipliers each, in this order at the end of the vector; none where contacts
     hold the body, no second one where the ring gear is clamped
@@ -78,8 +76,7 @@ class Supports:
     spline_ratio : rotation of the flexible spline over that of the output, where contacts alone
     hold it unless the load state says otherwise; None where its coupling supports it
 
-    Attributes
-    ----------
+    Attributes:
     gear_couplings, couplings : those of the gears alone, and all
     offsets : (n_couplings, 6) values at which coupled quantities are held, mm and rad
     """

@@ -63,13 +63,10 @@ def sectors_seen(partition: Partition, body: str) -> np.ndarray:
 class BodyElements:
     """The elements of one body as one rank sees them. A condensed sector is a single element.
 
-    Parameters
-    ----------
     partition, body : ownership, and name of the body
     local : nodes of this rank
 
-    Attributes
-    ----------
+    Attributes:
     layout : BodyLayout
     sectors : (n_sectors,) indices in the chain, see `sectors_seen`;  owned : slice of the owned
     ones among them
@@ -230,13 +227,10 @@ class TangentPattern:
 class Elements:
     """All bodies' elements on one rank: residual and tangent of the structure.
 
-    Parameters
-    ----------
     partition : ownership
     symmetric : keep the tangent's upper triangle only
 
-    Attributes
-    ----------
+    Attributes:
     local : nodes of this rank that its elements, multipliers and averages of stress need
     bodies : elements of each body by its name;  pattern : of the tangent for the active sectors
     """

@@ -26,13 +26,10 @@ def split(n: int, parts: int) -> np.ndarray:
 class Partition:
     """Ownership and numbering of all bodies on one communicator.
 
-    Parameters
-    ----------
     layouts : the bodies in the order in which each rank numbers their nodes
     comm : communicator; each rank owns a contiguous range of sectors of every body
 
-    Attributes
-    ----------
+    Attributes:
     layouts : bodies by name
     dims : unknowns per node that the tangent has: 2 in the plane, where vectors keep a zero z
     """

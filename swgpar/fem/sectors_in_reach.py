@@ -22,12 +22,9 @@ from swgpar.fem.elements import BodyElements, Elements
 class SectorsInReach(ABC):
     """Which sectors of a closed chain are within reach or near; the same choice on every rank.
 
-    Parameters
-    ----------
     count : sectors of the body in the model
 
-    Attributes
-    ----------
+    Attributes:
     active : (count,) bool
     """
 

@@ -81,15 +81,12 @@ def block_ends(profile: ToothProfile) -> tuple[float, float]:
 class HalfTooth:
     """Nodes on the sides of the blocks of half a tooth (x >= 0).
 
-    Attributes
-    ----------
+    Attributes:
     s : (n,) mm, arc lengths of the flank's nodes, from T to R
     s_side : (n_side,) mm, those from K to Q
     tip, root : (n, 2) mm, nodes from M to K and from Q to E
     half_pitch : rad
 
-    Parameters
-    ----------
     profile : ToothProfile
     recipe : ToothRecipe
     interface, free : mm, radii of the interface circle and of the free surface of the rim

@@ -73,8 +73,6 @@ class ResidualInfo:
 class DiscreteProblem:
     """Residual and tangent of a body, or of a drive, with contact; no solver.
 
-    Parameters
-    ----------
     partition, elements : ownership and elements, bound to their local nodes
     supports : couplings, guide, grounding and load
     wave_generator : its contacts; none for a body without one
@@ -87,8 +85,7 @@ class DiscreteProblem:
     where all are
     phases : wall seconds
 
-    Attributes
-    ----------
+    Attributes:
     contacts : all of them;  penalty_contacts : those with multipliers;  force_terms : all that is
     evaluated
     segments : freezing of the flanks' segments;  torque_control : of the output's motion

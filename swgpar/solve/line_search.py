@@ -34,13 +34,10 @@ class LineSearch:
     grows is then reversed, unless the residual halves along it all the same, as it does near a
     solution.
 
-    Parameters
-    ----------
     system : linear system of the step;  x : present state;  phases : wall seconds
     residual : sets its second argument to that at the first; returns whether an element collapsed
 
-    Attributes
-    ----------
+    Attributes:
     descending : see above;  max_node_step : mm, bound of a node's displacement in a step
     """
 

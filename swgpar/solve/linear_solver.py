@@ -72,12 +72,9 @@ class LinearSolver(ABC):
 
     All methods are collective. After a failure answers are of no use, `failure` says why.
 
-    Parameters
-    ----------
     kind : of the matrices;  options_prefix : of PETSc's options
 
-    Attributes
-    ----------
+    Attributes:
     is_factor : whether what is made of a matrix solves exactly, with many right sides at once, and
     may serve later matrices as a preconditioner
     matrix : that of the last `prepare`, None before it

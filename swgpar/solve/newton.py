@@ -71,12 +71,9 @@ IterationMonitor = Callable[[LoadState, int, float], None]
 class NewtonSolver:
     """Solves a discrete problem for load states.
 
-    Parameters
-    ----------
     problem : residual and tangent;  settings : tolerances and limits
 
-    Attributes
-    ----------
+    Attributes:
     visited_sets : makes what finds active sets that return, for every run of Newton's iteration
     state : of the present or last solve
     """
