@@ -123,16 +123,10 @@ class NodeMeans(ABC):
         if self.fixed_axis:
             mean[:2] = 0.0
         x, y = arm[:, 0] + v[:, 0] - mean[0], arm[:, 1] + v[:, 1] - mean[1]
-        sine, cosine = self.sum(
-            np.column_stack(
-                [w * (arm[:, 0] * y - arm[:, 1] * x), w * (arm[:, 0] * x + arm[:, 1] * y)]
-            )
-        )
-        tilt_x, tilt_y = (
-            self.sum(np.column_stack([w * arm[:, 1] * v[:, 2], -w * arm[:, 0] * v[:, 2]]))
-            * 2.0
-            / self.radius2
-        )
+        across, along = arm[:, 0] * y - arm[:, 1] * x, arm[:, 0] * x + arm[:, 1] * y
+        sine, cosine = self.sum(np.column_stack([w * across, w * along]))
+        tilts = self.sum(np.column_stack([w * arm[:, 1] * v[:, 2], -w * arm[:, 0] * v[:, 2]]))
+        tilt_x, tilt_y = tilts * 2.0 / self.radius2
         value = np.array([*mean, tilt_x, tilt_y, np.arctan2(sine, cosine)])
         gradient = np.zeros((N_COUPLED, len(w), 3))
         for k in (X, Y, Z):
@@ -171,12 +165,12 @@ class DistributingCoupling(NodeMeans):
         weight = node_weights(mesh.coords, nodes, mesh.ccw_nodes)
         weighted = weight > 0
         nodes, weight = nodes[weighted], weight[weighted]
-        sectors = np.arange(len(body.sectors))[body.owned]
+        own, undeformed = body.local[body.owned, nodes], body.positions()[body.owned, nodes]
         super().__init__(
             partition,
-            body.local[np.ix_(sectors, nodes)].ravel(),
-            body.positions()[np.ix_(sectors, nodes)].reshape(-1, 3),
-            np.tile(weight, len(sectors)),
+            own.ravel(),
+            undeformed.reshape(-1, 3),
+            np.tile(weight, len(own)),
             images=images,
             fixed_axis=images,
         )
@@ -201,11 +195,10 @@ class DistributingCoupling(NodeMeans):
             # the first node at the smallest angular distance, by rank: exactly one node in the
             # whole model
             distance = np.abs(np.mod(angle - wanted + np.pi, 2.0 * np.pi) - np.pi)
-            best = (
-                (float(np.round(distance.min(), 9)), self.comm.rank, int(distance.argmin()))
-                if len(distance)
-                else (9.0, self.comm.rank, 0)
-            )
+            best = (9.0, self.comm.rank, 0)
+            if len(distance):
+                least = float(np.round(distance.min(), 9))
+                best = (least, self.comm.rank, int(distance.argmin()))
             winner = min(self.comm.allgather(best))
             axial, tangential = np.zeros((2, len(self.nodes), 3))
             if winner[1] == self.comm.rank:

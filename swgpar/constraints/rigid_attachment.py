@@ -62,10 +62,8 @@ def area_shares(
     at_a, at_b = ((2.0 * np.arange(n) + 1.0) / n - 1.0 for n in counts)
     a, b = (v.ravel()[:, None] for v in np.meshgrid(at_a, at_b, indexing="ij"))
     shape = 0.25 * (1 + a * CORNERS[:, 0]) * (1 + b * CORNERS[:, 1])
-    along_a, along_b = (
-        0.25 * CORNERS[:, 0] * (1 + b * CORNERS[:, 1]),
-        0.25 * CORNERS[:, 1] * (1 + a * CORNERS[:, 0]),
-    )
+    along_a = 0.25 * CORNERS[:, 0] * (1 + b * CORNERS[:, 1])
+    along_b = 0.25 * CORNERS[:, 1] * (1 + a * CORNERS[:, 0])
     areas = np.zeros(len(mesh.coords))
     for face, points in zip(faces, corners, strict=True):
         within = inside(shape @ points)
@@ -97,14 +95,13 @@ class RigidAttachment(NodeMeans):
         images: bool,
     ) -> None:
         layout, mesh = body.layout, body.layout.mesh
-        sectors = np.arange(len(body.sectors))[body.owned]
         angles = layout.sector_angle(layout.first_tooth + body.sectors[body.owned])
         step = 2.0 * np.pi / mesh.n_sectors
         around = [
             area_shares(mesh, surface, angle, inside, width)
             for angle in (*(angles[:1] - step), *angles)
         ]
-        areas = np.array(around[1:]).reshape(len(sectors), len(mesh.coords))
+        areas = np.array(around[1:]).reshape(len(angles), len(mesh.coords))
         for row, before in zip(areas, around[:-1], strict=False):
             # nodes between two sectors belong to the second one, with the shares of both
             row[mesh.cw_nodes] += before[mesh.ccw_nodes]
@@ -112,8 +109,8 @@ class RigidAttachment(NodeMeans):
         used = areas > 0.0
         super().__init__(
             partition,
-            body.local[sectors][used],
-            body.positions()[sectors][used],
+            body.local[body.owned][used],
+            body.positions()[body.owned][used],
             areas[used],
             images=images,
             fixed_axis=True,

@@ -105,10 +105,7 @@ class BodyElements:
         self.sector_rotation = np.column_stack([np.cos(angle), np.sin(angle)]).reshape(-1, 2)
         counted = self.preceding.copy()
         counted[self.owned] = True
-        owned = (self.number >= partition.row_start) & (
-            self.number < partition.row_start + partition.n_own
-        )
-        owned &= counted[:, None]
+        owned = partition.owns(self.number) & counted[:, None]
         self._touching = [
             owned[:, nodes].any(axis=2) if len(sectors) else np.zeros((0, len(nodes)), dtype=bool)
             for _, nodes in self._kinds

@@ -32,8 +32,7 @@ class LocalNodes:
 
     def _foreign(self, number: np.ndarray) -> np.ndarray:
         number = np.unique(number)
-        outside = (number < self.row_start) | (number >= self.row_start + self.n_own)
-        return number[outside & (number >= 0)].astype(np.int64)
+        return number[~self.partition.owns(number) & (number >= 0)].astype(np.int64)
 
     def __len__(self) -> int:
         return len(self.number)
@@ -41,13 +40,11 @@ class LocalNodes:
     def index(self, number: np.ndarray) -> np.ndarray:
         """Local index (int32) of global numbers; -1 for -1 and for nodes this rank does not see."""
         number = np.asarray(number)
-        own = (number >= self.row_start) & (number < self.row_start + self.n_own)
-        found = np.where(own, number - self.row_start, -1)
-        for ghosts, first in (
-            (self.ghosts, self.n_own),
-            (self.additional, self.n_own + len(self.ghosts)),
-        ):
+        index = np.where(self.partition.owns(number), number - self.row_start, -1)
+        first = self.n_own
+        for ghosts in (self.ghosts, self.additional):
             if len(ghosts):
                 position = np.minimum(np.searchsorted(ghosts, number), len(ghosts) - 1)
-                found = np.where(ghosts[position] == number, first + position, found)
-        return found.astype(np.int32)
+                index = np.where(ghosts[position] == number, first + position, index)
+            first += len(ghosts)
+        return index.astype(np.int32)

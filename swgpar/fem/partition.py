@@ -39,16 +39,10 @@ class Partition:
         self.layouts = {layout.name: layout for layout in layouts}
         self.dims = 2 if layouts[0].mesh.plane else 3
         self._first = {b.name: split(b.count, comm.size) for b in layouts}
-        sizes = np.array(
-            [
-                [
-                    np.diff(s)[r] * len(b.numbering.owned_nodes)
-                    + (b.numbering.n_end if r == comm.size - 1 else 0)
-                    for s, b in zip(self._first.values(), layouts)
-                ]
-                for r in range(comm.size)
-            ]
+        sizes = np.column_stack(
+            [np.diff(self._first[b.name]) * len(b.numbering.owned_nodes) for b in layouts]
         )
+        sizes[-1] += [b.numbering.n_end for b in layouts]
         appended = MULTIPLIER_NODES * sum(len(b.fixed) == 0 for b in layouts)
         sizes[-1, -1] += appended
         flat = np.concatenate([[0], np.cumsum(sizes.ravel())])
@@ -59,6 +53,15 @@ class Partition:
         self.n_own = int(sizes[comm.rank].sum())
         self.multiplier_nodes = self.n_global - appended + np.arange(appended)
         self.n_multipliers = 3 * appended
+
+    @property
+    def has_multipliers(self) -> bool:
+        """Whether the rows of the multipliers are on this rank, the last one."""
+        return self.comm.rank == self.comm.size - 1
+
+    def owns(self, number: np.ndarray) -> np.ndarray:
+        """Whether this rank owns the nodes of global numbers; any shape."""
+        return (number >= self.row_start) & (number < self.row_start + self.n_own)
 
     def owned_sectors(self, body: str) -> tuple[int, int]:
         """Range (first, end) of the indices in the chain of the sectors that this rank owns."""
@@ -100,12 +103,9 @@ class Partition:
             k = np.where(end, b.count - 1, k)
         rank = self.owner_of_sector(body, k)
         local = np.broadcast_to(local, k.shape)
-        offset = np.where(
-            end,
-            (self._first[body][rank + 1] - self._first[body][rank]) * len(numbering.owned_nodes)
-            + numbering.end_row[local],
-            (k - self._first[body][rank]) * len(numbering.owned_nodes) + numbering.row[local],
-        )
-        number = self._base[body][rank] + offset
+        # the nodes that close an open chain follow those of its last sector
+        before = (k + end - self._first[body][rank]) * len(numbering.owned_nodes)
+        row = np.where(end, numbering.end_row[local], numbering.row[local])
+        number = self._base[body][rank] + before + row
         absent = np.broadcast_to(numbering.without_unknowns[nodes], k.shape)
         return np.where(absent, -1, number), np.where(absent, 0, sixths).astype(np.uint8)

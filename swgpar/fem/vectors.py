@@ -70,11 +70,7 @@ def write_field(
     number, sixths = partition.node_numbers(
         body, sectors, np.arange(len(partition.layouts[body].mesh.coords))
     )
-    own = (
-        (number >= partition.row_start)
-        & (number < partition.row_start + partition.n_own)
-        & (sixths == 0)
-    )
+    own = partition.owns(number) & (sixths == 0)
     vector.array.reshape(-1, 3)[number[own] - partition.row_start] = values[own]
 
 

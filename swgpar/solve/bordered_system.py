@@ -175,10 +175,7 @@ class BorderedSystem:
 
     def multiply(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """y = [K' - B B^T, C^T; C, 0] x of the last system; unused multipliers stand alone."""
-        n, last = (
-            self.partition.n_multipliers,
-            self.partition.comm.rank == self.partition.comm.size - 1,
-        )
+        n, last = self.partition.n_multipliers, self.partition.has_multipliers
         used = self.rows[: len(self.border) - self.n_loaded]
         multipliers = read_multipliers(self.partition, x)
         moved = x.copy()
@@ -221,5 +218,5 @@ class BorderedSystem:
             answer += motion * unit
         for k, value in enumerate(answer):
             x.axpy(value if k < nb else -value, self.columns[k])
-        if self.partition.comm.rank == self.partition.comm.size - 1:
+        if self.partition.has_multipliers:
             x.array[-self.partition.n_multipliers :][used] = answer[nb:prescribed]

@@ -186,7 +186,7 @@ class DiscreteProblem:
 
     def clear_unused_multipliers(self, state: LoadState) -> None:
         """Set the multipliers of x to zero that the load state does not use."""
-        if self.partition.comm.rank == self.partition.comm.size - 1:
+        if self.partition.has_multipliers:
             unused = self.supports.unused_multipliers(state)
             self.x.array[-len(unused) :][unused] = 0.0
 
@@ -239,7 +239,7 @@ class DiscreteProblem:
     def moved_since_search(self) -> float:
         """Largest displacement (mm) of a node since the last search, by component; collective."""
         moved = np.abs(self.x.array_r - self._searched)
-        if self.partition.comm.rank == self.partition.comm.size - 1:
+        if self.partition.has_multipliers:
             moved = moved[: -self.partition.n_multipliers]
         return largest(self.partition.comm, float(moved.max(initial=0.0)))
 
@@ -338,7 +338,7 @@ class DiscreteProblem:
             contact_force = np.sqrt(comm.allreduce(float(np.sum(contact[:n_own] ** 2))))
             tail = self.supports.add_forces(u, state, self.multipliers(x), residual)
             f.array[:] = residual[:n_own].ravel()
-            if comm.rank == comm.size - 1:
+            if self.partition.has_multipliers:
                 f.array[-len(tail) :] = tail
         return ResidualInfo(float(contact_force), collapsed)
 

@@ -47,7 +47,7 @@ class ReusedFactor:
         self.surplus = 0
         self.last = 0
         operator = PETSc.Mat().createPython(
-            [like.getSizes()] * 2, _Multiply(multiply), comm=like.comm
+            [like.getSizes()] * 2, _Context(multiply), comm=like.comm
         )
         operator.setUp()
         self.ksp = PETSc.KSP().create(comm=like.comm)
@@ -58,7 +58,7 @@ class ReusedFactor:
         self.ksp.setGMRESRestart(MAX_ITERATIONS)
         pc = self.ksp.getPC()
         pc.setType(PETSc.PC.Type.PYTHON)
-        pc.setPythonContext(_Solve(solve))
+        pc.setPythonContext(_Context(solve))
         with accepted_options(self.ksp.comm.tompi4py()):
             self.ksp.setFromOptions()
 
@@ -99,21 +99,14 @@ class ReusedFactor:
         return self.ksp.getConvergedReason() > 0
 
 
-class _Multiply:
-    """PETSc `Mat`."""
+class _Context:
+    """What a PETSc `Mat` or `PC` of type python computes."""
 
-    def __init__(self, multiply: Operation) -> None:
-        self.multiply = multiply
+    def __init__(self, compute: Operation) -> None:
+        self.compute = compute
 
     def mult(self, mat: PETSc.Mat, x: PETSc.Vec, y: PETSc.Vec) -> None:
-        self.multiply(x, y)
+        self.compute(x, y)
 
-
-class _Solve:
-    """PETSc `PC`."""
-
-    def __init__(self, solve: Operation) -> None:
-        self.solve = solve
-
-    def apply(self, pc: PETSc.PC, right: PETSc.Vec, x: PETSc.Vec) -> None:
-        self.solve(right, x)
+    def apply(self, pc: PETSc.PC, x: PETSc.Vec, y: PETSc.Vec) -> None:
+        self.compute(x, y)

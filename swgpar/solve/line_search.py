@@ -72,9 +72,8 @@ class LineSearch:
 
     def _nodal(self, vector: PETSc.Vec) -> np.ndarray:
         """This rank's part of a vector without the multipliers at its end."""
-        partition = self.system.partition
-        last = partition.comm.rank == partition.comm.size - 1
-        return vector.array_r[: -partition.n_multipliers] if last else vector.array_r
+        partition, values = self.system.partition, vector.array_r
+        return values[: -partition.n_multipliers] if partition.has_multipliers else values
 
     def _grows(self, right: PETSc.Vec, step: PETSc.Vec, start: float) -> bool:
         """Whether the potential grows along a step whose slope `start` is negative.

@@ -179,8 +179,7 @@ class LocalProblem:
         """Own local indices (n_sectors, n) of nodes, and whether this rank owns them."""
         partition = self.partition
         number, _ = partition.node_numbers(FLEXIBLE_SPLINE, sectors, nodes)
-        own = (number >= partition.row_start) & (number < partition.row_start + partition.n_own)
-        return number - partition.row_start, own
+        return number - partition.row_start, partition.owns(number)
 
     def _attached(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         """Sectors, one by one, and their nodes where closed end or flange is clamped or bolted."""
