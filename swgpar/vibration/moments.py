@@ -1,23 +1,14 @@
-"""Means and standard deviations over time: of linearised systems, and of samples that are drawn
-block by block."""
+"""Means and deviations over time: of linearised systems, and of samples drawn block by block."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
-
-class HasMoments(Protocol):
-    """mean, deviation : (rows, values) at some moments of time"""
-
-    @property
-    def mean(self) -> np.ndarray: ...
-
-    @property
-    def deviation(self) -> np.ndarray: ...
+SCALES = {"m": 1.0, "um": 1e6}
+"""Of columns, by their unit."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +26,8 @@ class SampleMoments:
     Attributes
     ----------
     count : number of samples
-    mean : (rows, values), sample means;  squares : (rows, values), sums of the squared differences
-    from them
+    mean : (rows, values), sample means
+    squares : (rows, values), sums of the squared differences from them
     final : (count,), the last value of every sample at the last row
     """
 
@@ -47,8 +38,7 @@ class SampleMoments:
 
     @classmethod
     def of(cls, rows: Iterable[np.ndarray]) -> SampleMoments:
-        """Moments of the samples of a block. rows : (values, samples) at one moment of time after
-        the other"""
+        """Moments of a block. rows : (values, samples) at one moment of time after the other"""
         means, squares = [], []
         for values in rows:
             means.append(values.mean(axis=1))
@@ -69,6 +59,9 @@ class SampleMoments:
         return np.sqrt(self.squares / (self.count - 1))
 
 
+HasMoments = Moments | SampleMoments
+
+
 def largest(moments: HasMoments, names: Iterable[str]) -> dict[str, float]:
     """Largest size of the mean and largest deviation over time, of every value by name."""
     columns = {"mean": np.abs(moments.mean), "deviation": moments.deviation}
@@ -79,40 +72,28 @@ def largest(moments: HasMoments, names: Iterable[str]) -> dict[str, float]:
     }
 
 
-def percent_errors(linearised: HasMoments, simulated: HasMoments) -> dict[str, list[float]]:
-    """Errors of linearised means and deviations against simulated ones, averaged over the second
-    half of the time."""
-
-    def error(of_one: np.ndarray, of_other: np.ndarray) -> list[float]:
-        settled = slice(len(of_one) // 2, None)
-        return (
-            100.0 * (of_one[settled].mean(axis=0) / of_other[settled].mean(axis=0) - 1.0)
-        ).tolist()
-
-    return {
-        "mean": error(linearised.mean, simulated.mean),
-        "deviation": error(linearised.deviation, simulated.deviation),
-    }
+def percent_errors(
+    linearised: HasMoments, simulated: HasMoments, names: Sequence[str]
+) -> dict[str, float]:
+    """Errors of linearised means and deviations, averaged over the second half of the time."""
+    errors, settled = {}, slice(len(linearised.mean) // 2, None)
+    for kind in ("mean", "deviation"):
+        ours, theirs = (getattr(one, kind)[settled].mean(axis=0) for one in (linearised, simulated))
+        percent = (100.0 * (ours / theirs - 1.0)).tolist()
+        errors |= {f"error_{kind}_{name}": error for name, error in zip(names, percent)}
+    return errors
 
 
 def columns(
-    parts: Sequence[HasMoments],
-    names: Iterable[str],
-    unit: str,
-    scale: float = 1.0,
-    method: str = "",
+    parts: Sequence[HasMoments], names: Iterable[str], unit: str, method: str = ""
 ) -> dict[str, np.ndarray]:
-    """Columns of a table: means and deviations of every value by name, the parts in blocks below
-    each other.
+    """Columns of means and deviations of every value by name, the parts below each other.
 
-    unit, scale : of the columns;  method : in front of their names
+    unit : of the columns, of `SCALES`;  method : in front of their names
     """
-    out = {}
+    table = {}
     for k, name in enumerate(names):
-        out[f"{method}mean_{name}_{unit}"] = scale * np.concatenate(
-            [part.mean[:, k] for part in parts]
-        )
-        out[f"{method}deviation_{name}_{unit}"] = scale * np.concatenate(
-            [part.deviation[:, k] for part in parts]
-        )
-    return out
+        for kind in ("mean", "deviation"):
+            rows = np.concatenate([getattr(part, kind)[:, k] for part in parts])
+            table[f"{method}{kind}_{name}_{unit}"] = SCALES[unit] * rows
+    return table

@@ -7,7 +7,7 @@ by the seed and the block's number), so that it does not matter who draws it or 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -27,26 +27,32 @@ def block_sizes(count: int, size: int) -> list[int]:
     return [min(size, count - first) for first in range(0, count, size)]
 
 
-def run_tasks(comm: MPI.Comm, tasks: Sequence[Callable[[], Any]]) -> tuple[list[Any], list[float]]:
-    """Results of all tasks and their seconds, in order and on every rank; each runs on one rank
-    only. Collective.
+def run_tasks(
+    comm: MPI.Comm, groups: Mapping[str, Sequence[Callable[[], Any]]]
+) -> tuple[dict[str, list[Any]], dict[str, list[float]]]:
+    """Results and seconds of all tasks by group, on every rank; each task runs on one. Collective.
 
     A ConvergenceError of a task is raised on all ranks.
     """
+    tasks = [(name, task) for name, group in groups.items() for task in group]
     done: dict[int, tuple[Any, float]] = {}
 
     def run(number: int, send: Send) -> None:
         begin = time.perf_counter()
         try:
-            result = tasks[number]()
+            result = tasks[number][1]()
         except ConvergenceError as error:
             result = error
         send((number, (result, time.perf_counter() - begin)))
 
     share_tasks(comm, len(tasks), run, lambda message: done.update([message]))
     done = comm.bcast(done)
-    ordered = [done[number] for number in range(len(tasks))]
-    for result, _ in ordered:
+    results: dict[str, list[Any]] = {name: [] for name in groups}
+    seconds: dict[str, list[float]] = {name: [] for name in groups}
+    for number, (name, _) in enumerate(tasks):
+        result, taken = done[number]
         if isinstance(result, ConvergenceError):
             raise result
-    return [result for result, _ in ordered], [seconds for _, seconds in ordered]
+        results[name].append(result)
+        seconds[name].append(taken)
+    return results, seconds

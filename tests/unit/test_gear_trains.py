@@ -232,9 +232,11 @@ def test_tasks_come_back_in_order_and_their_errors_too() -> None:
     def fail() -> None:
         raise ConvergenceError("no")
 
-    assert run_tasks(MPI.COMM_WORLD, [lambda k=k: k * k for k in range(5)])[0] == [0, 1, 4, 9, 16]
+    squares = {"odd": [lambda: 1, lambda: 9], "even": [lambda k=k: k * k for k in (0, 2, 4)]}
+    results, seconds = run_tasks(MPI.COMM_WORLD, squares)
+    assert results == {"odd": [1, 9], "even": [0, 4, 16]} and len(seconds["even"]) == 3
     with pytest.raises(ConvergenceError, match="no"):
-        run_tasks(MPI.COMM_WORLD, [lambda: 1, fail])
+        run_tasks(MPI.COMM_WORLD, {"tasks": [lambda: 1, fail]})
 
 
 def test_tables_read_back_to_the_last_bit(tmp_path: Path) -> None:

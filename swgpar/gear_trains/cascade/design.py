@@ -8,12 +8,7 @@ from typing import Annotated, Any, Literal
 from annotated_types import Len
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.common_sections import (
-    GearTrain,
-    Positive,
-    TrainDesign,
-    require_steps,
-)
+from swgpar.gear_trains.common_sections import GearTrain, Positive, TrainDesign, require_steps
 from swgpar.input.quantities import Section, quantity
 
 PINIONS = 8
@@ -213,7 +208,6 @@ def check_fit(design: CascadeDesign) -> None:
     if section.step > section.hold:
         raise InputError(
             f"population.step = {section.step:g} is out of range: allowed above 0 to "
-            f"{section.hold:g} s "
-            "(population.hold)"
+            f"{section.hold:g} s (population.hold)"
         )
     require_steps("population.step", section.step, section.ramp + section.hold)

@@ -12,12 +12,10 @@ p the mesh deflection, g the penetration of the flanks beyond the backlash, h th
 limited to pushing are the same to 1e-5 from 120 kN on (docs/verification/gear_trains.md).
 Further deviations from print:
 
-- gaps of the two directions are given separately: the source's geometric difference lies in one of
-them;
+- gaps of the two directions are given apart: the source's geometric difference lies in one;
 - the phase of stiffness and error follows the displacement of the driven gear, not a constant
-frequency times the time:
-  the rack stops and reverses. Tooth cycle and pitch error are parameters of the motion, as in
-  print: the force has no terms of their derivatives with respect to the displacement;
+  frequency times the time: the rack stops and reverses. Tooth cycle and pitch error are parameters
+  of the motion, as in print: the force has no terms of their derivatives by the displacement;
 - G4 and flywheel are always coupled.
 """
 
@@ -68,8 +66,7 @@ class Gearbox:
         errors: np.ndarray | None = None,
         rtol: float = 1e-5,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Ways (m) and velocities (m/s), (n, 23), at `times` (n,) s by SciPy's LSODA, with the
-        exact matrices.
+        """Ways (m) and velocities (m/s), (n, 23), at `times` (n,) s by LSODA with exact matrices.
 
         v : (23,) velocities at the first of the times, where all displacements are zero
         errors : (18,) of the kernel's MESH_ERROR, none by default
@@ -84,23 +81,14 @@ class Gearbox:
             return np.concatenate([y[DOFS:], inverse * pull])
 
         def jacobian(_: float, y: np.ndarray) -> np.ndarray:
-            matrices = self.kernel.matrices(errors, y[:DOFS], y[DOFS:])
-            return np.vstack(
-                [np.eye(DOFS, 2 * DOFS, DOFS), -inverse[:, None] * np.hstack(matrices)]
-            )
+            stiffness, damping = self.kernel.matrices(errors, y[:DOFS], y[DOFS:])
+            zero, one = np.zeros((DOFS, DOFS)), np.eye(DOFS)
+            column = -inverse[:, None]
+            return np.block([[zero, one], [column * stiffness, column * damping]])
 
-        atol = np.repeat([1e-9, 1e-5], DOFS)
-        start = np.concatenate([np.zeros(DOFS), v])
-        done = solve_ivp(
-            rates,
-            (times[0], times[-1]),
-            start,
-            method="LSODA",
-            t_eval=times,
-            rtol=rtol,
-            atol=atol,
-            jac=jacobian,
-        )
+        span, start = (times[0], times[-1]), np.concatenate([np.zeros(DOFS), v])
+        tolerances = {"rtol": rtol, "atol": np.repeat([1e-9, 1e-5], DOFS)}
+        done = solve_ivp(rates, span, start, "LSODA", times, jac=jacobian, **tolerances)
         if not done.success:
             raise ConvergenceError(
                 f"the motion of the gearbox could not be integrated: {done.message}"
@@ -116,11 +104,10 @@ class Gearbox:
         *,
         errors: np.ndarray | None = None,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Simulate `count` implicit steps of `step` s from zero displacements and velocities v
-        (23,).
+        """Simulate `count` implicit steps of `step` s from zero displacements, velocities v (23,).
 
-        Returns the pinion forces after each step, (count, 8) N, and displacements and velocities at
-        the end, (23,).
+        Returns the pinion forces after each step, (count, 8) N, and displacements and velocities
+        (23,) at the end.
         """
         x, v = np.zeros(DOFS), np.array(v, dtype=float)
         errors = no_errors() if errors is None else errors
@@ -133,8 +120,7 @@ class Gearbox:
         return torque[:, :PINIONS] / self.pinion_radius, x, v
 
     def pinion_forces(self, x: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Forces (n, 8) in N at the pitch lines of the pinions that their flexible units pass on
-        (eq. 23).
+        """Forces (n, 8) in N at the pitch lines that the pinions' units pass on (eq. 23).
 
         x, v : (n, 23) displacements and velocities
         """
@@ -148,21 +134,17 @@ def no_errors() -> np.ndarray:
 
 
 def natural_frequencies(design: CascadeDesign) -> np.ndarray:
-    """Frequencies in Hz (23,) of small vibrations with all meshes in contact, at their mean
-    stiffness (eq. 25).
+    """Frequencies in Hz (23,) of small vibrations with the mean stiffness of all meshes (eq. 25).
 
     The flywheel is free, so that the first is zero.
     """
-    stiffness = np.zeros((DOFS, DOFS))
+    stiffness, gears = np.zeros((DOFS, DOFS)), np.eye(DOFS)
     for mesh in meshes(design):
-        _add(stiffness, mesh["driver"], mesh["driven"], 1.0, -1.0, mesh["stiffness"])
+        stretch = gears[mesh["driver"]] - gears[mesh["driven"]]
+        stiffness += mesh["stiffness"] * np.outer(stretch, stretch)
     for shaft in shafts(design):
-        row = 1.0 / shaft["first_radius"], -1.0 / shaft["second_radius"]
-        _add(stiffness, shaft["first"], shaft["second"], *row, shaft["stiffness"])
+        ends = gears[shaft["first"]], gears[shaft["second"]]
+        twist = ends[0] / shaft["first_radius"] - ends[1] / shaft["second_radius"]
+        stiffness += shaft["stiffness"] * np.outer(twist, twist)
     squares = eigh(stiffness, np.diag(masses(design)), eigvals_only=True)
     return np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi)
-
-
-def _add(matrix: np.ndarray, i: int, j: int, bi: float, bj: float, stiffness: float) -> None:
-    b = np.array([bi, bj])
-    matrix[np.ix_((i, j), (i, j))] += stiffness * np.outer(b, b)

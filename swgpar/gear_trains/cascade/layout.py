@@ -26,23 +26,18 @@ G4 = 21
 FLYWHEEL = 22
 DOFS, MESHES, SHAFTS = 23, 18, 11
 
+TOOTHED = ["pinion"] * PINIONS + ["g1"] * PINIONS + ["g2"] * SIDES + ["g3"] * SIDES + ["g4"]
+"""Sections of the gears but the rack, in the order of the degrees of freedom."""
+
 
 def radii(design: CascadeDesign) -> np.ndarray:
     """Pitch radii of all gears, (23,) m; the rack has none."""
-    gears = ["pinion"] * PINIONS + ["g1"] * PINIONS + ["g2"] * SIDES + ["g3"] * SIDES + ["g4", "g4"]
-    return np.array([np.nan, *(design.radius(name) for name in gears)])
+    return np.array([np.nan, *(design.radius(name) for name in [*TOOTHED, "g4"])])
 
 
 def masses(design: CascadeDesign) -> np.ndarray:
     """Masses at the pitch lines, (23,) kg: inertia over the radius squared (eq. 15)."""
-    gears = (
-        ["pinion"] * PINIONS
-        + ["g1"] * PINIONS
-        + ["g2"] * SIDES
-        + ["g3"] * SIDES
-        + ["g4", "flywheel"]
-    )
-    inertia = np.array([getattr(design, name).inertia for name in gears])
+    inertia = np.array([getattr(design, name).inertia for name in [*TOOTHED, "flywheel"]])
     return np.concatenate([[design.rack.mass], inertia / radii(design)[1:] ** 2])
 
 
@@ -64,13 +59,8 @@ def meshes(design: CascadeDesign) -> np.ndarray:
     )
     out["driven_radius"] = radii(design)[out["driven"]]
     sections = [getattr(design, kind) for kind, count in MESH_COUNTS.items() for _ in range(count)]
-    for key, scale in (
-        ("stiffness", 1.0),
-        ("variation", 1.0),
-        ("gap_A", 1e-3),
-        ("gap_B", 1e-3),
-        ("module", 1e-3),
-    ):
+    scales = {"stiffness": 1.0, "variation": 1.0, "gap_A": 1e-3, "gap_B": 1e-3, "module": 1e-3}
+    for key, scale in scales.items():
         out[key] = [scale * getattr(section, key) for section in sections]
     out["damping"] = design.damping.metal * out["stiffness"]
     return out
@@ -82,10 +72,8 @@ def shafts(design: CascadeDesign) -> np.ndarray:
     out = np.zeros(SHAFTS, dtype=SHAFT)
     out["first"] = np.concatenate([PINION + np.arange(PINIONS), G2 + side, [G4]])
     out["second"] = np.concatenate([G1 + np.arange(PINIONS), G3 + side, [FLYWHEEL]])
-    out["first_radius"], out["second_radius"] = (
-        radii(design)[out["first"]],
-        radii(design)[out["second"]],
-    )
+    for end in ("first", "second"):
+        out[f"{end}_radius"] = radii(design)[out[end]]
     out["stiffness"][PINIONS:] = [design.shafts.g2_g3] * SIDES + [design.shafts.g4_flywheel]
     out["stiffness"][:PINIONS] = units.ratios * units.stiffness
     out["initial_stiffness"], out["linear_above"] = out["stiffness"], units.end

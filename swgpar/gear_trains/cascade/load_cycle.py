@@ -1,5 +1,4 @@
-"""The gearbox without errors in motion: one period of the rack force, and the flywheel fixed by its
-brake."""
+"""The gearbox without errors in motion: one period of the rack force, and the braked flywheel."""
 
 from __future__ import annotations
 
@@ -16,12 +15,10 @@ ROWS = 4000
 """Of the history of one period."""
 
 WINDOW = 0.02
-"""Half width, as a share of the peak force, of the range that load shares at a force are averaged
-over."""
+"""Half width, over the peak force, of the range in which load shares at a force are averaged."""
 
 FITTED = 0.25
-"""Share of the peak above which the crossing of load shares is sought: below it the units are not
-linear."""
+"""Share of the peak above which a crossing of load shares is sought: there the units are linear."""
 
 
 @dataclass(frozen=True)
@@ -40,8 +37,7 @@ class LoadCycle:
 
     @property
     def shares(self) -> np.ndarray:
-        """Load shares (n, 8) (eq. 24); NaN where the pinions carry less than 1 % of the largest
-        rack force."""
+        """Load shares (n, 8) (eq. 24); NaN at less than 1 % of the largest rack force."""
         carried = self.pinion_forces.sum(axis=1, keepdims=True)
         loaded = np.abs(carried) > 0.01 * np.abs(self.rack_force).max()
         return self.pinion_forces / np.where(loaded, carried, np.nan)
@@ -53,22 +49,19 @@ class LoadCycle:
         return carried / carried.sum()
 
     def first_crossing(self) -> float:
-        """Lowest rack force in N at which the shares of an odd and an even pinion cross; NaN when
-        none do.
+        """Lowest rack force in N at which shares of an odd and an even pinion cross; NaN for none.
 
-        Where the flexible units are linear, shares are a + b / F: fitted, so that the tooth cycles
-        do not matter.
+        Where the flexible units are linear, shares are a + b / F: fitted over the tooth cycles.
         """
-        loaded = (self.rack_force > FITTED * self.rack_force.max()) & np.isfinite(self.shares).all(
-            axis=1
-        )
+        lowest, highest = FITTED * self.rack_force.max(), self.rack_force.max()
+        loaded = (self.rack_force > lowest) & np.isfinite(self.shares).all(axis=1)
         terms = np.stack([np.ones(loaded.sum()), 1.0 / self.rack_force[loaded]], axis=1)
         a, b = np.linalg.lstsq(terms, self.shares[loaded], rcond=None)[0]
         even = even_pinion_mask()
         constant, falling = a[even][:, None] - a[~even], b[even][:, None] - b[~even]
         with np.errstate(divide="ignore"):
             roots = -falling / constant
-        inside = (roots > FITTED * self.rack_force.max()) & (roots < self.rack_force.max())
+        inside = (roots > lowest) & (roots < highest)
         return float(roots[inside].min()) if inside.any() else float("nan")
 
 
@@ -85,15 +78,11 @@ def one_load_cycle(design: CascadeDesign) -> LoadCycle:
 
 
 def braked_load_shares(design: CascadeDesign, direction: Direction) -> np.ndarray:
-    """Load shares (8,) at the braked force, with the flywheel fixed: the source's comparison with
-    measurements."""
-    gearbox, sign = Gearbox(design, braked=True), 1.0 if direction == "B" else -1.0
-    rising, hold, size = (
-        design.load.braked_ramp,
-        design.load.braked_hold,
-        sign * 1e3 * design.load.braked,
-    )
-    time = np.linspace(0.0, rising + hold, 401)
-    x, v = gearbox.integrate(ramp(size, rising), np.zeros(DOFS), time)
-    carried = gearbox.pinion_forces(x, v)[time > rising + 0.5 * hold].sum(axis=0)
+    """Load shares (8,) at the braked force with a fixed flywheel, as the source measures them."""
+    gearbox, load = Gearbox(design, braked=True), design.load
+    force = (1e3 if direction == "B" else -1e3) * load.braked
+    time = np.linspace(0.0, load.braked_ramp + load.braked_hold, 401)
+    x, v = gearbox.integrate(ramp(force, load.braked_ramp), np.zeros(DOFS), time)
+    held = time > load.braked_ramp + 0.5 * load.braked_hold
+    carried = gearbox.pinion_forces(x, v)[held].sum(axis=0)
     return carried / carried.sum()

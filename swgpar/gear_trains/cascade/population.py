@@ -1,11 +1,8 @@
-"""Gearboxes with random errors, at rest and in motion, under the largest rack force in direction
-B."""
+"""Gearboxes with random errors under the largest rack force in direction B, at rest and moving."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -15,7 +12,7 @@ from swgpar.gear_trains.cascade.layout import FLYWHEEL, MESHES, rigid_displaceme
 from swgpar.gear_trains.cascade.static_sharing import MESH_COUNTS, static_sharing
 from swgpar.gear_trains.cascade.tolerance_stack_up import standard_deviation
 from swgpar.gear_trains.kernel import MESH_ERROR
-from swgpar.vibration.sampling import block_sizes, random_stream
+from swgpar.vibration.sampling import random_stream
 
 BLOCK_SIZE = 25
 STREAM = 1
@@ -24,8 +21,7 @@ STREAM = 1
 
 @dataclass(frozen=True)
 class PopulationShares:
-    """Load shares of some gearboxes, (n, 8) each: at rest; in motion, as means and largest values
-    over the hold."""
+    """Load shares (n, 8) of gearboxes: at rest; in motion, means and largest ones of the hold."""
 
     static: np.ndarray
     mean: np.ndarray
@@ -39,11 +35,8 @@ def random_errors(design: CascadeDesign, block: int, count: int) -> np.ndarray:
     amplitude is the error itself.
     """
     random = random_stream(design.gear_train.seed, STREAM, block)
-    deviations = [
-        standard_deviation(design, kind)
-        for kind, number in MESH_COUNTS.items()
-        for _ in range(number)
-    ]
+    by_kind = [standard_deviation(design, kind) for kind in MESH_COUNTS]
+    deviations = np.repeat(by_kind, list(MESH_COUNTS.values()))
     errors = np.zeros((count, MESHES), dtype=MESH_ERROR)
     errors["amplitude"] = random.standard_normal((count, MESHES)) * deviations
     errors["phase"], errors["tooth_phase"] = random.uniform(0.0, 2.0 * np.pi, (2, count, MESHES))
@@ -54,9 +47,8 @@ def static_shares(design: CascadeDesign, errors: np.ndarray) -> np.ndarray:
     """Load shares (n, 8) at rest."""
     ends = np.cumsum(list(MESH_COUNTS.values()))[:-1]
     by_kind = dict(zip(MESH_COUNTS, np.split(errors["amplitude"], ends, axis=1), strict=True))
-    return static_sharing(design, "B", errors=by_kind).shares(
-        np.full(len(errors), 1e3 * design.load.peak)
-    )
+    force = np.full(len(errors), 1e3 * design.load.peak)
+    return static_sharing(design, "B", errors=by_kind).shares(force)
 
 
 def steady_velocities(design: CascadeDesign) -> np.ndarray:
@@ -72,25 +64,15 @@ def block_shares(design: CascadeDesign, block: int, count: int) -> PopulationSha
     In motion the gears start at their steady speed without contact; the rack force rises and then
     stays constant.
     """
-    section, errors, gearbox = (
-        design.population,
-        random_errors(design, block, count),
-        Gearbox(design),
-    )
+    errors, gearbox = random_errors(design, block, count), Gearbox(design)
+    section = design.population
     rising, holding = (int(np.ceil(t / section.step)) for t in (section.ramp, section.hold))
+    steps = section.step, rising + holding
     force = ramp(1e3 * design.load.peak, rising * section.step)
     start = steady_velocities(design)
-    means, largest = np.empty((count, PINIONS)), np.empty((count, PINIONS))
+    means, largest = np.empty((2, count, PINIONS))
     for k in range(count):
-        carried, _, _ = gearbox.simulate(
-            force, start, section.step, rising + holding, errors=errors[k]
-        )
+        carried, _, _ = gearbox.simulate(force, start, *steps, errors=errors[k])
         share = carried[rising:] / carried[rising:].sum(axis=1, keepdims=True)
         means[k], largest[k] = share.mean(axis=0), share.max(axis=0)
     return PopulationShares(static_shares(design, errors), means, largest)
-
-
-def population_tasks(design: CascadeDesign) -> list[Callable[[], PopulationShares]]:
-    """Tasks for all blocks of the population."""
-    sizes = block_sizes(design.population.gearboxes, BLOCK_SIZE)
-    return [partial(block_shares, design, block, size) for block, size in enumerate(sizes)]

@@ -1,5 +1,4 @@
-"""Quantities of a cascade gearbox: results that can be compared with published values, derived
-values of the design."""
+"""What a run of a cascade gearbox gives by name, and values derived from its design."""
 
 from __future__ import annotations
 
@@ -22,89 +21,72 @@ RANKED_TOLERANCES = (
 )
 """Tolerances of the rack and the pinions, in the order of Table 2."""
 
+SINGLE = {
+    "overloaded_static": "number of gearboxes overloaded at rest",
+    "overloaded_dynamic": "number of gearboxes overloaded at any time at constant rack force",
+    "largest_static_share": "largest load share at rest of all gearboxes with errors",
+    "largest_dynamic_mean_share": "largest mean load share in motion of all gearboxes with errors",
+    "largest_dynamic_share": "largest load share at any time at constant rack force, all gearboxes "
+    "with errors",
+}
+"""Numbers of the population."""
+
+AT_FORCE = {
+    "static_B": "at rest at {0:g} kN, direction B",
+    "static_A": "at rest at {0:g} kN, direction A",
+    "static_equal_B": "at rest at {0:g} kN, odd and even pinions, equal flexible units",
+    "dynamic_B": "in motion at {0:g} kN, direction B",
+    "dynamic_mean_B": "in motion at {0:g} kN, means of odd and even pinions",
+}
+"""Load shares at a rack force."""
+
 
 def quantities(design: CascadeDesign) -> dict[str, Quantity]:
     """Results that can be compared with published values."""
+    ranks = "Spearman's rank correlations of the stack-up of rack and pinion with "
+    stack_up = "largest sample of the tolerance stack-up of"
+    crossing = "lowest rack force at which the load shares of two pinions are equal,"
+    braked = "load shares with the flywheel braked, direction"
     known = {
         "spearman_rack_pinion": Quantity(
-            f"Spearman's rank correlations of the stack-up of rack and pinion with "
-            f"{', '.join(RANKED_TOLERANCES)}",
-            count=len(RANKED_TOLERANCES),
+            ranks + ", ".join(RANKED_TOLERANCES), count=len(RANKED_TOLERANCES)
         ),
-        "largest_error_rack_pinion": Quantity(
-            "largest sample of the tolerance stack-up of rack and pinion", "µm"
-        ),
-        "largest_error_g1_g1": Quantity(
-            "largest sample of the tolerance stack-up of two gears G1", "µm"
-        ),
-        "first_crossing_static": Quantity(
-            "lowest rack force at which the load shares of two pinions are equal, at rest, "
-            "direction B",
-            "kN",
-        ),
-        "first_crossing_dynamic": Quantity(
-            "lowest rack force at which the load shares of two pinions are equal, in motion, "
-            "direction B",
-            "kN",
-        ),
-        "braked_B": Quantity("load shares with the flywheel braked, direction B", count=PINIONS),
-        "braked_A": Quantity("load shares with the flywheel braked, direction A", count=PINIONS),
-        "overloaded_static": Quantity("number of gearboxes overloaded at rest"),
-        "overloaded_dynamic": Quantity(
-            "number of gearboxes overloaded at any time at constant rack force"
-        ),
-        "largest_static_share": Quantity("largest load share at rest of all gearboxes with errors"),
-        "largest_dynamic_mean_share": Quantity(
-            "largest mean load share in motion of all gearboxes with errors"
-        ),
-        "largest_dynamic_share": Quantity(
-            "largest load share at any time at constant rack force, all gearboxes with errors"
-        ),
+        "largest_error_rack_pinion": Quantity(f"{stack_up} rack and pinion", "µm"),
+        "largest_error_g1_g1": Quantity(f"{stack_up} two gears G1", "µm"),
+        "first_crossing_static": Quantity(f"{crossing} at rest, direction B", "kN"),
+        "first_crossing_dynamic": Quantity(f"{crossing} in motion, direction B", "kN"),
+        "braked_B": Quantity(f"{braked} B", count=PINIONS),
+        "braked_A": Quantity(f"{braked} A", count=PINIONS),
+        **{name: Quantity(meaning) for name, meaning in SINGLE.items()},
         "natural_frequencies": Quantity(
             "natural frequencies, the first of the free rotation", "Hz", count=DOFS
         ),
     }
     for force in design.load.forces:
-        name = number_label(force)
-        known[f"static_B_{name}"] = Quantity(
-            f"load shares at rest at {force:g} kN, direction B", count=PINIONS
-        )
-        known[f"static_A_{name}"] = Quantity(
-            f"load shares at rest at {force:g} kN, direction A", count=PINIONS
-        )
-        known[f"static_equal_B_{name}"] = Quantity(
-            f"load shares at rest at {force:g} kN, odd and even pinions, equal flexible units",
-            count=2,
-        )
-        known[f"dynamic_B_{name}"] = Quantity(
-            f"load shares in motion at {force:g} kN, direction B", count=PINIONS
-        )
-        known[f"dynamic_mean_B_{name}"] = Quantity(
-            f"load shares in motion at {force:g} kN, means of odd and even pinions", count=2
-        )
+        for name, meaning in AT_FORCE.items():
+            count = 2 if name in ("static_equal_B", "dynamic_mean_B") else PINIONS
+            shares = f"load shares {meaning.format(force)}"
+            known[f"{name}_{number_label(force)}"] = Quantity(shares, count=count)
     return known
 
 
 def derived(design: CascadeDesign) -> dict[str, float]:
     """Values derived from the design file, for `swgpar check`."""
     units, displacements, mass = FlexUnits.of(design), rigid_displacements(design), masses(design)
-    frequencies = natural_frequencies(design)
-    backlash = 1e3 * design.radius("pinion") * path_gap_angles(design, "B")
-    out = {
+    frequencies, radius = natural_frequencies(design), design.radius("pinion")
+    reduced = mass * displacements**2
+    backlash = 1e3 * radius * path_gap_angles(design, "B")
+    values = {
         "speed ratio of flywheel and pinions": design.ratio,
-        "pitch radius of the pinions (mm)": 1e3 * design.radius("pinion"),
-        "mass of all gears reduced to the rack (kg)": float(mass @ displacements**2),
-        "mass of the flywheel reduced to the rack (kg)": float(
-            mass[FLYWHEEL] * displacements[FLYWHEEL] ** 2
-        ),
-        "stiffness of a flexible unit at the pinion (N/mm)": 1e-3
-        * units.stiffness
-        / design.radius("pinion") ** 2,
+        "pitch radius of the pinions (mm)": 1e3 * radius,
+        "mass of all gears reduced to the rack (kg)": reduced.sum(),
+        "mass of the flywheel reduced to the rack (kg)": reduced[FLYWHEEL],
+        "stiffness of a flexible unit at the pinion (N/mm)": 1e-3 * units.stiffness / radius**2,
         "backlash of the path of odd pinions in direction B (mm)": backlash[0],
         "backlash of the path of even pinions in direction B (mm)": backlash[1],
         "lowest natural frequency (Hz)": frequencies[1],
         "highest natural frequency (Hz)": frequencies[-1],
     }
     for kind in MESH_COUNTS:
-        out[f"standard deviation of {kind} errors (µm)"] = 1e6 * standard_deviation(design, kind)
-    return {name: float(value) for name, value in out.items()}
+        values[f"standard deviation of {kind} errors (µm)"] = 1e6 * standard_deviation(design, kind)
+    return {name: float(value) for name, value in values.items()}

@@ -56,7 +56,7 @@ def path_gap_angles(
 class StaticSharing:
     """Pinion forces at given rack forces.
 
-    units : the flexible units;  radius : of the pinions, m;  gaps : (..., 8) from `path_gap_angles`
+    units : the flexible units;  radius : of the pinions, m;  gaps : (..., 8) of `path_gap_angles`
     """
 
     units: FlexUnits
@@ -69,11 +69,9 @@ class StaticSharing:
         return self.units.ratios * self.units.torque(twist) / self.radius
 
     def travel(self, force: np.ndarray | float) -> np.ndarray:
-        """Travel of the rack in m at rack forces in N, by bisection of a growing function to the
-        last digit."""
+        """Travel of the rack in m at rack forces in N, by bisection to the last digit."""
         force = np.asarray(force, dtype=float)
-        # the unit that is softest of all, behind the largest gap, would be twisted by no more than
-        # that
+        # the softest unit, behind the largest gap, would be twisted by no more than that
         softest = min(self.units.stiffness, self.units.initial) * self.units.ratios.sum()
         low = self.radius * self.gaps.min(axis=-1) + np.zeros_like(force)
         high = self.radius * (self.gaps.max(axis=-1) + force * self.radius / softest)
@@ -104,31 +102,17 @@ def static_sharing(
 
 
 def first_crossing(sharing: StaticSharing, highest: float) -> float:
-    """Lowest rack force in N at which the shares of two pinions cross; NaN when none do below
-    `highest`.
+    """Lowest rack force in N at which shares of two pinions cross; NaN for none below `highest`.
 
     sharing : of one gearbox, gaps (8,)
     """
     force = np.linspace(0.0, highest, 4001)[1:]
     share = sharing.shares(force)
-    found = []
+    crossed = []
     for i, j in combinations(range(PINIONS), 2):
         difference = share[:, i] - share[:, j]
         both = (share[:-1, i] > 0.0) & (share[:-1, j] > 0.0)
-        crossings = np.flatnonzero((difference[:-1] * difference[1:] < 0.0) & both)
-        if len(crossings):
-            found.append(
-                np.interp(
-                    0.0,
-                    *_rising(
-                        difference[crossings[0] : crossings[0] + 2],
-                        force[crossings[0] : crossings[0] + 2],
-                    ),
-                )
-            )
-    return float(min(found, default=np.nan))
-
-
-def _rising(difference: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    order = np.argsort(difference)
-    return difference[order], force[order]
+        for k in np.flatnonzero((difference[:-1] * difference[1:] < 0.0) & both)[:1]:
+            slope = (difference[k + 1] - difference[k]) / (force[k + 1] - force[k])
+            crossed.append(force[k] - difference[k] / slope)
+    return float(min(crossed, default=np.nan))

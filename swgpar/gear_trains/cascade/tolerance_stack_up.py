@@ -5,11 +5,9 @@ Each tolerance is a normal variable whose limits lie at a given number of standa
 1), turned into a displacement of the flanks along the pitch line:
 
 - pitch deviation E_pu = (0.3 m_n + 1.25 sqrt(d) + 7) 2^(0.5 (Q - 5)) µm (eq. 4; the 7 and both
-signs are lost in the
-  text and are those of ISO 1328-1, of which the printed factors are), as it is;
+  signs are lost in the text and are those of ISO 1328-1, of which the printed factors are);
 - runout E_r = (0.24 m_n + sqrt(d) + 5.6) 2^(0.5 (Q - 5)) µm (eq. 5, likewise), radial: times the
-tangent of the
-  pressure angle;
+  tangent of the pressure angle;
 - position of a shaft along the line of action: over its cosine;
 - direction of a shaft: times half of the face width.
 
@@ -17,9 +15,6 @@ The rack has the tolerances of a gear whose pitch circle is as long as the rack,
 """
 
 from __future__ import annotations
-
-from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 from scipy.stats import spearmanr
@@ -51,8 +46,7 @@ def runout(module: float, diameter: float, grade: float) -> float:
 
 
 def contributions(design: CascadeDesign, kind: str) -> dict[str, float]:
-    """Limits of all tolerances of a kind of mesh as displacements of its flanks along the pitch
-    line, m, by name."""
+    """Limits of the tolerances of a kind of mesh as displacements along the pitch line, m."""
     module, limits = getattr(design, kind).module, {}
     first, second = GEARS[kind]
     angle = np.radians(design.tolerances.pressure_angle)
@@ -70,33 +64,19 @@ def contributions(design: CascadeDesign, kind: str) -> dict[str, float]:
 
 def standard_deviation(design: CascadeDesign, kind: str) -> float:
     """Of the whole stack-up of a kind of mesh, m."""
-    return float(
-        np.sqrt(sum(limit**2 for limit in contributions(design, kind).values()))
-        / design.tolerances.limit
-    )
+    limits = list(contributions(design, kind).values())
+    return float(np.linalg.norm(limits)) / design.tolerances.limit
 
 
 def sample_stack_up(design: CascadeDesign, kind: str) -> tuple[np.ndarray, dict[str, float]]:
     """Samples of the stack-up (n,), m, and Spearman's rank of each tolerance with it (eq. 2)."""
     limits = contributions(design, kind)
     sizes = np.array(list(limits.values())) / design.tolerances.limit
-    number = list(MESH_COUNTS).index(kind)
+    key = design.gear_train.seed, STREAM, list(MESH_COUNTS).index(kind)
+    blocks = enumerate(block_sizes(design.tolerances.samples, BLOCK_SIZE))
     parts = np.concatenate(
-        [
-            random_stream(design.gear_train.seed, STREAM, number, block).standard_normal(
-                (size, len(sizes))
-            )
-            for block, size in enumerate(block_sizes(design.tolerances.samples, BLOCK_SIZE))
-        ]
+        [random_stream(*key, block).standard_normal((size, len(sizes))) for block, size in blocks]
     )
     total = parts @ sizes
-    return total, {
-        name: float(spearmanr(parts[:, k], total).statistic) for k, name in enumerate(limits)
-    }
-
-
-def stack_up_tasks(
-    design: CascadeDesign,
-) -> list[Callable[[], tuple[np.ndarray, dict[str, float]]]]:
-    """Tasks for the stack-ups of all kinds of meshes, in the order of MESH_COUNTS."""
-    return [partial(sample_stack_up, design, kind) for kind in MESH_COUNTS]
+    ranks = [float(spearmanr(part, total).statistic) for part in parts.T]
+    return total, dict(zip(limits, ranks))

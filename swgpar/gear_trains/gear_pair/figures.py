@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
-from swgpar.gear_trains.drawing import axes
+from swgpar.gear_trains.drawing import MomentCurve, axes, draw_moments
 from swgpar.gear_trains.gear_pair.quantities import VALUES
 from swgpar.gear_trains.result import TrainResult
 from swgpar.results.figure_set import Drawings
@@ -24,50 +24,43 @@ STYLES = {
 
 def drawings(result: TrainResult) -> Drawings:
     """All figures of a run."""
-    load, half = result.summary["design"]["load"], result.summary["half_backlash_um"]
     figures: dict[str, Callable[[], Figure]] = {}
-    for case, torque in enumerate(load["input"], start=1):
+    for case, torque in enumerate(result.design_table["load"]["input"], start=1):
+        load = f"input torque {torque:g} N·m"
         figures |= {
-            f"case_{case}_{value}": partial(_moments, result, case, torque, value)
-            for value in VALUES
+            f"case_{case}_{value}": partial(_moments, result, case, load, value) for value in VALUES
         }
-        figures[f"case_{case}_density"] = partial(_density, result, case, torque, half)
+        figures[f"case_{case}_density"] = partial(_density, result, case, load)
     return figures
 
 
-def _moments(result: TrainResult, case: int, torque: float, value: str) -> Figure:
+def _moments(result: TrainResult, case: int, load: str, value: str) -> Figure:
     table = result.history
     rows = table["case"] == case
-    title = f"{VALUES[value]}, input torque {torque:g} N·m"
-    figure, panels = axes(title, "time (s)", "mean (µm)", "standard deviation (µm)")
-    for axis, kind in zip(panels, ("mean", "deviation"), strict=True):
-        for method, (style, name) in STYLES.items():
-            axis.plot(
-                table["time_s"][rows], table[f"{method}_{kind}_{value}_um"][rows], style, label=name
-            )
-    panels[0].legend(fontsize=8)
-    return figure
+    curves = [
+        MomentCurve(
+            table["time_s"][rows],
+            table[f"{method}_mean_{value}_um"][rows],
+            table[f"{method}_deviation_{value}_um"][rows],
+            label,
+            style,
+        )
+        for method, (style, label) in STYLES.items()
+    ]
+    return draw_moments(f"{VALUES[value]}, {load}", "time (s)", curves)
 
 
-def _density(result: TrainResult, case: int, torque: float, half: float) -> Figure:
-    table = result.tables[f"density_{case}"]
-    figure, (axis,) = axes(
-        f"density of the mesh deflection at the end, input torque {torque:g} N·m",
-        "mesh deflection (µm)",
-        "density (1/µm)",
-    )
-    axis.step(
-        table["mesh_deflection_um"],
-        table["monte_carlo"],
-        "k",
-        where="mid",
-        lw=1.0,
-        label=STYLES["monte_carlo"][1],
-    )
+def _density(result: TrainResult, case: int, load: str) -> Figure:
+    table, half = result.tables[f"density_{case}"], result.summary["half_backlash_um"]
+    deflection = table["mesh_deflection_um"]
+    title = f"density of the mesh deflection at the end, {load}"
+    figure, (axis,) = axes(title, "mesh deflection (µm)", "density (1/µm)")
+    _, label = STYLES["monte_carlo"]
+    axis.step(deflection, table["monte_carlo"], "k", where="mid", lw=1.0, label=label)
     for method in EQUIVALENT:
-        style, name = STYLES[method]
-        axis.plot(table["mesh_deflection_um"], table[method], style, label=name)
+        style, label = STYLES[method]
+        axis.plot(deflection, table[method], style, label=label)
     axis.axvspan(-half, half, color="0.9", label="backlash")
-    axis.set_xlim(table["mesh_deflection_um"][0], table["mesh_deflection_um"][-1])
+    axis.set_xlim(deflection[0], deflection[-1])
     axis.legend(fontsize=8)
     return figure

@@ -47,14 +47,9 @@ def gear_pair_system(design: GearPairDesign, case: int) -> GearMeshSystem:
     damping = design.damping.mass * mass + design.damping.stiffness * (
         bearings + mesh.stiffness * DEFLECTION_ROW.T @ DEFLECTION_ROW
     )
-    stiffness = MeshStiffness(
-        np.array([mesh.stiffness]),
-        np.array([mesh.variation * mesh.stiffness]),
-        np.array([mesh.contact_ratio]),
-        mesh.frequency,
-        mesh.harmonics,
-        np.zeros(1),
-    )
+    mean, ratio, phase = np.array([mesh.stiffness]), np.array([mesh.contact_ratio]), np.zeros(1)
+    amplitude = mesh.variation * mean
+    stiffness = MeshStiffness(mean, amplitude, ratio, mesh.frequency, mesh.harmonics, phase)
     noise = design.load.noise * np.sqrt(2.0 * np.pi * design.load.spectral_density)
     return GearMeshSystem(
         mass=mass,
@@ -71,10 +66,8 @@ def gear_pair_system(design: GearPairDesign, case: int) -> GearMeshSystem:
 def static_equilibrium(design: GearPairDesign, case: int) -> np.ndarray:
     """Coordinates (3,) in m where the pair rests under the steady torques: simulations start
     there."""
-    force, stiffness = (
-        mesh_force(design, case),
-        gear_pair_system(design, case).mesh_stiffness(0.0)[0],
-    )
+    force = mesh_force(design, case)
+    stiffness = gear_pair_system(design, case).mesh_stiffness(0.0)[0]
     y1, y2 = -force / design.gear_1.bearing, force / design.gear_2.bearing
     return np.array([y1, y2, 1e-6 * design.mesh.half_backlash + force / stiffness - y1 + y2])
 

@@ -29,8 +29,7 @@ def simulate(
     samples: int,
     random: np.random.Generator,
 ) -> SampleMoments:
-    """Simulate `samples` pairs from rest at `start` (3,) by `count` steps of h s; moments after
-    every `every` steps."""
+    """Moments of `samples` pairs from rest at `start` (3,) after each `every` of `count` steps."""
     n, half_backlash = system.size, float(system.half_backlash[0])
     left, right = system.newmark(system.stiffness, h)
     force_column = np.concatenate([-0.5 * h * DEFLECTION_ROW[0], np.zeros(n)])[:, None]
@@ -44,10 +43,7 @@ def simulate(
 
     state = np.zeros((2 * n + 4, samples))
     state[:n] = start[:, None]
-    q = state[: 2 * n]
-    noise = state[2 * n : 2 * n + 2]
-    f0 = state[-2]
-    f1 = state[-1]
+    q, noise, (f0, f1) = state[: 2 * n], state[2 * n : 2 * n + 2], state[-2:]
     f0[:] = force(system.mesh_stiffness(0.0)[0], float(DEFLECTION_ROW[0] @ start), half_backlash)
 
     def rows() -> Iterator[np.ndarray]:

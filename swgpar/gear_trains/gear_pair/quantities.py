@@ -1,5 +1,4 @@
-"""Quantities of a gear pair: results that can be compared with published values, and derived values
-of the design."""
+"""What a run of a gear pair gives by name, and values derived from its design."""
 
 from __future__ import annotations
 
@@ -24,12 +23,9 @@ def quantities(design: GearPairDesign) -> dict[str, Quantity]:
     """Results that can be compared with published values."""
     known: dict[str, Quantity] = {}
     for case in range(1, len(design.load.input) + 1):
-        known[f"out_of_contact_{case}"] = Quantity(
-            f"share of samples of case {case} out of contact at the end"
-        )
-        known[f"back_flank_{case}"] = Quantity(
-            f"share of samples of case {case} in contact on the back flank at the end"
-        )
+        share = f"share of samples of case {case}"
+        known[f"out_of_contact_{case}"] = Quantity(f"{share} out of contact at the end")
+        known[f"back_flank_{case}"] = Quantity(f"{share} in contact on the back flank at the end")
         for (kind, statistic), method, (name, meaning) in product(
             STATISTICS.items(), EQUIVALENT, VALUES.items()
         ):
@@ -44,9 +40,9 @@ def quantities(design: GearPairDesign) -> dict[str, Quantity]:
 def derived(design: GearPairDesign) -> dict[str, float]:
     """Values derived from the design file, for `swgpar check`."""
     frequencies, ratios = natural_modes(design)
-    out = {f"natural frequency {k} (rad/s)": float(w) for k, w in enumerate(frequencies, start=1)}
-    out |= {f"damping ratio {k}": float(r) for k, r in enumerate(ratios, start=1)}
+    values = {f"natural frequency {k} (rad/s)": w for k, w in enumerate(frequencies, start=1)}
+    values |= {f"damping ratio {k}": ratio for k, ratio in enumerate(ratios, start=1)}
     for case in range(len(design.load.input)):
-        out[f"mesh force of case {case + 1} (N)"] = mesh_force(design, case)
-    out["time step times the highest frequency"] = design.step * frequencies[-1]
-    return out
+        values[f"mesh force of case {case + 1} (N)"] = mesh_force(design, case)
+    values["time step times the highest frequency"] = design.step * frequencies[-1]
+    return {name: float(value) for name, value in values.items()}

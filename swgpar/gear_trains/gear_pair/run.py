@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial, reduce
 from itertools import product
 
@@ -21,7 +21,7 @@ from swgpar.gear_trains.gear_pair.monte_carlo import BLOCK_SIZE, simulate
 from swgpar.gear_trains.gear_pair.quantities import VALUES
 from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.log import logger
-from swgpar.vibration.linearisation import EQUIVALENT, Criterion, linearise
+from swgpar.vibration.linearisation import EQUIVALENT, linearise
 from swgpar.vibration.moments import Moments, SampleMoments, columns, percent_errors
 from swgpar.vibration.sampling import block_sizes, random_stream, run_tasks
 
@@ -31,10 +31,7 @@ BINS = 120
 
 def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
     """All results of a design, the same on all ranks; collective."""
-    cases, sizes = (
-        range(len(design.load.input)),
-        block_sizes(design.monte_carlo.samples, BLOCK_SIZE),
-    )
+    cases, steps = range(len(design.load.input)), (design.step, design.steps, design.every)
     logger.info(
         "gear pair: %d cases, %d steps of %.3g s, %d simulations of each; %d ranks",
         len(cases),
@@ -45,64 +42,54 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
     )
     pairs = [(gear_pair_system(design, case), static_equilibrium(design, case)) for case in cases]
     keys = list(product(cases, EQUIVALENT))
-    tasks: list[Callable[[], object]] = []
-    for case, criterion in keys:
-        system, start = pairs[case]
-        tasks.append(
-            partial(linearise, system, start, design.step, design.steps, design.every, criterion)
-        )
+    sizes = list(enumerate(block_sizes(design.monte_carlo.samples, BLOCK_SIZE)))
+    groups = {"linearised": [partial(linearise, *pairs[case], *steps, key) for case, key in keys]}
     for case in cases:
-        system, start = pairs[case]
-        for block, size in enumerate(sizes):
-            random = random_stream(design.gear_train.seed, case, block)
-            tasks.append(
-                partial(
-                    simulate, system, start, design.step, design.steps, design.every, size, random
-                )
+        groups[f"case {case}"] = [
+            partial(
+                simulate, *pairs[case], *steps, size, random_stream(design.gear_train.seed, case, k)
             )
-    done, seconds = run_tasks(comm, tasks)
-    first, rows = len(keys), np.vstack([np.eye(len(COORDINATES)), DEFLECTION_ROW])
-    linearised = {key: found.of(rows) for key, found in zip(keys, done[:first], strict=True)}
-    blocks = [done[first + case * len(sizes) : first + (case + 1) * len(sizes)] for case in cases]
-    samples = [reduce(SampleMoments.merged_with, parts) for parts in blocks]
+            for k, size in sizes
+        ]
+    done, seconds = run_tasks(comm, groups)
+    rows = np.vstack([np.eye(len(COORDINATES)), DEFLECTION_ROW])
+    moments = {key: part.of(rows) for key, part in zip(keys, done["linearised"], strict=True)}
+    samples = [reduce(SampleMoments.merged_with, done[f"case {case}"]) for case in cases]
     values: dict[str, float | list[float]] = {}
     tables = {}
     for case in cases:
-        by_method = {method: linearised[case, method] for method in EQUIVALENT}
         final, half_backlash = samples[case].final, 1e-6 * design.mesh.half_backlash
         values[f"out_of_contact_{case + 1}"] = float((final < half_backlash).mean())
         values[f"back_flank_{case + 1}"] = float((final < -half_backlash).mean())
-        for method, moments in by_method.items():
-            for kind, errors in percent_errors(moments, samples[case]).items():
-                values |= {
-                    f"error_{kind}_{method}_{v}_{case + 1}": e
-                    for v, e in zip(VALUES, errors, strict=True)
-                }
+        for method in EQUIVALENT:
+            names = [f"{method}_{value}_{case + 1}" for value in VALUES]
+            values |= percent_errors(moments[case, method], samples[case], names)
+        by_method = {method: moments[case, method] for method in EQUIVALENT}
         tables[f"density_{case + 1}"] = _density(final, by_method)
-    history: dict[str, np.ndarray] = {
+    times = design.time.end * np.arange(1, design.time.rows + 1) / design.time.rows
+    history = {
         "case": np.repeat([case + 1 for case in cases], design.time.rows),
-        "time_s": np.tile(
-            design.time.end * np.arange(1, design.time.rows + 1) / design.time.rows, len(cases)
-        ),
+        "time_s": np.tile(times, len(cases)),
     }
     for method in EQUIVALENT:
-        history |= columns(
-            [linearised[case, method] for case in cases], VALUES, "um", 1e6, f"{method}_"
-        )
-    history |= columns(samples, VALUES, "um", 1e6, "monte_carlo_")
+        parts = [moments[case, method] for case in cases]
+        history |= columns(parts, VALUES, "um", f"{method}_")
+    history |= columns(samples, VALUES, "um", "monte_carlo_")
+    linearised = seconds.pop("linearised")
     summary = {
         "sampling_error_percent": 100.0 / np.sqrt(2.0 * design.monte_carlo.samples),
-        "task_s": {"linearised": seconds[:first], "monte_carlo": sum(seconds[first:])},
+        "task_s": {"linearised": linearised, "monte_carlo": sum(map(sum, seconds.values()))},
         "half_backlash_um": design.mesh.half_backlash,
     }
     return TrainResult(history, tables, values, summary)
 
 
-def _density(final: np.ndarray, by_method: Mapping[Criterion, Moments]) -> Table:
+def _density(final: np.ndarray, by_method: Mapping[str, Moments]) -> Table:
     """Probability densities of the mesh deflection at the end, per µm. final : (samples,) m"""
     counts, edges = np.histogram(1e6 * final, bins=BINS, density=True)
     middle = 0.5 * (edges[1:] + edges[:-1])
-    out = {"mesh_deflection_um": middle, "monte_carlo": counts}
+    table = {"mesh_deflection_um": middle, "monte_carlo": counts}
     for method, moments in by_method.items():
-        out[method] = norm.pdf(middle, 1e6 * moments.mean[-1, -1], 1e6 * moments.deviation[-1, -1])
-    return out
+        mean, deviation = 1e6 * moments.mean[-1, -1], 1e6 * moments.deviation[-1, -1]
+        table[method] = norm.pdf(middle, mean, deviation)
+    return table

@@ -130,12 +130,9 @@ class PlanetaryDesign(TrainDesign):
     def elastic_ring(self) -> Ring:
         """The ring with its supports."""
         r = self.ring
-        radius, thickness, width = (
-            1e-3 * (r.root_radius + 0.5 * r.rim),
-            1e-3 * r.rim,
-            1e-3 * r.face_width,
-        )
-        section = BeamSection.rectangle(1e9 * r.E, r.density, radius, thickness, width)
+        radius = 1e-3 * (r.root_radius + 0.5 * r.rim)
+        size = 1e-3 * r.rim, 1e-3 * r.face_width
+        section = BeamSection.rectangle(1e9 * r.E, r.density, radius, *size)
         return Ring(section, r.elements, (r.supports, (r.radial, r.tangential, r.torsional)))
 
 
@@ -150,29 +147,26 @@ def check_fit(design: PlanetaryDesign) -> None:
     if (ring.teeth + sun.teeth) % design.planet.count:
         raise InputError(
             f"planet.count = {design.planet.count} is out of range: allowed divisors of "
-            f"{ring.teeth + sun.teeth} "
-            "(sun.teeth + ring.teeth), or equally spaced planets do not fit in"
+            f"{ring.teeth + sun.teeth} (sun.teeth + ring.teeth), or equally spaced planets do not "
+            "fit in"
         )
     fitting = sun.pitch_diameter * (ring.teeth - sun.teeth) / (2.0 * sun.teeth)
     if abs(design.planet.pitch_diameter / fitting - 1.0) > 1e-3:
         raise InputError(
             f"planet.pitch_diameter = {design.planet.pitch_diameter:g} is out of range: allowed "
-            f"{fitting:g} mm within "
-            "0.1 % (module of the sun, and teeth between sun and ring)"
+            f"{fitting:g} mm within 0.1 % (module of the sun, and teeth between sun and ring)"
         )
     if ring.elements % ring.supports:
         raise InputError(
             f"ring.supports = {ring.supports} is out of range: allowed divisors of {ring.elements} "
             f"(ring.elements)"
         )
+    springs = ring.radial, ring.tangential, ring.torsional
     radius = 1e-3 * (ring.root_radius + 0.5 * ring.rim)
-    if not supports_restrain_ring(
-        ring.supports, ring.radial, ring.tangential, ring.torsional, radius
-    ):
+    if not supports_restrain_ring(ring.supports, *springs, radius):
         raise InputError(
             f"ring.supports = {ring.supports} is out of range: allowed supports whose stiffnesses "
-            f"hold the ring "
-            "against rigid translation and rotation"
+            "hold the ring against rigid translation and rotation"
         )
     for name in ("steps", "linearised_steps"):
         if getattr(time, name) % time.rows:

@@ -79,15 +79,11 @@ class PlanetaryModel:
         self.damping = design.damping.mass + design.damping.stiffness * self.stiffness
         count, m = design.planet.count, design.mesh
         mean = np.repeat([m.sun_stiffness, m.ring_stiffness], count)
-        self.mesh = MeshStiffness(
-            mean,
-            m.variation * mean,
-            np.repeat([m.sun_contact_ratio, m.ring_contact_ratio], count),
-            design.carrier.speed * design.ring.teeth,
-            m.harmonics,
-            2.0 * np.pi * np.repeat([0.0, m.phase], count)
-            + np.tile(design.sun.teeth * self.angles, 2),
-        )
+        ratios = np.repeat([m.sun_contact_ratio, m.ring_contact_ratio], count)
+        phases = 2.0 * np.pi * np.repeat([0.0, m.phase], count)
+        phases += np.tile(design.sun.teeth * self.angles, 2)
+        frequency = design.carrier.speed * design.ring.teeth
+        self.mesh = MeshStiffness(mean, m.variation * mean, ratios, frequency, m.harmonics, phases)
         self.mesh_damping = design.damping.stiffness * mean
         self.half_backlash = 1e-6 * m.half_backlash
         torque_row = np.zeros(self.size)
@@ -118,16 +114,11 @@ class PlanetaryModel:
             at = first_index + np.arange(2)
             stiffness[at, at] = section.bearing
         stiffness[SUN + 2, SUN + 2] = design.sun.torsional / sun_radius**2
+        at = carrier_index(design) + np.arange(3)
         for k, psi in enumerate(self.angles):
-            stretches = np.zeros((2, n))
-            c = carrier_index(design)
-            stretches[0, [planet_index(k), c, c + 1]] = 1.0, -np.cos(psi), -np.sin(psi)
-            stretches[1, [planet_index(k) + 1, c, c + 1, c + 2]] = (
-                1.0,
-                np.sin(psi),
-                -np.cos(psi),
-                -1.0,
-            )
+            stretches, cosine, sine = np.zeros((2, n)), np.cos(psi), np.sin(psi)
+            stretches[:, planet_index(k) + np.arange(2)] = np.eye(2)
+            stretches[:, at] = [[-cosine, -sine, 0.0], [sine, -cosine, -1.0]]
             stiffness += design.planet.bearing * stretches.T @ stretches
         mass[first:, first:], stiffness[first:, first:] = self.ring.mass, self.ring.stiffness
         return mass, stiffness
@@ -140,25 +131,22 @@ class PlanetaryModel:
     def _fixed_deflection_rows(self) -> np.ndarray:
         """Deflections (m, n) of the meshes per coordinate, without the part of the ring."""
         count, a = self.design.planet.count, np.radians(self.design.mesh.pressure_angle)
-        deflection_rows = np.zeros((2 * count, self.size))
+        rows = np.zeros((2 * count, self.size))
         for k, psi in enumerate(self.angles):
-            deflection_rows[k, SUN : SUN + 3] = -np.sin(psi + a), np.cos(psi + a), 1.0
-            deflection_rows[k, planet_index(k) : planet_index(k) + 3] = np.sin(a), -np.cos(a), 1.0
-            deflection_rows[count + k, planet_index(k) : planet_index(k) + 3] = (
-                -np.sin(a),
-                -np.cos(a),
-                -1.0,
-            )
-        return deflection_rows
+            planet = planet_index(k) + np.arange(3)
+            rows[k, SUN : SUN + 3] = -np.sin(psi + a), np.cos(psi + a), 1.0
+            rows[k, planet] = np.sin(a), -np.cos(a), 1.0
+            rows[count + k, planet] = -np.sin(a), -np.cos(a), -1.0
+        return rows
 
     def deflection_rows(self, t: float) -> np.ndarray:
         """Deflections (m, n) of the meshes per coordinate at a time in s."""
-        out, count = self._fixed_rows.copy(), self.design.planet.count
+        rows, count = self._fixed_rows.copy(), self.design.planet.count
         a = np.radians(self.design.mesh.pressure_angle)
         for k, psi in enumerate(self.angles):
-            along = self.ring.interpolation(self.design.carrier.speed * t + psi)
-            out[count + k, ring_index(self.design) :] = np.cos(a) * along[1] + np.sin(a) * along[0]
-        return out
+            v, w, _ = self.ring.interpolation(self.design.carrier.speed * t + psi)
+            rows[count + k, ring_index(self.design) :] = np.cos(a) * w + np.sin(a) * v
+        return rows
 
     def modal_deflection_rows(self, times: np.ndarray) -> np.ndarray:
         """Deflections (times, m, n) of the meshes per mode."""

@@ -1,5 +1,4 @@
-"""Monitored quantities of a planetary gear train: coordinates of its parts, and the deflections of
-two meshes."""
+"""Monitored quantities of a planetary gear train: coordinates and deflections of two meshes."""
 
 from __future__ import annotations
 
@@ -34,10 +33,6 @@ def monitored_rows(train: PlanetaryModel, steps: TimeStepper, step: int) -> np.n
     """(monitored, n): monitored quantities per unit of each mode, at the end of a step."""
     design, first = train.design, ring_index(train.design)
     fixed = [2, carrier_index(design) + 2, planet_index(0) + 1, first + 3 * RING_NODE + 1]
-    contact = (
-        train.ring.interpolation(design.carrier.speed * step * steps.h)[0] @ train.shapes[first:]
-    )
-    deflection_rows = steps.deflection_rows[step]
-    return np.vstack(
-        [train.shapes[fixed], contact, deflection_rows[0], deflection_rows[design.planet.count]]
-    )
+    outward = train.ring.interpolation(design.carrier.speed * step * steps.h)[0]
+    meshes = steps.deflection_rows[step, [0, design.planet.count]]
+    return np.vstack([train.shapes[fixed], outward @ train.shapes[first:], meshes])

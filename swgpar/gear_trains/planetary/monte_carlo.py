@@ -17,11 +17,9 @@ BLOCK_SIZE = 256
 def simulate(
     steps: TimeStepper, wind: WindLoad, every: int, samples: int, random: np.random.Generator
 ) -> tuple[SampleMoments, int]:
-    """Move `samples` trains on from rest under the steady wind, watching them at every so many
-    steps.
+    """Move `samples` trains on from rest under the steady wind, watched after every `every` steps.
 
-    Returns their moments, and in how many steps of how many samples some mesh did not touch on its
-    loaded flank.
+    Returns their moments, and in how many steps of samples a mesh was off its loaded flank.
     """
     start, flanks = steps.static_equilibrium(wind.steady)
     states = ModalStates(
@@ -34,10 +32,8 @@ def simulate(
         nonlocal turbulence, torque, separated
         for row in range(steps.count // every):
             for k in range(every):
-                turbulence = (
-                    wind.transition @ turbulence
-                    + wind.noise_root @ random.standard_normal((2, samples))
-                )
+                noise = wind.noise_root @ random.standard_normal((2, samples))
+                turbulence = wind.transition @ turbulence + noise
                 before, torque = torque, wind.steady + wind.turbulent @ turbulence
                 np.add(before, torque, out=torques[k])
             separated += steps.simulate(row * every, states, torques, flanks)

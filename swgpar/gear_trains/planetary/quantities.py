@@ -1,5 +1,4 @@
-"""Quantities of a planetary train: results that can be compared with published values, derived
-values of the design."""
+"""What a run of a planetary train gives by name, and values derived from its design."""
 
 from __future__ import annotations
 
@@ -19,15 +18,12 @@ from swgpar.vibration.backlash import force
 
 def quantities(design: PlanetaryDesign) -> dict[str, Quantity]:
     """Results that can be compared with published values."""
+    harmonic = "largest slow harmonic, in cycles per carrier revolution, of the"
     known = {
         "dominant_cycles_ring_contact": Quantity(
-            "largest slow harmonic, in cycles per carrier revolution, of the outward ring "
-            "displacement at planet 1"
+            f"{harmonic} outward ring displacement at planet 1"
         ),
-        "dominant_cycles_ring_node": Quantity(
-            "largest slow harmonic, in cycles per carrier revolution, of the tangential "
-            "displacement of a ring node"
-        ),
+        "dominant_cycles_ring_node": Quantity(f"{harmonic} tangential displacement of a ring node"),
         "out_of_contact": Quantity(
             "share of steps and samples in which a mesh is not in contact on its loaded flank"
         ),
@@ -55,6 +51,7 @@ def derived(design: PlanetaryDesign) -> dict[str, float]:
     forces = force(k, deflection_rows @ start.q[:, 0], train.half_backlash)
     whole = np.diag(train.stiffness) + deflection_rows.T @ (k[:, None] * deflection_rows)
     frequencies = np.sqrt(np.linalg.eigvalsh(whole).clip(0.0)) / (2.0 * np.pi)
+    lowest = float(frequencies[frequencies > 1.0][0])
     sun, planets, centres = radii(design)
     return {
         "coordinates": train.size,
@@ -68,8 +65,6 @@ def derived(design: PlanetaryDesign) -> dict[str, float]:
         "steady torque of the wind (N·m)": wind.steady,
         "flank that carries the load (1 or -1)": float(flanks[0]),
         "largest mesh force at rest (N)": float(np.abs(forces).max()),
-        "lowest natural frequency above 1 Hz, all meshes in contact (Hz)": float(
-            frequencies[frequencies > 1.0][0]
-        ),
+        "lowest natural frequency above 1 Hz, all meshes in contact (Hz)": lowest,
         "highest natural frequency (Hz)": float(frequencies[-1]),
     }

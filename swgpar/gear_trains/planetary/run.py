@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial, reduce
-from typing import Any
+from functools import cached_property, partial, reduce
 
 import numpy as np
 from mpi4py import MPI
@@ -23,35 +21,31 @@ from swgpar.vibration.dominant_cycles import dominant_cycles
 from swgpar.vibration.moments import SampleMoments, columns, largest, percent_errors
 from swgpar.vibration.sampling import block_sizes, random_stream, run_tasks
 
+DOMINANT = {"ring_contact": "ring_contact_radial", "ring_node": "ring_node_tangential"}
+"""Quantities of slow cycles, and whose they are."""
+
 
 class _Case:
-    """A gear train with its time steps. They are built when needed: their matrices take about ten
-    megabytes."""
+    """A gear train with its time steps. count : of the steps"""
 
     def __init__(self, design: PlanetaryDesign, rim: float, count: int) -> None:
-        self.design = design.model_copy(
-            update={"ring": design.ring.model_copy(update={"rim": rim})}
-        )
-        self.count = count
-        self._built: tuple[TimeStepper, WindLoad] | None = None
+        ring = design.ring.model_copy(update={"rim": rim})
+        self.design, self.count = design.model_copy(update={"ring": ring}), count
+        self.every = count // design.time.rows
 
-    def build(self) -> tuple[TimeStepper, WindLoad]:
-        if self._built is None:
-            h = self.design.end / self.count
-            self._built = (
-                TimeStepper(PlanetaryModel(self.design), h, self.count),
-                WindLoad.of(self.design, h),
-            )
-        return self._built
+    @cached_property
+    def steps(self) -> tuple[TimeStepper, WindLoad]:
+        """Built when needed: the matrices take about ten megabytes."""
+        h = self.design.end / self.count
+        stepper = TimeStepper(PlanetaryModel(self.design), h, self.count)
+        return stepper, WindLoad.of(self.design, h)
 
+    def linearised(self) -> TrainMoments:
+        return linearise(*self.steps, self.every)
 
-def _linearised(case: _Case) -> TrainMoments:
-    return linearise(*case.build(), case.count // case.design.time.rows)
-
-
-def _simulated(case: _Case, block: int, size: int) -> tuple[SampleMoments, int]:
-    design, random = case.design, random_stream(case.design.gear_train.seed, block)
-    return simulate(*case.build(), case.count // design.time.rows, size, random)
+    def simulated(self, block: int, size: int) -> tuple[SampleMoments, int]:
+        random = random_stream(self.design.gear_train.seed, block)
+        return simulate(*self.steps, self.every, size, random)
 
 
 def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
@@ -68,24 +62,29 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
         comm.size,
     )
     whole = _Case(design, design.ring.rim, design.time.steps)
-    linearisations: list[Callable[[], Any]] = [
-        partial(_linearised, _Case(design, rim, design.time.linearised_steps)) for rim in rims
-    ]
-    sizes = block_sizes(design.monte_carlo.samples, BLOCK_SIZE)
-    simulations = [partial(_simulated, whole, block, size) for block, size in enumerate(sizes)]
-    done, seconds = run_tasks(comm, [*linearisations, *simulations])
-    moments, simulated = dict(zip(rims, done, strict=False)), done[len(rims) :]
-    samples = reduce(SampleMoments.merged_with, (part for part, _ in simulated))
-    own = moments[design.ring.rim]
+    blocks = enumerate(block_sizes(design.monte_carlo.samples, BLOCK_SIZE))
+    groups = {
+        "linearised": [_Case(design, r, design.time.linearised_steps).linearised for r in rims],
+        "monte_carlo": [partial(whole.simulated, block, size) for block, size in blocks],
+    }
+    done, seconds = run_tasks(comm, groups)
+    moments: dict[float, TrainMoments] = dict(zip(rims, done["linearised"], strict=True))
+    simulated, separated = zip(*done["monte_carlo"], strict=True)
+    samples, own = reduce(SampleMoments.merged_with, simulated), moments[design.ring.rim]
     summary = {
         "sampling_error_percent": 100.0 / np.sqrt(2.0 * samples.count),
         "least_eigenvalue_over_largest": own.smallest_eigenvalue,
         "asymmetry_of_correlations": own.asymmetry,
-        "task_s": {"linearised": seconds[: len(rims)], "monte_carlo": sum(seconds[len(rims) :])},
+        "task_s": seconds | {"monte_carlo": sum(seconds["monte_carlo"])},
     }
-    values = _values(design, moments, samples, sum(separated for _, separated in simulated))
+    history = {
+        "time_s": _times(design),
+        **columns([own], MONITORED, "um", "linearised_"),
+        **columns([samples], MONITORED, "um", "monte_carlo_"),
+    }
     tables = {"rims": _rims(design, moments), "mesh_forces": _forces(design, own)}
-    return TrainResult(_history(design, own, samples), tables, values, summary)
+    values = _values(design, moments, samples, sum(separated))
+    return TrainResult(history, tables, values, summary)
 
 
 def _values(
@@ -94,24 +93,14 @@ def _values(
     samples: SampleMoments,
     separated: int,
 ) -> dict[str, float | list[float]]:
-    """The quantities. separated : number of steps of samples in which some mesh was not on its
-    loaded flank"""
+    """The quantities. separated : steps of samples with a mesh that was off its loaded flank"""
     own, revolutions = moments[design.ring.rim], design.time.revolutions
-    values: dict[str, float | list[float]] = {
-        f"dominant_cycles_{name}": dominant_cycles(
-            own.mean[:, MONITORED_NAMES.index(column)], revolutions
-        )
-        for name, column in (
-            ("ring_contact", "ring_contact_radial"),
-            ("ring_node", "ring_node_tangential"),
-        )
-    }
+    values: dict[str, float | list[float]] = {}
+    for name, column in DOMINANT.items():
+        mean = own.mean[:, MONITORED_NAMES.index(column)]
+        values[f"dominant_cycles_{name}"] = dominant_cycles(mean, revolutions)
     values["out_of_contact"] = separated / (design.time.steps * design.monte_carlo.samples)
-    values |= largest(own, MONITORED)
-    for kind, errors in percent_errors(own, samples).items():
-        values |= {
-            f"error_{kind}_{name}": error for name, error in zip(MONITORED, errors, strict=True)
-        }
+    values |= largest(own, MONITORED) | percent_errors(own, samples, MONITORED_NAMES)
     for rim in design.ring.rims:
         values |= largest(moments[rim], [f"{name}_{number_label(rim)}" for name in MONITORED])
     return values
@@ -121,32 +110,20 @@ def _times(design: PlanetaryDesign) -> np.ndarray:
     return design.end * np.arange(1, design.time.rows + 1) / design.time.rows
 
 
-def _history(design: PlanetaryDesign, moments: TrainMoments, samples: SampleMoments) -> Table:
-    """Means and standard deviations over time, µm."""
-    linearised = columns([moments], MONITORED, "um", 1e6, "linearised_")
-    return {
-        "time_s": _times(design),
-        **linearised,
-        **columns([samples], MONITORED, "um", 1e6, "monte_carlo_"),
-    }
-
-
 def _forces(design: PlanetaryDesign, moments: TrainMoments) -> Table:
     """Mean and mean square of the linearised forces of the meshes of planet 1 after every step."""
     steps = len(moments.force)
-    out = {"time_s": design.end * np.arange(1, steps + 1) / steps}
+    table = {"time_s": design.end * np.arange(1, steps + 1) / steps}
     for k, name in enumerate(("sun", "ring")):
-        out |= {
-            f"mean_{name}_force_N": moments.force[:, k],
-            f"mean_square_{name}_force_N2": moments.square[:, k],
-        }
-    return out
+        table[f"mean_{name}_force_N"] = moments.force[:, k]
+        table[f"mean_square_{name}_force_N2"] = moments.square[:, k]
+    return table
 
 
 def _rims(design: PlanetaryDesign, moments: dict[float, TrainMoments]) -> Table:
     """Means and standard deviations of the linearisation in blocks by rim, µm."""
-    out = {
+    return {
         "rim_mm": np.repeat(design.ring.rims, design.time.rows),
         "time_s": np.tile(_times(design), len(design.ring.rims)),
+        **columns([moments[rim] for rim in design.ring.rims], MONITORED, "um"),
     }
-    return out | columns([moments[rim] for rim in design.ring.rims], MONITORED, "um", 1e6)

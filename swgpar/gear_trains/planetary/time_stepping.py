@@ -1,5 +1,4 @@
-"""Implicit time steps of the planetary gear train in modal coordinates, for one state or many at
-once.
+"""Implicit time steps of the planetary gear train in modal coordinates, for many states at once.
 
 The trapezoidal rule, as in `swgpar/vibration/gear_mesh_system.py`. Each mode q has its own scalar
 equation. The m meshes couple the modes by their elastic forces f and damping forces at the end of
@@ -35,8 +34,7 @@ stiffnesses (1, m) in N/m and constant forces (1, m) in N."""
 
 @dataclass
 class ModalStates:
-    """q : (n, states) modal displacements;  y : 2/h q + velocities;  mesh_term : h/2 D⁻¹ Wᵀ g at
-    the same time"""
+    """q : (n, states) modal displacements;  y : 2/h q + velocities;  mesh_term : h/2 D⁻¹ Wᵀ g"""
 
     q: np.ndarray
     y: np.ndarray
@@ -70,15 +68,11 @@ class TimeStepper:
         self.from_y = 2.0 * inverse
         self.from_torque = 0.5 * h * inverse * train.torque_vector
         self.from_force = 0.5 * h * inverse
-        self.compliance = (self.deflection_rows * self.from_force) @ self.deflection_rows.transpose(
-            0, 2, 1
-        )
-        self.damped = (
-            np.eye(self.deflection_rows.shape[1]) + 2.0 / h * self.compliance * train.mesh_damping
-        )
-        self.contact_inverse = np.linalg.inv(
-            self.damped + self.compliance * self.stiffness[:, None, :]
-        )
+        w = self.deflection_rows
+        self.compliance = (w * self.from_force) @ w.transpose(0, 2, 1)
+        self.damped = np.eye(w.shape[1]) + 2.0 / h * self.compliance * train.mesh_damping
+        in_contact = self.damped + self.compliance * self.stiffness[:, None, :]
+        self.contact_inverse = np.linalg.inv(in_contact)
         self.kernel = PlanetaryStepKernel(
             h,
             train.half_backlash,
@@ -122,45 +116,35 @@ class TimeStepper:
         return solution[None], stiffness[None], constant[None]
 
     def linear(self, step: int, states: ModalStates, torques: np.ndarray, law: MeshLaw) -> None:
-        """Advance states in place by step number `step` with the mesh forces of a linear `law` at
-        its end.
+        """Advance states in place by step number `step` with a linear `law` at its end.
 
         torques : (states,) N·m, sum of the torques at the start and the end
         """
         self.kernel.advance(step - 1, states.q, states.y, states.mesh_term, torques[None], *law)
 
     def free_deflections(self, step: int, states: ModalStates, torques: np.ndarray) -> np.ndarray:
-        """d (m, states): right side of the system for the mesh deflections at the end of a step,
-        m."""
-        q, y, mesh_term = states.q, states.y, states.mesh_term
-        modes = (
-            self.from_q[:, None] * q
-            + self.from_y[:, None] * y
-            - mesh_term
-            + self.from_torque[:, None] * torques
-        )
+        """d (m, states) m: right side of the system for the mesh deflections after a step."""
+        modes = self.from_q[:, None] * states.q + self.from_y[:, None] * states.y
+        modes -= states.mesh_term
+        modes += self.from_torque[:, None] * torques
         w, c = self.deflection_rows[step], self.train.mesh_damping[:, None]
-        return w @ modes + self.compliance[step] @ (c * (w @ y))
+        return w @ modes + self.compliance[step] @ (c * (w @ states.y))
 
     def mesh_term(self, step: int, q: np.ndarray, y: np.ndarray, forces: np.ndarray) -> np.ndarray:
-        """The term h/2 D⁻¹ Wᵀ g (n, states) of meshes with elastic forces (m, states) at the end of
-        a step."""
+        """The term h/2 D⁻¹ Wᵀ g (n, states) for elastic forces (m, states) after a step."""
         w = self.deflection_rows[step]
         damping = self.train.mesh_damping[:, None] * (w @ y - 2.0 / self.h * (w @ q))
         return self.from_force[:, None] * (w.T @ (forces + damping))
 
     def static_equilibrium(self, torque: float) -> tuple[ModalStates, np.ndarray]:
-        """State (one column) at rest under a steady torque (N·m) at time 0, and the flanks (m,) in
-        contact, 1 or -1.
+        """State (one column) at rest under a steady torque (N·m) at time 0, and the flanks (m,).
 
-        The flanks are those that carry the load in the train without backlash.
+        The flanks, 1 or -1, are those that carry the load in the train without backlash.
         """
         train, w, k = self.train, self.deflection_rows[0], self.stiffness[0]
         stiffness = np.diag(train.stiffness) + w.T @ (k[:, None] * w)
         load = train.torque_vector * torque
         flanks = np.sign(w @ np.linalg.solve(stiffness, load))
         q = np.linalg.solve(stiffness, load + w.T @ (k * flanks * train.half_backlash))[:, None]
-        y = 2.0 / self.h * q
-        return ModalStates(
-            q, y, self.mesh_term(0, q, y, force(k[:, None], w @ q, train.half_backlash))
-        ), flanks
+        y, forces = 2.0 / self.h * q, force(k[:, None], w @ q, train.half_backlash)
+        return ModalStates(q, y, self.mesh_term(0, q, y, forces)), flanks
