@@ -1,5 +1,4 @@
-"""Exact time steps of separate modes under forces that vary linearly within a step, and white
-noise."""
+"""Exact time steps of separate modes under forces that are linear in a step, and white noise."""
 
 from __future__ import annotations
 
@@ -10,14 +9,13 @@ from scipy.linalg import expm
 
 
 class ModalStepper:
-    """Separate unit masses with stiffness k and damping c (modes,), advanced exactly by steps of h
-    seconds.
+    """Separate unit masses with stiffness k and damping c (modes,), advanced by steps of h seconds.
 
     The force is linear in a step; white noise has unit intensity, one and the same for all modes.
     """
 
     def __init__(self, k: np.ndarray, c: np.ndarray, h: float) -> None:
-        self.k, n = k, len(k)
+        self.k, self.h, n = k, h, len(k)
         rates = np.zeros((n, 2, 2))
         rates[:, 0, 1], rates[:, 1, 0], rates[:, 1, 1] = 1.0, -k, -c
         # of the state (q, v), the force at the start and its growth
@@ -33,8 +31,7 @@ class ModalStepper:
 
     @cached_property
     def noise(self) -> np.ndarray:
-        """Covariance (2, 2, modes, modes) that the noise of a step leaves: of A X + X A^T = E Q E^T
-        - Q."""
+        """Covariance (2, 2, modes, modes) by the noise of a step: A X + X A^T = E Q E^T - Q."""
         rates = self.rates
         n, eye = len(rates), np.eye(2)
         left = (
@@ -56,17 +53,13 @@ class ModalStepper:
         return qq * q + qv * v + p[0], vq * q + vv * v + p[1]
 
     def spread(self, old: np.ndarray, noises: np.ndarray) -> np.ndarray:
-        """Covariance (2, 2, modes, modes) of displacements and velocities after a step with noises
-        (modes, loads)."""
+        """Covariance (2, 2, modes, modes) of states after a step with noises (modes, loads)."""
         e, common = self.of_state, noises @ noises.T
-        rows = [
-            [e[a, 0][:, None] * old[0, c] + e[a, 1][:, None] * old[1, c] for c in (0, 1)]
-            for a in (0, 1)
-        ]
         new = np.empty_like(old)
         for a in (0, 1):
+            rows = [e[a, 0][:, None] * old[0, c] + e[a, 1][:, None] * old[1, c] for c in (0, 1)]
             for c in (0, 1):
-                new[a, c] = rows[a][0] * e[c, 0] + rows[a][1] * e[c, 1] + common * self.noise[a, c]
+                new[a, c] = rows[0] * e[c, 0] + rows[1] * e[c, 1] + common * self.noise[a, c]
         return new
 
     def noise_root(self) -> np.ndarray:

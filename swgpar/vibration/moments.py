@@ -76,7 +76,8 @@ def percent_errors(
     linearised: HasMoments, simulated: HasMoments, names: Sequence[str]
 ) -> dict[str, float]:
     """Errors of linearised means and deviations, averaged over the second half of the time."""
-    errors, settled = {}, slice(len(linearised.mean) // 2, None)
+    errors: dict[str, float] = {}
+    settled = slice(len(linearised.mean) // 2, None)
     for kind in ("mean", "deviation"):
         ours, theirs = (getattr(one, kind)[settled].mean(axis=0) for one in (linearised, simulated))
         percent = (100.0 * (ours / theirs - 1.0)).tolist()

@@ -16,6 +16,9 @@ from mpi4py import MPI
 from swgpar.errors import ConvergenceError
 from swgpar.tasks import Send, share_tasks
 
+Tasks = Mapping[str, Sequence[Callable[[], Any]]]
+"""Groups of tasks by name."""
+
 
 def random_stream(seed: int, *key: int) -> np.random.Generator:
     """The stream of a seed and a key, such as the number of a block."""
@@ -27,9 +30,7 @@ def block_sizes(count: int, size: int) -> list[int]:
     return [min(size, count - first) for first in range(0, count, size)]
 
 
-def run_tasks(
-    comm: MPI.Comm, groups: Mapping[str, Sequence[Callable[[], Any]]]
-) -> tuple[dict[str, list[Any]], dict[str, list[float]]]:
+def run_tasks(comm: MPI.Comm, groups: Tasks) -> tuple[dict[str, list[Any]], dict[str, list[float]]]:
     """Results and seconds of all tasks by group, on every rank; each task runs on one. Collective.
 
     A ConvergenceError of a task is raised on all ranks.

@@ -25,7 +25,7 @@ from swgpar.gear_trains.cascade.tolerance_stack_up import contributions, sample_
 from swgpar.gear_trains.published import number_label
 from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.log import logger
-from swgpar.vibration.sampling import block_sizes, run_tasks
+from swgpar.vibration.sampling import Tasks, block_sizes, run_tasks
 
 DIRECTIONS: tuple[Direction, ...] = ("B", "A")
 
@@ -44,7 +44,7 @@ def compute(design: CascadeDesign, comm: MPI.Comm) -> TrainResult:
         comm.size,
     )
     blocks = enumerate(block_sizes(design.population.gearboxes, BLOCK_SIZE))
-    groups = {
+    groups: Tasks = {
         "cycle": [partial(one_load_cycle, design)],
         "braked": [partial(braked_load_shares, design, side) for side in DIRECTIONS],
         "stack_up": [partial(sample_stack_up, design, kind) for kind in MESH_COUNTS],

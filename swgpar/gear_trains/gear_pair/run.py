@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial, reduce
 from itertools import product
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -21,7 +22,7 @@ from swgpar.gear_trains.gear_pair.monte_carlo import BLOCK_SIZE, simulate
 from swgpar.gear_trains.gear_pair.quantities import VALUES
 from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.log import logger
-from swgpar.vibration.linearisation import EQUIVALENT, linearise
+from swgpar.vibration.linearisation import EQUIVALENT, Criterion, linearise
 from swgpar.vibration.moments import Moments, SampleMoments, columns, percent_errors
 from swgpar.vibration.sampling import block_sizes, random_stream, run_tasks
 
@@ -31,7 +32,8 @@ BINS = 120
 
 def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
     """All results of a design, the same on all ranks; collective."""
-    cases, steps = range(len(design.load.input)), (design.step, design.steps, design.every)
+    cases, seed = range(len(design.load.input)), design.gear_train.seed
+    steps = design.step, design.steps, design.every
     logger.info(
         "gear pair: %d cases, %d steps of %.3g s, %d simulations of each; %d ranks",
         len(cases),
@@ -43,13 +45,14 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
     pairs = [(gear_pair_system(design, case), static_equilibrium(design, case)) for case in cases]
     keys = list(product(cases, EQUIVALENT))
     sizes = list(enumerate(block_sizes(design.monte_carlo.samples, BLOCK_SIZE)))
-    groups = {"linearised": [partial(linearise, *pairs[case], *steps, key) for case, key in keys]}
-    for case in cases:
+    groups: dict[str, list[Callable[[], Any]]] = {"linearised": []}
+    for case, criterion in keys:
+        system, start = pairs[case]
+        groups["linearised"].append(partial(linearise, system, start, *steps, criterion))
+    for case, (system, start) in enumerate(pairs):
         groups[f"case {case}"] = [
-            partial(
-                simulate, *pairs[case], *steps, size, random_stream(design.gear_train.seed, case, k)
-            )
-            for k, size in sizes
+            partial(simulate, system, start, *steps, size, random_stream(seed, case, block))
+            for block, size in sizes
         ]
     done, seconds = run_tasks(comm, groups)
     rows = np.vstack([np.eye(len(COORDINATES)), DEFLECTION_ROW])
@@ -64,8 +67,8 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
         for method in EQUIVALENT:
             names = [f"{method}_{value}_{case + 1}" for value in VALUES]
             values |= percent_errors(moments[case, method], samples[case], names)
-        by_method = {method: moments[case, method] for method in EQUIVALENT}
-        tables[f"density_{case + 1}"] = _density(final, by_method)
+        ends = {method: moments[case, method] for method in EQUIVALENT}
+        tables[f"density_{case + 1}"] = _density(final, ends)
     times = design.time.end * np.arange(1, design.time.rows + 1) / design.time.rows
     history = {
         "case": np.repeat([case + 1 for case in cases], design.time.rows),
@@ -84,12 +87,12 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
     return TrainResult(history, tables, values, summary)
 
 
-def _density(final: np.ndarray, by_method: Mapping[str, Moments]) -> Table:
+def _density(final: np.ndarray, ends: Mapping[Criterion, Moments]) -> Table:
     """Probability densities of the mesh deflection at the end, per µm. final : (samples,) m"""
     counts, edges = np.histogram(1e6 * final, bins=BINS, density=True)
     middle = 0.5 * (edges[1:] + edges[:-1])
     table = {"mesh_deflection_um": middle, "monte_carlo": counts}
-    for method, moments in by_method.items():
+    for method, moments in ends.items():
         mean, deviation = 1e6 * moments.mean[-1, -1], 1e6 * moments.deviation[-1, -1]
         table[method] = norm.pdf(middle, mean, deviation)
     return table

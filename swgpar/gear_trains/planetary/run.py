@@ -19,7 +19,7 @@ from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.log import logger
 from swgpar.vibration.dominant_cycles import dominant_cycles
 from swgpar.vibration.moments import SampleMoments, columns, largest, percent_errors
-from swgpar.vibration.sampling import block_sizes, random_stream, run_tasks
+from swgpar.vibration.sampling import Tasks, block_sizes, random_stream, run_tasks
 
 DOMINANT = {"ring_contact": "ring_contact_radial", "ring_node": "ring_node_tangential"}
 """Quantities of slow cycles, and whose they are."""
@@ -63,7 +63,7 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
     )
     whole = _Case(design, design.ring.rim, design.time.steps)
     blocks = enumerate(block_sizes(design.monte_carlo.samples, BLOCK_SIZE))
-    groups = {
+    groups: Tasks = {
         "linearised": [_Case(design, r, design.time.linearised_steps).linearised for r in rims],
         "monte_carlo": [partial(whole.simulated, block, size) for block, size in blocks],
     }

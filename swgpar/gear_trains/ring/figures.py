@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from swgpar.gear_trains.drawing import axes
-from swgpar.gear_trains.result import TrainResult
+from swgpar.gear_trains.drawing import MomentCurve, axes, draw_moments
+from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.gear_trains.ring.quantities import POINTS
 from swgpar.results.figure_set import Drawings
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+ANGLE = "angle of the first load (rad)"
 
 SCALE = 0.15
 """Largest displacement of a drawn mode over the radius."""
@@ -21,12 +23,12 @@ SCALE = 0.15
 
 def drawings(result: TrainResult) -> Drawings:
     """All figures of a run."""
-    found = {"mode_shapes": partial(_shapes, result)}
-    if result.summary["design"]["moving_load"] is not None:
-        found |= {f"speeds_{point}": partial(_speeds, result, point) for point in POINTS}
-        found |= {f"monte_carlo_{point}": partial(_monte_carlo, result, point) for point in POINTS}
-        found["critical_speeds"] = partial(_critical, result)
-    return found
+    figures = {"mode_shapes": partial(_shapes, result)}
+    if result.design_table["moving_load"] is not None:
+        figures |= {f"speeds_{name}": partial(_speeds, result, name) for name in POINTS}
+        figures |= {f"monte_carlo_{name}": partial(_monte_carlo, result, name) for name in POINTS}
+        figures["critical_speeds"] = partial(_critical, result)
+    return figures
 
 
 def _shapes(result: TrainResult) -> Figure:
@@ -34,9 +36,9 @@ def _shapes(result: TrainResult) -> Figure:
 
     modes, table = result.tables["modes"], result.tables["mode_shapes"]
     count = sum(name.startswith("outward") for name in table)
-    figure = Figure(figsize=(7.5, 2.6 * ((count + 2) // 3)), layout="constrained")
-    angle = table["angle_rad"]
-    for k, axis in enumerate(figure.subplots((count + 2) // 3, 3, squeeze=False).ravel(), start=1):
+    rows, angle = (count + 2) // 3, table["angle_rad"]
+    figure = Figure(figsize=(7.5, 2.6 * rows), layout="constrained")
+    for k, axis in enumerate(figure.subplots(rows, 3, squeeze=False).ravel(), start=1):
         axis.set_axis_off()
         if k > count:
             continue
@@ -50,66 +52,42 @@ def _shapes(result: TrainResult) -> Figure:
     return figure
 
 
+def _at_speed(table: Table, point: str, speed: float, label: str, style: str) -> MomentCurve:
+    rows = table["speed_rad_s"] == speed
+    mean, deviation = (1e6 * table[f"{kind}_{point}_m"][rows] for kind in ("mean", "deviation"))
+    return MomentCurve(table["angle_rad"][rows], mean, deviation, label, style)
+
+
 def _speeds(result: TrainResult, point: str) -> Figure:
     table = result.history
-    figure, panels = axes(
-        POINTS[point], "angle of the first load (rad)", "mean (µm)", "standard deviation (µm)"
-    )
-    for speed in dict.fromkeys(table["speed_rad_s"].tolist()):
-        rows = table["speed_rad_s"] == speed
-        for axis, kind in zip(panels, ("mean", "deviation"), strict=True):
-            axis.plot(
-                table["angle_rad"][rows],
-                1e6 * table[f"{kind}_{point}_m"][rows],
-                lw=0.9,
-                label=f"{speed:g} rad/s",
-            )
-    panels[0].legend(fontsize=8)
-    return figure
+    curves = [
+        _at_speed(table, point, speed, f"{speed:g} rad/s", "-")
+        for speed in dict.fromkeys(table["speed_rad_s"].tolist())
+    ]
+    return draw_moments(POINTS[point], ANGLE, curves)
 
 
 def _monte_carlo(result: TrainResult, point: str) -> Figure:
-    table, simulated = result.history, result.tables["monte_carlo"]
-    speed = table["speed_rad_s"][0]
-    rows = table["speed_rad_s"] == speed
-    title = f"{POINTS[point]}, {speed:g} rad/s"
-    figure, panels = axes(
-        title, "angle of the first load (rad)", "mean (µm)", "standard deviation (µm)"
-    )
-    for axis, kind in zip(panels, ("mean", "deviation"), strict=True):
-        axis.plot(
-            simulated["angle_rad"],
-            1e6 * simulated[f"{kind}_{point}_m"],
-            "k",
-            lw=0.7,
-            label="Monte Carlo",
-        )
-        axis.plot(
-            table["angle_rad"][rows],
-            1e6 * table[f"{kind}_{point}_m"][rows],
-            "C0--",
-            label="mean and covariance",
-        )
-    panels[0].legend(fontsize=8)
-    return figure
+    table, speed = result.tables["monte_carlo"], result.history["speed_rad_s"][0]
+    mean, deviation = (1e6 * table[f"{kind}_{point}_m"] for kind in ("mean", "deviation"))
+    curves = [
+        MomentCurve(table["angle_rad"], mean, deviation, "Monte Carlo", "k"),
+        _at_speed(result.history, point, speed, "mean and covariance", "C0--"),
+    ]
+    return draw_moments(f"{POINTS[point]}, {speed:g} rad/s", ANGLE, curves)
 
 
 def _critical(result: TrainResult) -> Figure:
     table = result.tables["critical_speeds"]
     panels = ("mean over that of the first", "deviation over that of the first")
-    figure, (upper, lower) = axes(
-        "largest displacements against the speed", "speed (rad/s)", *panels
-    )
+    title, speed = "largest displacements against the speed", table["speed_rad_s"]
+    figure, (upper, lower) = axes(title, "speed (rad/s)", *panels)
     for k, (point, label) in enumerate(POINTS.items()):
-        mean, deviation, still = (
-            table[f"{n}_{point}_m"] for n in ("mean", "deviation", "without_inertia")
-        )
-        upper.plot(table["speed_rad_s"], mean / mean[0], f"C{k}", lw=1.0, label=label)
-        upper.plot(
-            table["speed_rad_s"], still / mean[0], "k:", lw=0.9, label=None if k else "quasi-static"
-        )
-        lower.plot(table["speed_rad_s"], deviation / deviation[0], f"C{k}", lw=1.0)
-    upper.legend(
-        fontsize=8, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0)
-    )  # the curves fill the panel
+        mean, deviation = table[f"mean_{point}_m"], table[f"deviation_{point}_m"]
+        still, label_of_still = table[f"without_inertia_{point}_m"], None if k else "quasi-static"
+        upper.plot(speed, mean / mean[0], f"C{k}", lw=1.0, label=label)
+        upper.plot(speed, still / mean[0], "k:", lw=0.9, label=label_of_still)
+        lower.plot(speed, deviation / deviation[0], f"C{k}", lw=1.0)
+    # the curves fill the panel
+    upper.legend(fontsize=8, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0))
     return figure

@@ -28,11 +28,8 @@ from swgpar.vibration.moments import Moments, SampleMoments
 
 @dataclass(frozen=True)
 class Response(Moments):
-    """Outward displacements (rows, 2) in the last revolution: moving point of the first load,
-    middle node.
-
-    angle : (rows,) rad, of the first load
-    """
+    """Outward displacements (rows, 2) in the last revolution: at the first load, at the middle
+    node. angle : (rows,) rad, of the first load"""
 
     angle: np.ndarray
 
@@ -57,78 +54,64 @@ class MovingLoads:
         self.middle = self.shapes[3 * middle_node(design)]
 
     def forces(self, step: int, time: float, speed: float) -> np.ndarray:
-        """Modal forces (modes,) of the steady and harmonic parts at the end of a step, at a time in
-        s."""
+        """Modal forces (modes,) of the steady and harmonic parts after a step, at a time in s."""
         load = self.load
         ahead = 2.0 * np.pi * np.arange(load.loads) / load.loads
         sizes = load.force + load.harmonic * np.sin(load.frequency * (time + ahead / speed))
-        return (
-            sizes
-            @ self.load_vectors[[self._position_index(2 * step, k) for k in range(load.loads)]]
-        )
+        return sizes @ self._at_loads(2 * step)
 
     def noises(self, step: int) -> np.ndarray:
         """Modal forces (modes, loads) of unit white noises, in the middle of a step."""
-        return (
-            self.load.noise
-            * np.array(
-                [
-                    self.load_vectors[self._position_index(2 * step - 1, k)]
-                    for k in range(self.load.loads)
-                ]
-            ).T
-        )
+        return self.load.noise * self._at_loads(2 * step - 1).T
 
-    def _position_index(self, half_steps: int, number: int) -> int:
-        count = len(self.load_vectors)
-        return (half_steps + number * count // self.load.loads) % count
+    def _at_loads(self, half_steps: int) -> np.ndarray:
+        """Modal forces (loads, modes) of unit loads after so many half steps."""
+        count, loads = len(self.load_vectors), self.load.loads
+        return self.load_vectors[(half_steps + np.arange(loads) * count // loads) % count]
+
+    def _modes(self, speed: float) -> ModalStepper:
+        """The modes with the steps of a speed (rad/s)."""
+        stiffness = self.frequencies**2
+        damping = self.load.damping_mass + self.load.damping_stiffness * stiffness
+        return ModalStepper(stiffness, damping, 2.0 * np.pi / speed / self.load.steps)
+
+    def _monitored(self, step: int) -> np.ndarray:
+        """Outward displacements (2, modes) of `Response` per mode, at the end of a step."""
+        return np.stack([self.outward[step % self.load.steps], self.middle])
 
     def respond(self, speed: float) -> Response:
-        """Response at a speed (rad/s), from the static deflection under the loads at their initial
-        positions."""
-        load, n = self.load, self.load.steps
-        h = 2.0 * np.pi / speed / n
-        modes = ModalStepper(
-            self.frequencies**2, load.damping_mass + load.damping_stiffness * self.frequencies**2, h
-        )
+        """Response at a speed (rad/s), from the static deflection under the loads at the start."""
+        load, n, modes = self.load, self.load.steps, self._modes(speed)
         force = self.forces(0, 0.0, speed)
         q, v = force / modes.k, np.zeros_like(force)
         spread = np.zeros((2, 2, len(q), len(q)))
         mean, deviation = np.empty((n, 2)), np.empty((n, 2))
         for step in range(1, load.revolutions * n + 1):
-            before, force = force, self.forces(step % n, step * h, speed)
+            before, force = force, self.forces(step % n, step * modes.h, speed)
             q, v = modes.step(q, v, before, force)
             spread = modes.spread(spread, self.noises(step % n))
             row = step - (load.revolutions - 1) * n - 1
             if row >= 0:
-                monitored = np.stack([self.outward[step % n], self.middle])
+                monitored = self._monitored(step)
                 mean[row] = monitored @ q
-                deviation[row] = np.sqrt(
-                    np.maximum(np.einsum("pi,ij,pj->p", monitored, spread[0, 0], monitored), 0.0)
-                )
+                variance = np.einsum("pi,ij,pj->p", monitored, spread[0, 0], monitored)
+                deviation[row] = np.sqrt(np.maximum(variance, 0.0))
         return Response(mean, deviation, 2.0 * np.pi * np.arange(1, n + 1) / n)
 
     def quasi_static(self, speed: float) -> np.ndarray:
-        """Mean displacements (rows, 2), m, as in `Response` of a ring without inertia and
-        damping."""
+        """Mean displacements (rows, 2) m of a ring without inertia and damping."""
         load, n = self.load, self.load.steps
         h, mean = 2.0 * np.pi / speed / n, np.empty((n, 2))
         for row in range(n):
             step = (load.revolutions - 1) * n + row + 1
             force = self.forces(step % n, step * h, speed)
-            mean[row] = np.stack([self.outward[step % n], self.middle]) @ (
-                force / self.frequencies**2
-            )
+            mean[row] = self._monitored(step) @ (force / self.frequencies**2)
         return mean
 
     def simulate(self, speed: float, samples: int, random: np.random.Generator) -> SampleMoments:
-        """The displacements (rows, 2) of `Response` in `samples` simulations at a speed; noise
-        alone varies."""
-        load, n = self.load, self.load.steps
-        h = 2.0 * np.pi / speed / n
-        modes = ModalStepper(
-            self.frequencies**2, load.damping_mass + load.damping_stiffness * self.frequencies**2, h
-        )
+        """The displacements (rows, 2) of `Response` in `samples` simulations; noise alone
+        varies."""
+        load, n, modes = self.load, self.load.steps, self._modes(speed)
         root = modes.noise_root()
         force = self.forces(0, 0.0, speed)
         q, v = np.tile(force / modes.k, (samples, 1)), np.zeros((samples, len(force)))
@@ -136,13 +119,13 @@ class MovingLoads:
         def rows() -> Iterator[np.ndarray]:
             nonlocal q, v, force
             for step in range(1, load.revolutions * n + 1):
-                before, force = force, self.forces(step % n, step * h, speed)
+                before, force = force, self.forces(step % n, step * modes.h, speed)
                 q, v = modes.step(q, v, before, force)
                 for noise in self.noises(step % n).T:
                     shaken = random.standard_normal((samples, root.shape[1])) @ root.T
                     q += noise * shaken[:, : len(noise)]
                     v += noise * shaken[:, len(noise) :]
                 if step > (load.revolutions - 1) * n:
-                    yield np.stack([self.outward[step % n], self.middle]) @ q.T
+                    yield self._monitored(step) @ q.T
 
         return SampleMoments.of(rows())

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial, reduce
-from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -19,7 +17,7 @@ from swgpar.log import logger
 from swgpar.vibration.curved_beam import free_frequencies
 from swgpar.vibration.dominant_cycles import dominant_cycles
 from swgpar.vibration.moments import HasMoments, Moments, SampleMoments, columns, largest
-from swgpar.vibration.sampling import block_sizes, random_stream, run_tasks
+from swgpar.vibration.sampling import Tasks, block_sizes, random_stream, run_tasks
 
 ROWS = 400
 """Of the history of each speed."""
@@ -37,22 +35,15 @@ def compute(design: RingDesign, comm: MPI.Comm) -> TrainResult:
     """All results of a design, the same on all ranks; collective."""
     logger.info("elastic ring: %d elements; %d ranks", design.ring.elements, comm.size)
     frequencies, shapes = distinct_frequencies(design, design.ring.modes)
-    section = design.beam_section()
-    unit = np.sqrt(
-        section.density * section.area * section.radius**4 / (section.E * section.inertia)
-    )
+    section, number = design.beam_section(), np.arange(1, len(frequencies) + 1)
+    stiffness, line_mass = section.E * section.inertia, section.density * section.area
+    unit = np.sqrt(line_mass * section.radius**4 / stiffness)
     values: dict[str, float | list[float]] = {
         "frequencies": frequencies.tolist(),
         "dimensionless_frequencies": (2.0 * np.pi * frequencies * unit).tolist(),
     }
-    free = np.array([free_frequencies(section, n)[0] for n in range(2, 2 + len(frequencies))]) / (
-        2.0 * np.pi
-    )
-    modes = {
-        "mode": np.arange(1, len(frequencies) + 1),
-        "frequency_Hz": frequencies,
-        "free_ring_Hz": free,
-    }
+    free = np.array([free_frequencies(section, n + 1)[0] for n in number]) / (2.0 * np.pi)
+    modes = {"mode": number, "frequency_Hz": frequencies, "free_ring_Hz": free}
     tables = {"modes": modes, "mode_shapes": _shapes(design, shapes[:, :SHAPES])}
     if design.moving_load is None:
         return TrainResult(modes, tables, values)
@@ -60,51 +51,42 @@ def compute(design: RingDesign, comm: MPI.Comm) -> TrainResult:
     for speed, response in zip(design.moving_load.speeds, responses, strict=True):
         values |= largest(response, [f"{point}_{number_label(speed)}" for point in POINTS])
     values["critical_speeds"] = _peaks(curve)
-    values |= {
-        f"dominant_cycles_{point}": dominant_cycles(responses[0].mean[:, k])
-        for k, point in enumerate(POINTS)
-    }
+    for point, mean in zip(POINTS, responses[0].mean.T, strict=True):
+        values[f"dominant_cycles_{point}"] = dominant_cycles(mean)
     tables |= {"critical_speeds": curve, "monte_carlo": simulated}
     return TrainResult(_history(design, responses), tables, values)
 
 
 def _moving(design: RingDesign, comm: MPI.Comm) -> tuple[list[Response], Table, Table]:
     """Responses at all speeds, the curve of critical speeds, and Monte Carlo at the first speed."""
-    load = design.moving_load
-    loads = MovingLoads(design)
-    slowest, fastest = load.sweep
-    sweep = np.linspace(slowest, fastest, load.sweep_speeds)
-    sizes = block_sizes(load.samples, BLOCK_SIZE)
-    tasks: list[Callable[[], Any]] = [
-        partial(loads.respond, float(speed)) for speed in (*load.speeds, *sweep)
-    ]
-    simulations = [
-        partial(loads.simulate, load.speeds[0], size, random_stream(design.gear_train.seed, block))
-        for block, size in enumerate(sizes)
-    ]
-    done, _ = run_tasks(comm, [*tasks, *simulations])
-    responses, parts = done[: len(load.speeds)], done[len(load.speeds) : len(tasks)]
+    load, loads, seed = design.moving_load, MovingLoads(design), design.gear_train.seed
+    sweep = np.linspace(load.sweep[0], load.sweep[1], load.sweep_speeds)
+    groups: Tasks = {
+        "speeds": [partial(loads.respond, speed) for speed in load.speeds],
+        "sweep": [partial(loads.respond, float(speed)) for speed in sweep],
+        "monte_carlo": [
+            partial(loads.simulate, load.speeds[0], size, random_stream(seed, block))
+            for block, size in enumerate(block_sizes(load.samples, BLOCK_SIZE))
+        ],
+    }
+    done, _ = run_tasks(comm, groups)
+    still = np.array([np.abs(loads.quasi_static(speed)).max(axis=0) for speed in sweep])
+    mean = np.array([np.abs(part.mean).max(axis=0) for part in done["sweep"]])
+    deviation = np.array([part.deviation.max(axis=0) for part in done["sweep"]])
     curve = {"speed_rad_s": sweep}
     for k, point in enumerate(POINTS):
-        curve |= {
-            f"mean_{point}_m": np.array([np.abs(part.mean[:, k]).max() for part in parts]),
-            f"deviation_{point}_m": np.array([part.deviation[:, k].max() for part in parts]),
-            f"without_inertia_{point}_m": np.array(
-                [np.abs(loads.quasi_static(s)[:, k]).max() for s in sweep]
-            ),
-        }
-    sums = reduce(SampleMoments.merged_with, done[len(tasks) :])
-    return (
-        responses,
-        curve,
-        {"angle_rad": responses[0].angle[_rows(load)]}
-        | columns([_thinned(load, sums)], POINTS, "m"),
-    )
+        curve[f"mean_{point}_m"] = mean[:, k]
+        curve[f"deviation_{point}_m"] = deviation[:, k]
+        curve[f"without_inertia_{point}_m"] = still[:, k]
+    responses = done["speeds"]
+    samples = _thinned(load, reduce(SampleMoments.merged_with, done["monte_carlo"]))
+    simulated = {"angle_rad": responses[0].angle[_rows(load)], **columns([samples], POINTS, "m")}
+    return responses, curve, simulated
 
 
 def _peaks(curve: Table) -> list[float]:
-    """Speeds of the highest local peaks of the middle node, ascending; NaN where there are fewer
-    than PEAKS."""
+    """Speeds of the highest local peaks of the middle node, ascending, NaN for
+    those that there are not."""
     speed, mean = curve["speed_rad_s"], curve["mean_middle_node_m"]
     inner = 1 + np.flatnonzero((mean[1:-1] > mean[:-2]) & (mean[1:-1] >= mean[2:]))
     highest = np.sort(speed[inner[np.argsort(mean[inner])[::-1][:PEAKS]]])
@@ -112,26 +94,25 @@ def _peaks(curve: Table) -> list[float]:
 
 
 def _shapes(design: RingDesign, shapes: np.ndarray) -> Table:
-    """Outward and tangential displacement around the ring, each mode with its largest displacement
-    1."""
+    """Outward and tangential displacement around the ring, the largest of each mode is 1."""
     ring, angle = design.elastic_ring(), np.linspace(0.0, 2.0 * np.pi, AROUND)
     values = np.array([ring.interpolation(a)[:2] @ shapes for a in angle])
     values /= np.abs(values).max(axis=(0, 1))
-    out = {"angle_rad": angle}
-    for k in range(shapes.shape[1]):
-        out |= {f"outward_{k + 1}": values[:, 0, k], f"tangential_{k + 1}": values[:, 1, k]}
-    return out
+    table = {"angle_rad": angle}
+    for k, (outward, tangential) in enumerate(values.transpose(2, 1, 0), start=1):
+        table |= {f"outward_{k}": outward, f"tangential_{k}": tangential}
+    return table
 
 
 def _history(design: RingDesign, responses: list[Response]) -> Table:
     """Means and standard deviations in the last revolution, in blocks by speed."""
     load = design.moving_load
     angle = responses[0].angle[_rows(load)]
-    out = {
+    return {
         "speed_rad_s": np.repeat(load.speeds, len(angle)),
         "angle_rad": np.tile(angle, len(responses)),
+        **columns([_thinned(load, response) for response in responses], POINTS, "m"),
     }
-    return out | columns([_thinned(load, response) for response in responses], POINTS, "m")
 
 
 def _rows(load: MovingLoad) -> slice:
