@@ -211,8 +211,7 @@ class DistributingCoupling(NodeMeans):
 
 
 class RadialGuide:
-    """Rigid ring in which the ring gear rotates as the output: its outer nodes stay on their circle
-    (section 5.8).
+    """Rigid ring around the ring gear as output: outer nodes stay on their circle (section 5.8).
 
     Stiff radial springs, as hard as contact; the nodes are free along the circle and the axis.
 

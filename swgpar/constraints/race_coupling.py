@@ -1,8 +1,7 @@
 """The outer race of a bearing rotates with the flexible spline, and stays in its plane.
 
 Contact and balls are frictionless: nothing else keeps the race from rotating in the spline.
-Friction would take it along with the spline. The condition carries no torque, because the race is
-the same all round.
+Friction would take it along. The condition carries no torque: the race is the same all round.
 """
 
 from __future__ import annotations

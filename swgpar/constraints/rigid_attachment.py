@@ -1,8 +1,7 @@
 """Closed end or flange on a rigid flange, which is the output or stands still.
 
 Both faces of the attached area move as one rigid body about the drive's axis. They are bedded on it
-with the stiffness of a contact, per area: no stiffer than what the elements resolve, and no number
-of the result. The energy is
+with the stiffness of a contact, per area, no stiffer than what the elements resolve. The energy is
 
     E = k / 2 sum a |x - R(phi) X - offset|^2,   phi = atan2(sum a (X x x)_z, sum a (X . x)),
 

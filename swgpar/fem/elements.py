@@ -51,8 +51,7 @@ class AssembledElements:
 def sectors_seen(partition: Partition, body: str) -> np.ndarray:
     """Indices (n,) in the chain of the sectors that a rank needs: its own and one on either side.
 
-    The owned rows need the sector before them, nodal averages of stress need both; none where the
-    rank owns none.
+    Owned rows need the sector before them, nodal averages of stress both; none if a rank owns none.
     """
     layout = partition.layouts[body]
     first, end = partition.owned_sectors(body)
@@ -63,8 +62,7 @@ def sectors_seen(partition: Partition, body: str) -> np.ndarray:
 class BodyElements:
     """The elements of one body as one rank sees them. A condensed sector is a single element.
 
-    partition, body : ownership, and name of the body
-    local : nodes of this rank
+    partition, body : ownership, and name of the body;  local : nodes of this rank
 
     Attributes:
     layout : BodyLayout
@@ -224,8 +222,7 @@ class TangentPattern:
 class Elements:
     """All bodies' elements on one rank: residual and tangent of the structure.
 
-    partition : ownership
-    symmetric : keep the tangent's upper triangle only
+    partition : ownership;  symmetric : keep the tangent's upper triangle only
 
     Attributes:
     local : nodes of this rank that its elements, multipliers and averages of stress need

@@ -2,8 +2,7 @@
 
 Rank r owns a contiguous range of the sectors of every body, so that node numbers, owners and
 neighbours follow from arithmetic and no global array is stored. Displacement unknowns are numbered
-in blocks of three per node. Nodes that are fixed to the frame and nodes inside of condensed sectors
-have none.
+in blocks of three per node. Fixed nodes and nodes inside of condensed sectors have none.
 """
 
 from __future__ import annotations

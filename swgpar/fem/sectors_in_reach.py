@@ -1,12 +1,10 @@
 """What flanks cannot reach is modelled with less.
 
 Ring-gear sectors that no tooth of the flexible spline can reach are left out: the frame supports
-them, and their effect on the loaded teeth decays within a few pitches. Their elements are dropped
-and their nodes are fixed: the tangent has no rows of them.
+them, and their effect on loaded teeth decays within a few pitches. The tangent has no rows of them.
 
 Teeth of solid gears that reach no flank are one element each (`condensed_parts.py`). The tangent
-has no rows of the nodes inside of them either; their displacement follows from that of the tooth's
-rim.
+has no rows of the nodes inside of them either; their displacement follows from the tooth's rim.
 """
 
 from __future__ import annotations
@@ -87,8 +85,7 @@ class RingSectors(SectorsInReach):
 class WholeTeeth(SectorsInReach):
     """Teeth of a body that are not one element; no flank of the others may touch. `body` : its name
 
-    The choice follows from the shape at the search alone, so that one that repeats after a period
-    has the same teeth.
+    The choice follows from the shape at the search alone: one that repeats has the same teeth.
     """
 
     LEAST, MARGIN, MOST = 1, 1, 1

@@ -57,11 +57,8 @@ class RoundedLine:
         radius, turning = self.rounding[k], self.turning()[k - 1]
         if radius == 0.0 or turning == 0.0:
             return None
-        before, after, reach = (
-            self._along[k - 1],
-            self._along[k],
-            radius * np.tan(0.5 * abs(turning)),
-        )
+        before, after = self._along[k - 1 : k + 1]
+        reach = radius * np.tan(0.5 * abs(turning))
         start = self.points[k] - reach * before
         normal = np.sign(turning) * np.array([-before[1], before[0]])
         return Arc(start, self.points[k] + reach * after, start + radius * normal)
@@ -82,11 +79,8 @@ class RoundedLine:
                 at = self.points[k] if arc is None else arc.end
             if arc is not None:
                 pieces.append((arc.start, arc.end, arc.center))
-        return [
-            piece
-            for piece in [*pieces, (at, self.points[-1], None)]
-            if piece[1][0] - piece[0][0] > SAME
-        ]
+        pieces.append((at, self.points[-1], None))
+        return [piece for piece in pieces if piece[1][0] - piece[0][0] > SAME]
 
     def corners(self) -> Floats:
         """Distances (n,) mm of the points at which the line turns."""
@@ -97,12 +91,8 @@ class RoundedLine:
         """Distance (mm) as far as which the line keeps its first radius."""
         if self.points[1, 1] != self.points[0, 1]:
             return 0.0
-        starts = [
-            *(float(arc.start[0]) for arc in self.arcs()),
-            *self.corners().tolist(),
-            float(self.points[-1, 0]),
-        ]
-        return min(starts)
+        arcs = [arc.start[0] for arc in self.arcs()]
+        return float(min([*arcs, *self.corners(), self.points[-1, 0]]))
 
     def radius(self, distance: Floats) -> Floats:
         """Radii (n,) mm at distances (n,) mm."""
@@ -148,11 +138,8 @@ class CupWall:
     @property
     def center(self) -> tuple[float, float]:
         """Radius and z (mm) of the centre of the fillet's curves."""
-        r = (
-            self.inner.points[-1, 1] + self.fillet
-            if self.outwards
-            else self.outer.points[-1, 1] - self.fillet
-        )
+        inner, outer = self.inner.points[-1, 1], self.outer.points[-1, 1]
+        r = inner + self.fillet if self.outwards else outer - self.fillet
         return float(r), self.end - self.fillet
 
     @property
@@ -173,14 +160,13 @@ class CupWall:
 
         usual : (m,) mm, from 0 to `length`;  first : mm, as far as which they stay
         """
-        corners = np.unique(np.concatenate([line.corners() for line in (self.inner, self.outer)]))
-        arcs = [arc for line in (self.inner, self.outer) for arc in line.arcs()]
+        corners = np.union1d(self.inner.corners(), self.outer.corners())
+        arcs = [*self.inner.arcs(), *self.outer.arcs()]
         ends = np.array([point[0] for arc in arcs for point in (arc.start, arc.end)])
         keep = np.concatenate([usual[usual <= first], usual[-1:], corners])
         stations = usual
-        for (
-            at
-        ) in corners:  # all of them: between two that are close the wall may change its thickness
+        # all of them: between two that are close the wall may change its thickness
+        for at in corners:
             stations = with_station(stations, at, keep, room=0.0)
         for at in ends:
             stations = with_station(stations, at, keep)

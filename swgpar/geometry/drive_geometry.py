@@ -17,8 +17,7 @@ THICK_CUP = 0.85
 class GearGeometry:
     """A gear.
 
-    profile : exact flank, with the number of teeth;  rim : mm, thickness below the root circle
-    ends : mm, of the teeth along z
+    profile : exact flank;  rim : mm, thickness below the root circle;  ends : mm, of teeth along z
     """
 
     profile: ToothProfile

@@ -45,12 +45,9 @@ class GearDeviations:
     def is_twofold(self) -> bool:
         """Whether the gear equals itself rotated by 180 degrees."""
         teeth = len(self.pitch)
-        return (
-            teeth % 2 == 0
-            and np.array_equal(np.roll(self.pitch, teeth // 2), self.pitch)
-            and not self.shift.any()
-            and not self.tilt.any()
-        )
+        centred = not self.shift.any() and not self.tilt.any()
+        twofold = teeth % 2 == 0 and np.array_equal(np.roll(self.pitch, teeth // 2), self.pitch)
+        return centred and twofold
 
     def moved(self, points: np.ndarray, angle: np.ndarray) -> np.ndarray:
         """Displacement (n_teeth, n, 2) mm, in the teeth's frames, of points (n, 2) mm of one tooth.
@@ -77,8 +74,7 @@ class GearDeviations:
         """Height (n,) mm of the profile over the ideal one at s (n,) mm, and its derivative by s.
 
         The slope raises the tip end by half of it and lowers the root end of the active profile by
-        half of it. The form is one wave of that height, high at both ends. Both fade out where
-        crowning does.
+        half of it. The form is one wave, high at both ends. Both fade out where crowning does.
         """
         end = profile.root_start
 
@@ -101,10 +97,8 @@ class GearDeviations:
         mirror = MIRROR if side < 0 else np.ones(2)
         points, normal = profile.point(s) * mirror, profile.normal(s) * mirror
         moved = self.moved(points, angle)
-        moved = (
-            moved
-            + z[:, None] * rotated(np.broadcast_to(self.tilt, (len(angle), 2)), -angle)[:, None, :]
-        )
+        tilt = rotated(np.broadcast_to(self.tilt, (len(angle), 2)), -angle)
+        moved = moved + z[:, None] * tilt[:, None, :]
         return np.einsum("tni,ni->tn", moved, normal) + self.profile_height(profile, s)[0]
 
     def flank_shift(

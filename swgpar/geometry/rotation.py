@@ -5,19 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 SINE = np.sqrt(0.75)
+COSINES, SINES = (1.0, 0.5, -0.5, -1.0, -0.5, 0.5), (0.0, SINE, SINE, 0.0, -SINE, -SINE)
 
 SIXTHS = np.array(
-    [
-        [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]
-        for c, s in (
-            (1.0, 0.0),
-            (0.5, SINE),
-            (-0.5, SINE),
-            (-1.0, 0.0),
-            (-0.5, -SINE),
-            (0.5, -SINE),
-        )
-    ]
+    [[[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]] for c, s in zip(COSINES, SINES, strict=True)]
 )
 """Rotations (6, 3, 3) about z by multiples of a sixth of a turn, those that take a drive of two or
 three lobes to itself among them. Half a turn is exact. The kernels have the same table

@@ -103,12 +103,10 @@ def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
 
 
 def depth_fractions(section: CrossSection, grid: Ints, r_inner: float, thickness: float) -> Floats:
-    """Return the fraction (n_node,) of the wall at the nodes of a `wall_grid`: 0 at its inner, 1 at
-    its outer surface.
+    """Fraction (n_node,) of the wall at nodes of a `wall_grid`: 0 at its inner, 1 at its outer face
 
     Where the layers below the root are attached, their top follows the root and the teeth; the
-    fraction then counts layers instead of radius, and the cup's outer surface is level from its
-    first station on.
+    fraction then counts layers, not radius, and the outer surface is level from its first station.
     """
     fraction = np.zeros(len(section.coords))
     fraction[grid] = (np.hypot(*section.coords[grid].transpose(2, 0, 1)) - r_inner) / thickness

@@ -54,8 +54,7 @@ class DriveMesh:
 
     @cached_property
     def quality(self) -> dict[str, dict[str, float]]:
-        """Counts and worst element quality of every body, by its name (see
-        `swgpar.meshing.export.mesh_report`)."""
+        """Counts and worst quality of every body, see `swgpar.meshing.export.mesh_report`."""
         return mesh_report(self.sectors)
 
     def write(self, folder: str | Path, formats: Sequence[str] = FORMATS) -> list[Path]:
@@ -83,13 +82,10 @@ class DriveMesh:
         cells = np.concatenate(
             [body.cells + start for start, body in zip(first, bodies, strict=False)]
         )
-        corners = cells.shape[1]
-        kind = pyvista.CellType.HEXAHEDRON if corners == 8 else pyvista.CellType.QUAD
-        grid = pyvista.UnstructuredGrid(
-            np.hstack([np.full((len(cells), 1), corners), cells]).ravel(),
-            np.full(len(cells), kind),
-            np.concatenate([body.points for body in bodies]),
-        )
+        solid = cells.shape[1] == 8
+        kind = pyvista.CellType.HEXAHEDRON if solid else pyvista.CellType.QUAD
+        points = np.concatenate([body.points for body in bodies])
+        grid = pyvista.UnstructuredGrid({kind: cells}, points)
         grid.cell_data["body"] = np.repeat(
             np.arange(len(bodies)), [len(body.cells) for body in bodies]
         )

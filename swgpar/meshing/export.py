@@ -27,11 +27,9 @@ HOUSING = "housing"
 
 def sector_numbers(mesh: SectorMesh) -> Ints:
     """Numbers (n_sectors, n_node) of every sector's nodes in the body; shared nodes have one."""
-    own = (
-        np.ones(len(mesh.coords), dtype=bool)
-        if not mesh.plane
-        else mesh.lower_nodes == np.arange(len(mesh.coords))
-    )
+    own = np.ones(len(mesh.coords), dtype=bool)
+    if mesh.plane:
+        own = mesh.lower_nodes == np.arange(len(mesh.coords))
     own[mesh.ccw_nodes] = False
     own_number = np.cumsum(own) - 1
     n_own = int(own.sum())
@@ -102,15 +100,11 @@ def whole_drive(meshes: dict[str, SectorMesh]) -> meshio.Mesh:
     offset = 0
     for mesh in meshes.values():
         coords, elements = whole_body(mesh)
+        kind = "quad" if mesh.plane else "hexahedron"
         points.append(coords)
         by_sector = elements.reshape(mesh.n_sectors, -1, elements.shape[1]) + offset
         for name, part in zip((mesh.body, HOUSING), mesh.parts):
-            cells.append(
-                (
-                    "hexahedron" if not mesh.plane else "quad",
-                    by_sector[:, part].reshape(-1, elements.shape[1]),
-                )
-            )
+            cells.append((kind, by_sector[:, part].reshape(-1, elements.shape[1])))
             names.append(name)
         point_sets |= {name: nodes + offset for name, nodes in named_nodes(mesh).items()}
         offset += len(coords)

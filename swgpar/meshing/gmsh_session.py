@@ -1,5 +1,4 @@
-"""Gmsh for a few calls: started when it is not running, without files of settings and without its
-signals."""
+"""Gmsh for a few calls: started when it does not run, without settings' files and its signals."""
 
 from __future__ import annotations
 

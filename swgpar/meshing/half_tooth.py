@@ -84,8 +84,7 @@ class HalfTooth:
     Attributes:
     s : (n,) mm, arc lengths of the flank's nodes, from T to R
     s_side : (n_side,) mm, those from K to Q
-    tip, root : (n, 2) mm, nodes from M to K and from Q to E
-    half_pitch : rad
+    tip, root : (n, 2) mm, nodes from M to K and from Q to E;  half_pitch : rad
 
     profile : ToothProfile
     recipe : ToothRecipe

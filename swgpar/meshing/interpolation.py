@@ -62,8 +62,7 @@ def _cells(mesh: Delaunay, known: np.ndarray, sought: np.ndarray) -> np.ndarray:
 
 
 def _unrolled(points: np.ndarray, radius: float, plane: bool) -> np.ndarray:
-    """Points (n, 3), mm, near +y as arc length at `radius`, distance from the axis and, in space,
-    z; mm."""
+    """Points (n, 3), mm, near +y: arc length at `radius`, distance from the axis, z in space."""
     distance = np.hypot(points[:, 0], points[:, 1])
     arc = np.arctan2(points[:, 0], points[:, 1]) * radius
     return np.column_stack([arc, distance] if plane else [arc, distance, points[:, 2]])

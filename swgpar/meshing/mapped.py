@@ -24,8 +24,7 @@ SAME = 1e-9
 
 
 class MeshError(Exception):
-    """Blocks that cannot be meshed: their sides do not fit, cross each other, or have points that
-    coincide."""
+    """Blocks that cannot be meshed: sides that do not fit, cross, or have points that coincide."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +41,7 @@ class QuadMesh:
 
 
 def mapped_mesh(blocks: Sequence[Sides], scale: float) -> QuadMesh:
-    """Mesh four-sided blocks whose sides are chains of given nodes; gmsh fills in the interior
-    nodes.
+    """Mesh blocks whose sides are chains of given nodes; gmsh fills in the interior nodes.
 
     Every given point becomes a node with exactly its coordinates: a side is passed to gmsh as
     straight curves of one element each. Raises MeshError where the blocks cannot be meshed.

@@ -71,8 +71,7 @@ def gap_elements(drive: DriveGeometry, recipe: MeshRecipe) -> int:
 def _stations(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> Floats:
     """Coordinates z (n,) mm of the nodes along the face width of a gear.
 
-    In a pancake drive each ring gear has the recipe's elements along its own width, and the
-    flexible spline has the stations of both.
+    In a pancake drive a ring gear has them along its own width, the flexible spline those of both.
     """
     number, ratio = recipe.face_width.elements, recipe.face_width.end_ratio
     if drive.cup is not None:

@@ -4,8 +4,7 @@ Newton's iteration on contact is an iteration over sets: which points of cam, pi
 and which points of the flanks slip. It cycles when a set returns although the residual has not
 decreased meanwhile. It sticks where the residual does not decrease at all. It always ends: after
 `solver.max_iterations` the residual has to halve within every `HALVING` further iterations, a solve
-has at most `MAX_ITERATIONS_FACTOR` times that many, and an increment is halved at most
-`solver.max_cutbacks` times.
+has at most `MAX_ITERATIONS_FACTOR` times as many; `solver.max_cutbacks` limits the halvings.
 
 The cycle breaker combines a line search that ends on the descending side (`LineSearch.descending`)
 with frozen segments of the flanks. Where that converges the segments are cut anew, and the
@@ -53,8 +52,7 @@ PATIENCE, MIN_DECREASE = 8, 0.9
 
 
 def fingerprint(comm: MPI.Comm, parts: Iterable[np.ndarray]) -> int:
-    """A number for the arrays of all ranks together, the same on every rank: equal for equal
-    arrays. Collective."""
+    """A number for the arrays of all ranks, the same on each: equal for equal arrays. Collective"""
     digest = hashlib.blake2b(digest_size=8, person=comm.rank.to_bytes(8, "little"))
     for part in parts:
         digest.update(len(part).to_bytes(8, "little"))

@@ -124,8 +124,7 @@ class ConvergenceTest:
         )
 
     def _search_is_outdated(self, state: SolveState) -> bool:
-        """Whether the nodes have moved so far since the last contact search that other flanks may
-        meet; collective."""
+        """Whether nodes have moved so far since the search that others may meet; collective."""
         if state.breaker.solution is not None or state.repeated_searches == MAX_REPEATED_SEARCHES:
             return False
         return self.problem.moved_since_search() > SEARCH_DISTANCE * self.problem.module

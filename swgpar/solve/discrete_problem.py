@@ -49,8 +49,7 @@ class ContactSearch:
 
     tip_margin : mm, radial distance of a tooth's tip inside the ring gear's tip circle up to which
     its flanks are followed
-    distances : of the faces
-    outer_radius : mm, radius that no tooth is farther out than
+    distances : of the faces;  outer_radius : mm, no tooth is farther out
     """
 
     tip_margin: float
@@ -122,10 +121,9 @@ class DiscreteProblem:
         self.contacts: list[Contact] = [*self.wave_generator.all, *flanks]
         self.segments = FrozenSegments(self.flanks, partition.comm)
         self.force_terms: list[ForceTerm] = [*self.contacts, *boundary_terms]
+        outermost = 0.0 if contact_search is None else contact_search.outer_radius
         clearances = [
-            FlankClearance(
-                contact, partition.comm, module=module, outer_radius=contact_search.outer_radius
-            )
+            FlankClearance(contact, partition.comm, module=module, outer_radius=outermost)
             for contact in flanks
         ]
         self.torque_control = TorqueControl(supports, clearances)

@@ -2,8 +2,7 @@
 
 One factorisation costs as much as some 4 solves with it in the plane, 5 (coarse) to 15 (full) in
 the cup drive, the analysis of another pattern once or twice that, and from one Newton iteration to
-the next, or one increment to the next, the tangent changes by the rotation of the elements and by
-some contact points.
+the next, or one increment to the next, the tangent changes by rotations and some contact points.
 """
 
 from __future__ import annotations
@@ -30,8 +29,7 @@ Operation = Callable[[PETSc.Vec, PETSc.Vec], None]
 class ReusedFactor:
     """Decides whether a factor is reused, and solves by GMRES with it.
 
-    like : vector of the system
-    multiply, solve : with the present system; with the factor
+    like : vector of the system;  multiply, solve : with the present system; with the factor
 
     `goal` is the residual's norm that ends Newton's iteration at the latest; `fresh` says that the
     factor is that of the present system, `discarded` that it is to be renewed before its next use;

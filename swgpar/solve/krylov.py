@@ -12,7 +12,7 @@ JUDGE_BY_RIGHT_SIDE = ("gmres", "fgmres", "lgmres", "pgmres", "gcr", "bcgs", "fb
 """Krylov methods that judge the true residual with the preconditioner on the right."""
 
 JUDGE_BY_NORM = ("cg", "fcg", "pipecg", "groppcg")
-"""Krylov methods that judge the true residual by their choice of the norm."""
+"""Krylov methods of symmetric matrices that judge the true residual by the choice of the norm."""
 
 NO_SOLVERS = {
     "preonly": "solves with lu or cholesky alone",

@@ -66,8 +66,7 @@ class LineSearch:
         return self.residual(self.trial, self.force)
 
     def _halves(self, right: PETSc.Vec, step: PETSc.Vec) -> bool:
-        """Whether the full step halves the residual; one that is bounded hardly does, even towards
-        a maximum."""
+        """Whether the full step halves the residual; bounded ones hardly do, even to a maximum."""
         return not self._residual(step, 1.0) and self.force.norm() < 0.5 * right.norm()
 
     def _nodal(self, vector: PETSc.Vec) -> np.ndarray:

@@ -8,24 +8,12 @@ from swgpar.design.linear_solvers import LINEAR_SOLVERS
 from swgpar.errors import InputError
 from swgpar.petsc import PETSc
 from swgpar.solve.factors import FACTORISATIONS, Factor
-from swgpar.solve.krylov import KrylovSolver
+from swgpar.solve.krylov import JUDGE_BY_NORM, KrylovSolver
 from swgpar.solve.linear_solver import LinearSolver, MatrixKind
 
 FOR_SYMMETRIC = {
     "pc_type": ("cholesky", "icc"),
-    "ksp_type": (
-        "cg",
-        "fcg",
-        "pipecg",
-        "groppcg",
-        "cr",
-        "pipecr",
-        "minres",
-        "symmlq",
-        "nash",
-        "stcg",
-        "gltr",
-    ),
+    "ksp_type": (*JUDGE_BY_NORM, "cr", "pipecr", "minres", "symmlq", "nash", "stcg", "gltr"),
 }
 """Values of PETSc's options that need symmetric matrices."""
 

@@ -74,8 +74,7 @@ class NewtonSolver:
     problem : residual and tangent;  settings : tolerances and limits
 
     Attributes:
-    visited_sets : makes what finds active sets that return, for every run of Newton's iteration
-    state : of the present or last solve
+    visited_sets : makes what finds active sets that return, for every run;  state : of the solve
     """
 
     def __init__(self, problem: DiscreteProblem, settings: NewtonSettings) -> None:

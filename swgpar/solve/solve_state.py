@@ -47,8 +47,7 @@ class NewtonSettings:
     rtol : residual over contact force at convergence
     max_iterations : before a solve fails, unless the residual still decreases
     max_augmentations : in one solve;  penetration_tolerance : mm
-    linear : name of the linear solver (`swgpar.design.linear_solvers`)
-    reuse_factor : for later tangents, with the direct solver
+    linear : name of the linear solver;  reuse_factor : for later tangents, if it is direct
     """
 
     rtol: float
@@ -97,8 +96,7 @@ class SolveState:
     pattern_misses : keys of contact blocks on this rank that the tangent's pattern lacks
     incomplete_pattern : whether any rank misses blocks
     outdated_search : whether the nodes have moved far since the last contact search
-    visited : active sets of the present run
-    time_limit : s, once it has passed
+    visited : active sets of the present run;  time_limit : s, once it has passed
     """
 
     load_state: LoadState

@@ -54,8 +54,7 @@ def make_cam(
 
     keys : section [wave_generator] of the design file
     a : mm, major semi-axis (eq. 3.3)
-    b : mm, minor semi-axis (eq. 3.4); of no use with rollers
-    name : of the section, for messages
+    b : mm, minor semi-axis (eq. 3.4); of no use with rollers;  name : of the section, for messages
 
     Raises InputError where the keys give no closed curve, TypeError where they are those of no cam.
     """

@@ -20,8 +20,7 @@ class EllipticalCam:
         """Signed distance, outward normal and Hessian factor at points near the curve.
 
         The foot point (b sin t, a cos t) solves ((b sin t, a cos t) - p) . (b cos t, -a sin t) = 0
-        by Newton from the angle of the radial projection; with b^2 / a above the distance inside
-        this converges to round-off.
+        by Newton from the radial projection; with b^2 / a above the distance inside to round-off.
         """
         x, y = np.asarray(xy, dtype=float).T
         a, b = self.a, self.b

@@ -23,12 +23,8 @@ class HarmonicCam:
     def _radius(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Radius, mm, and its first two derivatives by theta."""
         wave, order = 0.5 * (self.a - self.b), self.lobes
-        cosine = wave * np.cos(order * theta)
-        return (
-            0.5 * (self.a + self.b) + cosine,
-            -wave * order * np.sin(order * theta),
-            -(order**2) * cosine,
-        )
+        cosine, sine = wave * np.cos(order * theta), np.sin(order * theta)
+        return 0.5 * (self.a + self.b) + cosine, -wave * order * sine, -(order**2) * cosine
 
     def evaluate(self, xy: np.ndarray) -> SignedDistance:
         """Signed distance, outward normal and Hessian factor at points near the curve.

@@ -1,7 +1,6 @@
 """Exact tooth profiles (section 3.3).
 
-A new profile is a module here that returns a `ToothProfile`, its keys in `keys.py` and a branch in
-`_build` (docs/howto/own_cam_or_profile.md).
+A new profile is a module here, keys in `keys.py`, a branch in `_build` (own_cam_or_profile.md).
 """
 
 from __future__ import annotations
@@ -129,15 +128,11 @@ def _build(
     try:
         check_flank(profile)
     except InputError as error:
-        sizes = ", ".join(
-            f"{key} = {show(value)}" for key, value in keys if isinstance(value, float)
-        )
-        cutters = (
-            "; allowed are cutters that stay inside the tooth"
-            if hasattr(keys, "cutter_radius")
-            else ""
-        )
-        raise InputError(f"{name} with {sizes} cannot be built: {error}{cutters}") from None
+        given = [f"{key} = {show(value)}" for key, value in keys if isinstance(value, float)]
+        reason = f"{name} with {', '.join(given)} cannot be built: {error}"
+        if hasattr(keys, "cutter_radius"):
+            reason += "; allowed are cutters that stay inside the tooth"
+        raise InputError(reason) from None
     return profile
 
 
@@ -145,17 +140,16 @@ def _refuse_direct_keys(
     keys: ExternalProfile | InternalProfile, c_P: float, c_l: float, gear: str
 ) -> None:
     """Refuse values of keys that shape directly defined profiles only."""
-    if c_P != 1.0:
-        raise InputError(
-            f"{gear}.c_P = {c_P:g} is out of range: allowed 1 with {gear}.profile.type = "
-            f'"{keys.type}", whose tooth thickness follows from '
-            f"{gear}.profile.{keys.thickness_key}"
-        )
-    if c_l != 0.5:
-        raise InputError(
-            f"{gear}.c_l = {c_l:g} is out of range: allowed 0.5 with {gear}.profile.type = "
-            f'"{keys.type}", which does not use it'
-        )
+    thickness = f"whose tooth thickness follows from {gear}.profile.{keys.thickness_key}"
+    for key, value, allowed, reason in (
+        ("c_P", c_P, 1.0, thickness),
+        ("c_l", c_l, 0.5, "which does not use it"),
+    ):
+        if value != allowed:
+            raise InputError(
+                f"{gear}.{key} = {value:g} is out of range: allowed {allowed:g} with "
+                f'{gear}.profile.type = "{keys.type}", {reason}'
+            )
 
 
 def _cutter(keys: RackInvolute | ShaperInvolute, teeth: Teeth) -> Cutter:

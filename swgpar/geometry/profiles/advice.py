@@ -1,5 +1,4 @@
-"""What to change where the keys of a profile give no flank: which length, in which direction, and a
-value that works.
+"""What to change where keys give no flank: which length, in which direction, a value that works.
 
 Each length of the section is varied alone, the other keys as they are. The range that works is
 found by building the flank, so that it is the range that passes.
@@ -37,8 +36,7 @@ def advise(
 
     name : section of the design file
     lengths : keys that may be changed, with their values, mm
-    builds : whether the flank can be built with another value of a key
-    unit : module, mm; a length of zero is varied up to it
+    builds : whether another value of a key gives a flank;  unit : module, mm, for a length of zero
     """
     tried = {
         key: working_range(value, partial(builds, key), unit) for key, value in lengths.items()

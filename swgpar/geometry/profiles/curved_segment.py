@@ -34,8 +34,7 @@ class CurvedSegment:
     """A smooth segment x(t), 0 <= t <= 1, run through from the tip towards the root.
 
     name : str
-    evaluate : gives the `CurvePoints` at parameters (n,); exact, defined a little beyond 0 and 1,
-        with a speed above 0
+    evaluate : `CurvePoints` at parameters (n,), exact, a little beyond 0 and 1 too; speed above 0
     """
 
     name: str
@@ -45,14 +44,11 @@ class CurvedSegment:
     def _table(self) -> tuple[Floats, Floats]:
         """Gauss points and weights on (0, 1), arc lengths (PANELS + 1,) mm at ends of panels."""
         point, weight = np.polynomial.legendre.leggauss(ORDER)
-        return np.stack((0.5 * (point + 1.0), 0.5 * weight)), self._lengths(
-            0.5 * (point + 1.0), 0.5 * weight
-        )
-
-    def _lengths(self, point: Floats, weight: Floats) -> Floats:
+        point, weight = 0.5 * (point + 1.0), 0.5 * weight
         start = np.arange(PANELS)[:, None] / PANELS
         speed = self.evaluate((start + point / PANELS).ravel()).speed.reshape(PANELS, -1)
-        return np.concatenate(([0.0], np.cumsum(speed @ weight / PANELS)))
+        lengths = np.concatenate(([0.0], np.cumsum(speed @ weight / PANELS)))
+        return np.stack((point, weight)), lengths
 
     @property
     def length(self) -> float:

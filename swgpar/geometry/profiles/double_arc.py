@@ -43,10 +43,8 @@ def double_arc(
     """Build the flank; mm, `c_l` is the share of the straight segment above the pitch point."""
     length = straight_length(frame, c_l, r_dedendum, name)
     s, star, n = frame.sign, frame.base_angle, frame.normal
-    top, bottom = (
-        frame.pitch_point + c_l * length * frame.towards_tip,
-        frame.pitch_point - (1.0 - c_l) * length * frame.towards_tip,
-    )
+    top = frame.pitch_point + c_l * length * frame.towards_tip
+    bottom = frame.pitch_point - (1.0 - c_l) * length * frame.towards_tip
     o_a, o_d = top - r_addendum * n(star), bottom + r_dedendum * n(star)
     # |O_a + r_a n(beta)| = r_A (eqs 3.36, 3.39), with O_a at the inclination beta_a and the
     # distance |O_a|
@@ -59,14 +57,9 @@ def double_arc(
     beta_a = float(np.arctan2(s * o_a[1], o_a[0]))
     beta_t = beta_a - s * float(np.arccos(cosine))
     beta_r = frame.inclination(o_d)
+    tip = o_a + r_addendum * n(beta_t)
     pieces = [
-        (
-            "addendum",
-            o_a + r_addendum * n(beta_t),
-            beta_t,
-            1.0 / r_addendum,
-            r_addendum * (beta_t - star),
-        ),
+        ("addendum", tip, beta_t, 1.0 / r_addendum, r_addendum * (beta_t - star)),
         ("straight", top, star, 0.0, length),
         ("dedendum", bottom, star, -1.0 / r_dedendum, r_dedendum * (beta_r - star)),
     ]

@@ -45,8 +45,7 @@ class Segment:
     name : name of the segment, for example ``tip`` or ``straight``
     start : mm, first point (x, y)
     direction : rad, angle of the unit tangent at `start` from +x, counter-clockwise
-    curvature : 1/mm, change of that angle per arc length; 0 for a straight line
-    length : mm, arc length
+    curvature : 1/mm, change of that angle per arc length; 0 for a line;  length : mm, arc length
     """
 
     name: str
@@ -69,10 +68,8 @@ class Segment:
         # chord of an arc: exact for any curvature, the straight line included
         chord = s * np.sinc(half / np.pi)
         middle = self.direction + half
-        return np.stack(
-            (self.start[0] + chord * np.cos(middle), self.start[1] + chord * np.sin(middle)),
-            axis=-1,
-        )
+        x, y = self.start
+        return np.stack((x + chord * np.cos(middle), y + chord * np.sin(middle)), axis=-1)
 
     def nearest(self, points: Floats) -> Floats:
         """Local arc lengths (n,), mm, of the points nearest to `points` (n, 2), mm."""
@@ -101,8 +98,7 @@ class ToothProfile:
         edge; others have other names.
     external : True for teeth that point outwards (flexible spline), False for internal ones (ring
         gear)
-    r_tip_circle, r_root_circle : mm, radii of the addendum and the dedendum circle
-    n_teeth : number of teeth of the gear
+    r_tip_circle, r_root_circle : mm, addendum and dedendum radii;  n_teeth : number of teeth
     """
 
     segments: tuple[FlankSegment, ...]
@@ -203,8 +199,7 @@ class ToothProfile:
 
         points : (n, 2) mm
 
-        Returns distance : (n,) mm, positive outside the material
-        s : (n,) mm
+        Returns the distance (n,) mm, positive outside the material, and s (n,) mm.
         """
         points = np.atleast_2d(np.asarray(points, dtype=np.float64))
         best = np.full(len(points), np.inf)
@@ -233,11 +228,8 @@ class ToothProfile:
         def beyond(s: float) -> float:
             return float(np.hypot(*self.point(s)[0])) - radius
 
-        return (
-            2.0
-            * radius
-            * float(self.polar_angle(brentq(beyond, 0.0, self.length, xtol=1e-14 * radius))[0])
-        )
+        s = brentq(beyond, 0.0, self.length, xtol=1e-14 * radius)
+        return 2.0 * radius * float(self.polar_angle(s)[0])
 
     @property
     def top_land(self) -> float:

@@ -28,6 +28,7 @@ from swgpar.geometry.arrays import Floats
 from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints
 from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.geometry.profiles.teeth import Teeth
+from swgpar.geometry.rotation import rotated
 
 Center = Callable[[Floats], tuple[Floats, Floats]]
 """Centre C (n, 2) mm of the cutter's rounded tip, and dC/dpsi (n, 2), at psi (n,)."""
@@ -38,8 +39,7 @@ class Cutter(Teeth):
     """Gear and cutter of one reference profile: external teeth by a rack, internal by a shaper; mm.
 
     tip_radius : rounding of the cutter's teeth
-    shift : profile shift, in modules: the cutter is set outwards by shift * module
-    cutter_teeth : teeth of the shaper
+    shift : of the cutter outwards, in modules;  cutter_teeth : teeth of the shaper
     """
 
     tip_radius: float
@@ -151,8 +151,7 @@ Contact = Callable[[Floats], tuple[Floats, Floats, Floats, Floats]]
 def _curve(cut: Cutter, name: str, ends: tuple[float, float], contact: Contact) -> CurvedSegment:
     """Segment from the generating angle ends[0] to ends[1].
 
-    `contact` gives K (n, 2), dK/dpsi (n, 2), the angle of n in the fixed frame and its derivative
-    (n,).
+    `contact` gives K (n, 2), dK/dpsi (n, 2), the angle of n and its derivative (n,).
     """
     first, span = ends[0], ends[1] - ends[0]
 
@@ -160,8 +159,7 @@ def _curve(cut: Cutter, name: str, ends: tuple[float, float], contact: Contact) 
         psi = first + span * t
         k, dk, normal, dnormal = contact(psi)
         arm = k + (0.0, cut.r_pitch)
-        c, s = np.cos(psi), np.sin(psi)
-        point = np.stack((c * arm[:, 0] - s * arm[:, 1], s * arm[:, 0] + c * arm[:, 1]), axis=-1)
+        point = rotated(arm, psi)
         # velocity in the gear's frame, in components of the fixed one: dK + the rotation of the arm
         velocity = dk + np.stack((-arm[:, 1], arm[:, 0]), axis=-1)
         angle = normal - cut.sign * 0.5 * np.pi
@@ -178,10 +176,7 @@ def involute(cut: Cutter, name: str = "profile") -> ToothProfile:
     name : section of the design file, for messages. Raises InputError where there is no flank.
     """
     _check_sizes(cut, name)
-    s = cut.sign
-    alpha = cut.pressure_angle
-    r_b = cut.r_base
-    rho = cut.tip_radius
+    s, alpha, r_b, rho = cut.sign, cut.pressure_angle, cut.r_base, cut.tip_radius
     w_tip = cut.contact_distance(cut.r_tip_circle)
     if not cut.external:
         _check_shaper(cut, w_tip, name)
@@ -198,12 +193,8 @@ def involute(cut: Cutter, name: str = "profile") -> ToothProfile:
 
     def flank(psi: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         k = (r_b * (psi + cut.half_thickness))[:, None] * normal
-        return (
-            k,
-            np.broadcast_to(r_b * normal, k.shape),
-            np.full_like(psi, s * alpha),
-            np.zeros_like(psi),
-        )
+        dk, angle = np.broadcast_to(r_b * normal, k.shape), np.full_like(psi, s * alpha)
+        return k, dk, angle, np.zeros_like(psi)
 
     def fillet(psi: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         c, dc = center(psi)
@@ -253,22 +244,15 @@ def _check_shaper(cut: Cutter, w_tip: float, name: str) -> None:
 def _check_trimming(cut: Cutter, profile: ToothProfile, center: Center, name: str) -> None:
     """The shaper's tips must pass the ring's tips without cutting them on their way in and out."""
     psi = np.linspace(-np.pi, np.pi, 7201) * cut.cutter_teeth / cut.n_teeth
-    c = center(psi)[0] + (0.0, cut.r_pitch)
-    x, y = (
-        np.cos(psi) * c[:, 0] - np.sin(psi) * c[:, 1],
-        np.sin(psi) * c[:, 0] + np.cos(psi) * c[:, 1],
-    )
+    x, y = rotated(center(psi)[0] + (0.0, cut.r_pitch), psi).T
     reach = np.hypot(x, y)
     near = (reach > cut.r_tip_circle - cut.tip_radius) & (
         np.abs(np.arctan2(x, y)) < np.pi / cut.n_teeth
     )
     points = np.stack((np.abs(x), y), axis=-1)[near]
     # short of the addendum circle only the edge of the top land can be met
-    clear = np.where(
-        reach[near] > cut.r_tip_circle,
-        profile.distance(points)[0],
-        np.linalg.norm(points - profile.point(0.0), axis=1),
-    )
+    to_edge = np.linalg.norm(points - profile.point(0.0), axis=1)
+    clear = np.where(reach[near] > cut.r_tip_circle, profile.distance(points)[0], to_edge)
     if clear.min(initial=np.inf) < cut.tip_radius - 1e-6 * cut.module:
         raise InputError(
             f"{name}.cutter_teeth = {cut.cutter_teeth} is out of range: allowed are fewer teeth, "

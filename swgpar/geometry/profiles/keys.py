@@ -15,8 +15,7 @@ class ProfileKeys(Section):
 
     typical_lengths : keys that are lengths, with values in modules that give a flank for most tooth
         numbers; a refusal says which of them to change. Empty: the reason says what is allowed
-    thickness_key : the key that c_P and c_l of the gear are replaced by; other values than 1 and
-        0.5 are refused. Empty: c_P and c_l shape the flank
+    thickness_key : the key that replaces c_P and c_l, which are then 1 and 0.5; empty: they count
     """
 
     typical_lengths: ClassVar[Mapping[str, float]] = {}

@@ -1,7 +1,6 @@
 """The quadruple-circular-arc (QCA) flank: tip, addendum, straight, dedendum, root (section 3.3.3).
 
-With s = +1 for external and -1 for internal teeth, the normals n of `PitchPointFrame` and its
-inclination alpha* at the pitch point P:
+With s = +1 for external and -1 for internal teeth, normals n and alpha* of `PitchPointFrame` at P:
 
     O_a = P_a - r_a n(alpha*),  O_t = O_a + (r_a - r_t) n(alpha* + alpha_a),  |O_t| + s r_t = r_A
     O_d = P_d + r_d n(alpha*),  O_r = O_d - (r_d - r_r) n(alpha* + alpha_d),  |O_r| - s r_r = r_D
@@ -69,23 +68,12 @@ def quadruple_arc(
     )
     o_t, o_r = tip_center(a_a), root_center(a_d)
     beta_t, beta_r = frame.inclination(o_t), frame.inclination(o_r)
+    upper, lower = o_a + r_addendum * n(star + a_a), o_r - r_root * n(star + a_d)
     pieces = [
         ("tip", o_t + r_tip * n(beta_t), beta_t, 1.0 / r_tip, r_tip * (beta_t - star - a_a)),
-        (
-            "addendum",
-            o_a + r_addendum * n(star + a_a),
-            star + a_a,
-            1.0 / r_addendum,
-            r_addendum * a_a,
-        ),
+        ("addendum", upper, star + a_a, 1.0 / r_addendum, r_addendum * a_a),
         ("straight", top, star, 0.0, straight_l),
         ("dedendum", bottom, star, -1.0 / r_dedendum, r_dedendum * a_d),
-        (
-            "root",
-            o_r - r_root * n(star + a_d),
-            star + a_d,
-            -1.0 / r_root,
-            r_root * (beta_r - star - a_d),
-        ),
+        ("root", lower, star + a_d, -1.0 / r_root, r_root * (beta_r - star - a_d)),
     ]
     return frame.profile(pieces, name)
