@@ -80,7 +80,7 @@ def section() -> Figure:
     fill(ax, outline["tooth"], SPLINE, alpha=0.45)
     fill(ax, outline["ring tooth"], RING, alpha=0.45)
     fill(ax, outline["ring"], RING)
-    end, outside = half + cup.length, design.inner_radius + design.cup_thickness
+    end, outside = half + cup.length, design.inner_radius + design.cup_sizes.thickness
     axis_line(ax, (-16.0, 0.0), (end + 12.0, 0.0))
     axis_line(ax, (0.0, -3.0), (0.0, 74.0))
     ax.annotate(
@@ -169,7 +169,7 @@ def teeth() -> Figure:
     inner, root, tip = design.inner_radius, spline.r_root_circle, spline.r_tip_circle
     for z, radii in (
         (left, (inner, root, tip)),
-        (right, (design.inner_radius + design.cup_thickness,)),
+        (right, (design.inner_radius + design.cup_sizes.thickness,)),
     ):
         for radius in radii:
             extension(ax, (np.sign(z) * half, radius), (z - 0.2 if z < 0 else z + 0.2, radius))
@@ -189,7 +189,7 @@ def teeth() -> Figure:
     dimension(
         ax,
         (right, inner),
-        (right, inner + design.cup_thickness),
+        (right, inner + design.cup_sizes.thickness),
         text,
         at=(right + 2.2, inner + 0.35),
         ha="center",

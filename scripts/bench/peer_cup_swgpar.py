@@ -74,7 +74,9 @@ def main() -> None:
         phases=PhaseTimes(),
     )
     LineSearch.TRIALS = 0  # the search is made for contact
-    solver = NewtonSolver(problem, newton_settings(design))
+    solver = NewtonSolver(
+        problem, newton_settings(design.solver, design.contact, design.drive.module)
+    )
     solved = solver.solve(
         LoadState(Stage.ROTATE, 4, cam_clearance=0.0)
     )  # a stage that keeps a factor

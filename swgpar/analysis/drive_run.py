@@ -171,19 +171,14 @@ class DriveRun:
     def _root_stress(self, state: LoadState, loaded: bool) -> RootStress | None:
         """Largest tensile stress at the teeth by windows; the one known before where a window
         cannot be computed."""
-        known = self.record.root_stress
-        design = self.model.design
-        # with friction two periods are computed, of which the first one settles
-        further = known is not None and state.stage == Stage.ROTATE and not design.contact.friction
+        known, sequence = self.record.root_stress, self.sequence
+        # of two periods the first one settles
+        further = sequence.samples and sequence.periods == 1 and state.stage == Stage.ROTATE
         try:
             with self.model.phases("windows"):
                 if loaded:
                     return known or self._resolve_loaded(state)
-                return (
-                    with_angle(known, self.model, state)
-                    if further and design.steps.samples
-                    else known
-                )
+                return with_angle(known, self.model, state) if known and further else known
         except (ConvergenceError, InputError) as error:
             angle = np.degrees(state.angle)
             logger.warning(

@@ -18,7 +18,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.drive_data import DriveData
 from swgpar.errors import ConvergenceError, SwgparError, TimeLimitError
 from swgpar.evaluation.period import require_samples
-from swgpar.load.load_sequence import load_sequence, negligible_torque
+from swgpar.load.load_sequence import LoadSequence, load_sequence
 from swgpar.log import logger
 from swgpar.meshing import load_recipe, require_sections
 from swgpar.model.drive_model import build_drive_model
@@ -61,7 +61,7 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
     require_memory(needs, design.solver.memory_limit, comm)
     resumed = folder is not None and prepare(folder, comm, options.restart, options.overwrite)
     open_log(folder, comm)
-    _log_remarks(design, left_out)
+    _log_remarks(sequence, left_out, design.without_windows if design.output.root_stress else "")
     with reported_memory(needs), limited(design.solver.time_limit):
         kept = StartStates(folder)
         if not options.restart:
@@ -106,14 +106,18 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
     return result
 
 
-def _log_remarks(design: DriveDesign, left_out: Sequence[str]) -> None:
-    """Say what the run leaves out, and what of the design may not be meant."""
-    if (remark := torque_remark(design.load.torque, negligible_torque(design))) is not None:
+def _log_remarks(sequence: LoadSequence, left_out: Sequence[str], without_windows: str) -> None:
+    """Say what the run leaves out, and what of the design may not be meant.
+
+    without_windows : what keeps windows from resolving a stress that is asked for
+    """
+    remark = torque_remark(sequence.torque, sequence.negligible_torque)
+    if remark is not None:
         logger.warning("%s", remark)
     if left_out:
         logger.info("left out: %s; --plain computes all of it", ", ".join(left_out))
-    if design.output.root_stress and not design.has_program and not design.resolves_root_stress:
-        reason = "a bearing" if design.bearing is not None else "two ring gears"
+    if without_windows and not sequence.points:
         logger.info(
-            "the stress at the teeth is not resolved by windows: not available with %s", reason
+            "the stress at the teeth is not resolved by windows: not available with %s",
+            without_windows,
         )

@@ -5,63 +5,40 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.errors import InputError
 from swgpar.geometry.bearing import smallest_curvature_radius
 from swgpar.geometry.cams import FourRoller
+from swgpar.input.require import require, require_available
 
 SECTION = "wave_generator.bearing"
+RADIUS = "the cam's smallest radius of curvature"
 
 
 def check_bearing(design: DriveDesign) -> None:
     """Raise InputError for the first size of the bearing that does not fit the others."""
-    bearing, sizes = design.bearing, design.bearing_sizes
-    if isinstance(design.wave_generator, FourRoller):
-        raise InputError(
-            f'{SECTION} is not available with wave_generator.type = "four_roller": allowed with '
-            f"cams whose curve an "
-            "inner race can follow"
-        )
-    if design.lobes != 2:
-        raise InputError(
-            f"{SECTION} is not available with wave_generator.lobes = {design.lobes}: allowed with "
-            f"two"
-        )
-    output = design.output
-    if output.root_stress and "root_stress" in output.model_fields_set:
-        raise InputError(
-            f"output.root_stress = true is out of range: allowed only false with {SECTION}"
-        )
-    room = smallest_curvature_radius(design.cam()) - bearing.race_thickness
-    if room <= 0.0:
-        allowed = (
-            f"above 0 to below {room + bearing.race_thickness:.4g} mm (the cam's smallest radius "
-            f"of curvature)"
-        )
-        _refuse("race_thickness", bearing.race_thickness, allowed)
-    if bearing.ball_diameter >= room:
-        allowed = (
-            f"above 0 to below {room:.4g} mm (the cam's smallest radius of curvature less "
-            f"race_thickness)"
-        )
-        _refuse("ball_diameter", bearing.ball_diameter, allowed)
-    most = int(np.pi / np.arcsin(bearing.ball_diameter / sizes.pitch_diameter))
-    if bearing.balls > most:
-        _refuse("balls", bearing.balls, f"3 to {most} (balls of ball_diameter beside each other)")
-    if design.race_width > design.drive.face_width:
-        _refuse(
-            "race_width",
-            design.race_width,
-            f"above 0 to {design.drive.face_width:g} mm (drive.face_width)",
-        )
-    if bearing.clearance >= 0.5 * design.deflection:
-        allowed = f"0 to below {0.5 * design.deflection:g} mm (half the deflection)"
-        _refuse("clearance", bearing.clearance, allowed)
-    if design.micro_geometry.wg_slope != 0.0:
-        slope = design.micro_geometry.wg_slope
-        raise InputError(
-            f"micro_geometry.wg_slope = {slope:g} is out of range: allowed only 0 with {SECTION}"
-        )
-
-
-def _refuse(key: str, value: float, allowed: str) -> None:
-    raise InputError(f"{SECTION}.{key} = {value:g} is out of range: allowed {allowed}")
+    bearing, sizes, output = design.bearing, design.bearing_sizes, design.output
+    require_available(
+        not isinstance(design.wave_generator, FourRoller),
+        SECTION,
+        'wave_generator.type = "four_roller"',
+        "with cams whose curve an inner race can follow",
+    )
+    lobes = f"wave_generator.lobes = {design.lobes}"
+    require_available(design.lobes == 2, SECTION, lobes, "with two")
+    resolved = output.root_stress and "root_stress" in output.model_fields_set
+    require(not resolved, "output.root_stress", True, f"only false with {SECTION}")
+    depth, ball = bearing.race_thickness, bearing.ball_diameter
+    radius, half = smallest_curvature_radius(design.cam()), 0.5 * design.deflection
+    allowed = f"above 0 to below {radius:.4g} mm ({RADIUS})"
+    require(depth < radius, f"{SECTION}.race_thickness", depth, allowed)
+    allowed = f"above 0 to below {radius - depth:.4g} mm ({RADIUS} less race_thickness)"
+    require(ball < radius - depth, f"{SECTION}.ball_diameter", ball, allowed)
+    most = int(np.pi / np.arcsin(ball / sizes.pitch_diameter))
+    allowed = f"3 to {most} (balls of ball_diameter beside each other)"
+    require(bearing.balls <= most, f"{SECTION}.balls", bearing.balls, allowed)
+    width, face_width = design.race_width, design.drive.face_width
+    allowed = f"above 0 to {face_width:g} mm (drive.face_width)"
+    require(width <= face_width, f"{SECTION}.race_width", width, allowed)
+    allowed = f"0 to below {half:g} mm (half the deflection)"
+    require(bearing.clearance < half, f"{SECTION}.clearance", bearing.clearance, allowed)
+    slope = design.micro_geometry.wg_slope
+    require(slope == 0.0, "micro_geometry.wg_slope", slope, f"only 0 with {SECTION}")

@@ -9,9 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.design.cup_section import Cup
+from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.geometry.drive_geometry import THICK_CUP
+from swgpar.input.require import require, require_available
 
 THINNEST = 0.1
 """Thickness of a wall over that of the rim, at least."""
@@ -39,26 +41,25 @@ ROUND_OFF = 1.0 + 1e-9
 def check_cup(design: DriveDesign) -> None:
     """Raise InputError for the first size of the cup that does not fit the others."""
     cup = design.cup
-    if design.solver.condensed_sectors:
-        raise InputError(
-            "solver.condensed_sectors = true is out of range: allowed only with drive.model = "
-            '"plane"'
-        )
+    condensed = design.solver.condensed_sectors
+    allowed = 'only with drive.model = "plane"'
+    require(not condensed, "solver.condensed_sectors", condensed, allowed)
     if cup is None:
         raise InputError('cup is missing: allowed only with drive.model = "plane"')
-    if cup.length <= cup.fillet_radius:
-        _refuse("cup.length", cup.length, f"above {cup.fillet_radius:g} mm (cup.fillet_radius)")
+    allowed = f"above {cup.fillet_radius:g} mm (cup.fillet_radius)"
+    require(cup.length > cup.fillet_radius, "cup.length", cup.length, allowed)
     _check_shape(cup)
-    _check_contour(design, cup)
-    _check_end(design, cup)
-    _check_back(design, cup)
-    _check_attachment(design, cup)
+    sizes, rim = design.cup_sizes, design.flexible_spline.rim
+    _check_contour(sizes, rim)
+    _check_end(sizes, rim)
+    # narrower splines leave the ring gear's width (docs/verification/stability.md)
+    width, narrowest = design.drive.face_width, max(design.axial_travel, 0.5 * rim)
+    allowed = f"{narrowest:.4g} mm (axial travel of the teeth, half of the rim) to inf mm"
+    require(width >= narrowest, "drive.face_width", width, allowed)
+    _check_back(sizes, rim)
+    _check_attachment(sizes)
     if cup.attachment == "bolted":
         _check_bolted(design)
-
-
-def _refuse(key: str, value: float, allowed: str) -> None:
-    raise InputError(f"{key} = {value:g} is out of range: allowed {allowed}")
 
 
 def _check_shape(cup: Cup) -> None:
@@ -75,141 +76,99 @@ def _check_shape(cup: Cup) -> None:
                 )
 
 
-def _check_contour(design: DriveDesign, cup: Cup) -> None:
+def _check_contour(sizes: CupSizes, rim: float) -> None:
     """Every point lies behind the one before, and no surface is steeper than 45 degrees."""
-    length, least = cup.length - cup.fillet_radius, THINNEST * design.flexible_spline.rim
-    points = design.cup_sizes.points
+    cup, wall, points = sizes.section, sizes.wall, sizes.points
+    length, least = cup.length - cup.fillet_radius, THINNEST * rim
     for k, (point, before) in enumerate(zip(cup.contour, points, strict=False), 1):
         key, (start, inner, thickness, _) = f"cup.contour.{k}", before
-        if not start + least <= point.distance * ROUND_OFF or point.distance > length * ROUND_OFF:
-            limits = (
-                f"{start + least:g} ({THINNEST:g} rims behind the point before) to {length:g} mm "
-                f"(the fillet)"
-            )
-            _refuse(f"{key}.distance", point.distance, limits)
-        step, radius = (point.distance - start) * ROUND_OFF, points[k][1]
+        first, at = start + least, point.distance
+        allowed = f"{first:g} ({THINNEST:g} rims behind the point before) to {length:g} mm"
+        behind = first <= at * ROUND_OFF and at <= length * ROUND_OFF
+        require(behind, f"{key}.distance", at, f"{allowed} (the fillet)")
+        step, radius = (at - start) * ROUND_OFF, points[k][1]
         steep = f"no steeper than 45 degrees from {start:g} mm on"
-        if abs(radius - inner) > step:
-            _refuse(
-                f"{key}.radius",
-                radius,
-                f"{max(inner - step, 0.0):.5g} to {inner + step:.5g} mm ({steep})",
-            )
+        allowed = f"{max(inner - step, 0.0):.5g} to {inner + step:.5g} mm ({steep})"
+        require(abs(radius - inner) <= step, f"{key}.radius", radius, allowed)
         low, high = max(inner + thickness - step - radius, least), inner + thickness + step - radius
-        if not low <= point.thickness <= high:
-            _refuse(
-                f"{key}.thickness",
-                point.thickness,
-                f"{low:.5g} to {high:.5g} mm ({steep}, {THINNEST:g} rims)",
-            )
-    wall = design.cup_sizes.wall
+        allowed = f"{low:.5g} to {high:.5g} mm ({steep}, {THINNEST:g} rims)"
+        require(low <= point.thickness <= high, f"{key}.thickness", point.thickness, allowed)
     most = np.minimum(wall.inner.largest_rounding(), wall.outer.largest_rounding())
-    for k, point in enumerate(cup.contour, 1):
-        limit = (
-            most[k - 1] if k <= len(most) else 0.0
-        )  # the last point may be where the fillet begins
-        if point.rounding > limit * ROUND_OFF:
-            _refuse(
-                f"cup.contour.{k}.rounding",
-                point.rounding,
-                f"0 to {limit:.4g} mm (half of the shorter side)",
-            )
+    # the last point may be where the fillet begins
+    limits = [*most.tolist(), 0.0]
+    for k, (point, limit) in enumerate(zip(cup.contour, limits, strict=False), 1):
+        allowed = f"0 to {limit:.4g} mm (half of the shorter side)"
+        fits = point.rounding <= limit * ROUND_OFF
+        require(fits, f"cup.contour.{k}.rounding", point.rounding, allowed)
 
 
-def _check_end(design: DriveDesign, cup: Cup) -> None:
+def _check_end(sizes: CupSizes, rim: float) -> None:
     """Fillet and closed end or flange."""
-    wall = design.cup_sizes.wall
+    cup, wall = sizes.section, sizes.wall
+    fillet, end, (begin, _) = cup.fillet_radius, wall.end_thickness, wall.center
     smallest = SMALLEST_FILLET * wall.thickness
-    if cup.fillet_radius * ROUND_OFF < smallest:
-        limits = f"{smallest:g} ({SMALLEST_FILLET:g} times the cup's thickness) to inf mm"
-        _refuse("cup.fillet_radius", cup.fillet_radius, limits)
-    least, most = THINNEST * design.flexible_spline.rim, cup.fillet_radius / SMALLEST_FILLET
-    if not least <= wall.end_thickness <= most * ROUND_OFF:
-        limits = (
-            f"{least:g} ({THINNEST:g} rims) to {most:g} mm (cup.fillet_radius over "
-            f"{SMALLEST_FILLET:g})"
-        )
-        _refuse("cup.end_thickness", wall.end_thickness, limits)
-    begin, _ = wall.center
-    if wall.outwards and cup.flange_radius <= begin:
-        _refuse(
-            "cup.flange_radius",
-            cup.flange_radius,
-            f"above {begin:g} mm (the flange outside cup.fillet_radius)",
-        )
-    if not wall.outwards and cup.inner_radius >= begin:
-        limits = f"above 0 to below {begin:g} mm (the closed end inside cup.fillet_radius)"
-        _refuse("cup.inner_radius", cup.inner_radius, limits)
+    allowed = f"{smallest:g} ({SMALLEST_FILLET:g} times the cup's thickness) to inf mm"
+    require(fillet * ROUND_OFF >= smallest, "cup.fillet_radius", fillet, allowed)
+    least, most = THINNEST * rim, fillet / SMALLEST_FILLET
+    allowed = f"{least:g} ({THINNEST:g} rims) to {most:g} mm (cup.fillet_radius over "
+    fits = least <= end <= most * ROUND_OFF
+    require(fits, "cup.end_thickness", end, f"{allowed}{SMALLEST_FILLET:g})")
+    if wall.outwards:
+        allowed = f"above {begin:g} mm (the flange outside cup.fillet_radius)"
+        require(cup.flange_radius > begin, "cup.flange_radius", cup.flange_radius, allowed)
+    else:
+        allowed = f"above 0 to below {begin:g} mm (the closed end inside cup.fillet_radius)"
+        require(cup.inner_radius < begin, "cup.inner_radius", cup.inner_radius, allowed)
 
 
-def _check_back(design: DriveDesign, cup: Cup) -> None:
-    """Face width and fillet at the back of the teeth."""
-    # narrower splines leave the ring gear's width (docs/verification/stability.md)
-    narrowest = max(design.axial_travel, 0.5 * design.flexible_spline.rim)
-    if design.drive.face_width < narrowest:
-        allowed = f"{narrowest:.4g} mm (axial travel of the teeth, half of the rim) to inf mm"
-        _refuse("drive.face_width", design.drive.face_width, allowed)
-    step = (
-        design.flexible_spline.rim - design.cup_thickness
-        if cup.thickness_coef <= THICK_CUP
-        else 0.0
-    )
+def _check_back(sizes: CupSizes, rim: float) -> None:
+    """Fillet at the back of the teeth."""
+    cup, wall = sizes.section, sizes.wall
+    key, fillet = "cup.back_fillet", cup.back_fillet
+    step = rim - sizes.thickness if cup.thickness_coef <= THICK_CUP else 0.0
     most = min(step, 0.5 * (cup.length - cup.fillet_radius))
-    if cup.back_fillet > most * ROUND_OFF:
-        allowed = (
-            f"0 to {most:.4g} mm (rim less wall; only 0 with cup.thickness_coef above "
-            f"{THICK_CUP:g})"
-        )
-        _refuse("cup.back_fillet", cup.back_fillet, allowed)
-    straight = min(
-        line.straight for line in (design.cup_sizes.wall.inner, design.cup_sizes.wall.outer)
-    )
-    if cup.back_fillet > straight * ROUND_OFF:
-        _refuse(
-            "cup.back_fillet",
-            cup.back_fillet,
-            f"0 to {straight:.4g} mm (as far as cup.contour is straight)",
-        )
+    thick = f"only 0 with cup.thickness_coef above {THICK_CUP:g}"
+    require(fillet <= most * ROUND_OFF, key, fillet, f"0 to {most:.4g} mm (rim less wall; {thick})")
+    most = min(wall.inner.straight, wall.outer.straight)
+    allowed = f"0 to {most:.4g} mm (as far as cup.contour is straight)"
+    require(fillet <= most * ROUND_OFF, key, fillet, allowed)
 
 
-def _check_attachment(design: DriveDesign, cup: Cup) -> None:
+def _check_attachment(sizes: CupSizes) -> None:
     """What is attached lies on the flat part of closed end or flange; washers lie beside each
     other."""
-    begin, _ = design.cup_sizes.wall.center
+    cup, (begin, _) = sizes.section, sizes.wall.center
     low, high = sorted((begin, cup.edge))
     flat = f"the flat part of the {'flange' if cup.shape == 'hat' else 'closed end'}"
-    narrowest = NARROWEST * design.cup_sizes.end_thickness
+    narrowest = NARROWEST * sizes.end_thickness
     if cup.attachment == "clamped":
         radius = cup.clamping_radius
-        if not low <= radius <= high or abs(cup.edge - radius) < narrowest:
-            allowed = f"{low:g} to {high:g} mm ({flat}), {narrowest:g} mm or more from its edge"
-            _refuse("cup.clamping_radius", radius, allowed)
+        allowed = f"{low:g} to {high:g} mm ({flat}), {narrowest:g} mm or more from its edge"
+        fits = low <= radius <= high and abs(cup.edge - radius) >= narrowest
+        require(fits, "cup.clamping_radius", radius, allowed)
     if cup.attachment == "bolted":
         washer, circle = cup.washer_diameter, cup.bolt_circle
-        if not narrowest <= washer <= (high - low) * ROUND_OFF:
-            _refuse("cup.washer_diameter", washer, f"{narrowest:g} to {high - low:g} mm ({flat})")
+        allowed = f"{narrowest:g} to {high - low:g} mm ({flat})"
+        fits = narrowest <= washer <= (high - low) * ROUND_OFF
+        require(fits, "cup.washer_diameter", washer, allowed)
         least, most = 2.0 * low + washer, 2.0 * high - washer
-        if not least <= circle * ROUND_OFF or circle > most * ROUND_OFF:
-            _refuse("cup.bolt_circle", circle, f"{least:g} to {most:g} mm (washers on {flat})")
-        if circle * np.sin(np.pi / cup.bolts) < washer:
-            most_bolts = int(np.pi / np.arcsin(washer / circle))
-            _refuse("cup.bolts", cup.bolts, f"3 to {most_bolts} (washers beside each other)")
+        allowed = f"{least:g} to {most:g} mm (washers on {flat})"
+        fits = least <= circle * ROUND_OFF and circle <= most * ROUND_OFF
+        require(fits, "cup.bolt_circle", circle, allowed)
+        most_bolts = int(np.pi / np.arcsin(washer / circle))
+        allowed = f"3 to {most_bolts} (washers beside each other)"
+        fits = circle * np.sin(np.pi / cup.bolts) >= washer
+        require(fits, "cup.bolts", cup.bolts, allowed)
 
 
 def _check_bolted(design: DriveDesign) -> None:
     """With bolts the teeth are not alike: the drive does not repeat after a pitch."""
-    where = 'with cup.attachment = "bolted", which does not repeat after a pitch'
-    if design.steps.samples:
-        raise InputError(
-            f"steps.samples = {design.steps.samples} is out of range: allowed only 0 {where}"
-        )
+    bolted = 'cup.attachment = "bolted", which does not repeat after a pitch'
+    samples, stiffness = design.steps.samples, design.stiffness
+    require(samples == 0, "steps.samples", samples, f"only 0 with {bolted}")
     for section in ("fatigue", "losses", "deviations"):
-        if getattr(design, section) is not None:
-            raise InputError(
-                f'[{section}] is not available {where}: allowed with "edge" and "clamped"'
-            )
-    if design.stiffness is not None and design.stiffness.positions > 1:
-        raise InputError(
-            f"stiffness.positions = {design.stiffness.positions} is out of range: allowed only 1 "
-            f"{where}"
-        )
+        absent = getattr(design, section) is None
+        require_available(absent, f"[{section}]", bolted, 'with "edge" and "clamped"')
+    if stiffness is not None:
+        positions = stiffness.positions
+        require(positions == 1, "stiffness.positions", positions, f"only 1 with {bolted}")

@@ -70,14 +70,14 @@ def _cup(design: DriveDesign) -> dict[str, float]:
     """Thicknesses of the cup and its attached area; those that equal the first one are left out."""
     if design.drive.model != "cup":
         return {}
-    cup, thinnest = design.cup, min(thickness for _, _, thickness, _ in design.cup_sizes.points)
-    sizes = {"cup thickness (mm)": design.cup_thickness}
-    if thinnest != design.cup_thickness:
+    cup, of_cup = design.cup, design.cup_sizes
+    end = "flange" if cup.shape == "hat" else "closed end"
+    thinnest = min(thickness for _, _, thickness, _ in of_cup.points)
+    sizes = {"cup thickness (mm)": of_cup.thickness}
+    if thinnest != of_cup.thickness:
         sizes["thinnest place of the wall (mm)"] = thinnest
-    if design.cup_sizes.end_thickness != design.cup_thickness:
-        sizes[f"thickness of the {'flange' if cup.shape == 'hat' else 'closed end'} (mm)"] = (
-            design.cup_sizes.end_thickness
-        )
+    if of_cup.end_thickness != of_cup.thickness:
+        sizes[f"thickness of the {end} (mm)"] = of_cup.end_thickness
     if cup.attachment == "clamped":
         sizes["attached area, one side (mm2)"] = np.pi * abs(cup.edge**2 - cup.clamping_radius**2)
     if cup.attachment == "bolted":

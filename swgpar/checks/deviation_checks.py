@@ -11,67 +11,55 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS, GearName
 from swgpar.errors import InputError
 from swgpar.input.quantities import show
+from swgpar.input.require import require, require_available
 
 LARGEST = 0.1
 """Largest deviation over the module: everything is of first order in them."""
 
+LENGTHS = {
+    **{f"{gear}.{key}": "µm" for gear in GEARS for key in ("profile_slope", "profile_form")},
+    **{f"{part}.eccentricity": "mm" for part in (*GEARS, "wave_generator", "cup")},
+    "ring_gear.ovality": "mm",
+}
+"""Keys of deviations that are lengths, with their units."""
+
+BEARING_ZERO = ("wave_generator.eccentricity", "wave_generator.tilt")
+PLANE_ZERO = ("cup.eccentricity", "cup.tilt", "ring_gear.tilt", "wave_generator.tilt")
+"""Keys that are 0 with a bearing, and in the plane model."""
+
 
 def check_deviations(design: DriveDesign, deviations: Deviations) -> None:
     """Raise InputError for the first deviation that does not fit."""
-    if design.lobes != 2:
-        raise InputError(
-            f"[deviations] is not available with wave_generator.lobes = {design.lobes}: allowed "
-            f"with two"
-        )
+    lobes = f"wave_generator.lobes = {design.lobes}"
+    require_available(design.lobes == 2, "[deviations]", lobes, "with two")
     if design.load.torque == 0.0:
         raise InputError("load.torque = 0 holds the output: allowed above 0 N·m with [deviations]")
-    if program := given_program(design):
-        raise InputError(
-            f"[deviations] is not available with {program}: allowed under one torque, load.torque"
-        )
-    if design.contact.friction:
-        raise InputError(
-            f"contact.friction = {design.contact.friction:g} is out of range: allowed 0 with "
-            f"[deviations]"
-        )
+    program, friction = given_program(design), design.contact.friction
+    allowed = "under one torque, load.torque"
+    require_available(program is None, "[deviations]", str(program), allowed)
+    require(friction == 0.0, "contact.friction", friction, "0 with [deviations]")
     for gear in GEARS:
         _check_pitch(design, deviations, gear)
-    cam = deviations.wave_generator
-    for key, value in (("eccentricity", cam.eccentricity), ("tilt", cam.tilt)):
-        if value and design.bearing is not None:
-            raise InputError(
-                f"deviations.wave_generator.{key} = {value:g} is out of range: allowed only 0 with "
-                "wave_generator.bearing"
-            )
-    module = design.drive.module
+    if design.bearing is not None:
+        _require_zero(deviations, BEARING_ZERO, "wave_generator.bearing")
     for key, unit in LENGTHS.items():
-        section, name = key.split(".")
-        value, most = getattr(getattr(deviations, section), name), LARGEST * module / unit
-        if abs(value) > most:
-            raise InputError(
-                f"deviations.{key} = {value:g} is out of range: allowed up to {most:g} "
-                f"{'mm' if unit == 1.0 else 'µm'} (a tenth of the module)"
-            )
+        value = _value(deviations, key)
+        most = LARGEST * design.drive.module / (MICRO if unit == "µm" else 1.0)
+        allowed = f"up to {most:g} {unit} (a tenth of the module)"
+        require(abs(value) <= most, f"deviations.{key}", value, allowed)
     if design.drive.model == "plane":
-        for key in ("cup.eccentricity", "cup.tilt", "ring_gear.tilt", "wave_generator.tilt"):
-            section, name = key.split(".")
-            if value := getattr(getattr(deviations, section), name):
-                raise InputError(
-                    f"deviations.{key} = {value:g} is out of range: allowed only 0 with "
-                    f'drive.model = "plane"'
-                )
+        _require_zero(deviations, PLANE_ZERO, 'drive.model = "plane"')
 
 
-LENGTHS = {
-    **{
-        f"{gear}.{key}": unit
-        for gear in GEARS
-        for key, unit in (("profile_slope", MICRO), ("profile_form", MICRO))
-    },
-    **{f"{part}.eccentricity": 1.0 for part in (*GEARS, "wave_generator", "cup")},
-    "ring_gear.ovality": 1.0,
-}
-"""Keys of deviations that are lengths, with their units in mm."""
+def _value(deviations: Deviations, key: str) -> float:
+    part, name = key.split(".")
+    return float(getattr(getattr(deviations, part), name))
+
+
+def _require_zero(deviations: Deviations, keys: tuple[str, ...], beside: str) -> None:
+    for key in keys:
+        value = _value(deviations, key)
+        require(value == 0.0, f"deviations.{key}", value, f"only 0 with {beside}")
 
 
 def _check_pitch(design: DriveDesign, deviations: Deviations, gear: GearName) -> None:
@@ -82,19 +70,17 @@ def _check_pitch(design: DriveDesign, deviations: Deviations, gear: GearName) ->
             f"{key}.pitch_column = {show(section.pitch_column)} has no file: allowed with "
             f"pitch_file"
         )
-    if errors and section.pitch_grade:
+    if not errors:
+        return
+    if section.pitch_grade:
         raise InputError(
             f"{key}.pitch_grade = {section.pitch_grade} stands beside {key}.pitch_errors: allowed "
             f"is one of them"
         )
-    if errors and len(errors) != teeth:
+    if len(errors) != teeth:
         raise InputError(
             f"{key}.pitch_errors has {len(errors)} values: allowed {teeth}, one for each tooth"
         )
     most = LARGEST * design.drive.module / MICRO
-    if errors and np.ptp(errors) > most:
-        raise InputError(
-            f"{key}.pitch_errors = {show(max(errors, key=abs))} is out of range: allowed "
-            f"differences up to {most:g} µm "
-            "(a tenth of the module)"
-        )
+    allowed = f"differences up to {most:g} µm (a tenth of the module)"
+    require(np.ptp(errors) <= most, f"{key}.pitch_errors", max(errors, key=abs), allowed)

@@ -7,18 +7,18 @@ import numpy as np
 from scipy.optimize import brentq
 
 from swgpar.checks.bearing_checks import check_bearing
-from swgpar.checks.conjugate_checks import check_conjugate
 from swgpar.checks.cup_checks import check_cup
 from swgpar.checks.deviation_checks import check_deviations
-from swgpar.checks.pancake_checks import check_pancake
 from swgpar.checks.program_checks import check_program
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.linear_solvers import LINEAR_SOLVERS
-from swgpar.design.sections import OMITTED_BENDING
+from swgpar.design.sections import GEARS, OMITTED_BENDING
 from swgpar.errors import InputError
 from swgpar.geometry.cams import FourRoller
 from swgpar.geometry.cams.keys import Harmonic
+from swgpar.geometry.profiles import Conjugate
 from swgpar.input.quantities import show
+from swgpar.input.require import require, require_available
 
 UNIQUE = 0.25
 """1 less curvature of a concave cam times its distance from the bore, at least: at 0 foot points
@@ -37,14 +37,29 @@ find no contact."""
 OUTLINE_POINTS = 2000
 """Points of the cam's outline at which its largest radius is measured."""
 
+PANCAKE = 'drive.model = "pancake"'
+
 
 def check_fit(design: DriveDesign) -> None:
     """Raise InputError for the first size that does not fit the others."""
-    check_conjugate(design)
-    check_pancake(design)
+    _check_conjugate(design)
+    _check_pancake(design)
     if design.has_cup:
         check_cup(design)
-    _check_sizes(design)
+    _check_wave_generator(design)
+    _check_teeth(design)
+    _check_steps(design)
+    _check_torque(design)
+    _check_fatigue(design)
+    width, cam_width = design.drive.face_width, design.wave_generator.face_width
+    allowed = f"above 0 to {width:g} mm (drive.face_width)"
+    require(cam_width <= width, "wave_generator.face_width", cam_width, allowed)
+    _check_linear_solver(design)
+    if design.drive.model == "plane":
+        _check_plane(design)
+    else:
+        _check_micro_geometry(design)
+    _check_outline(design)
     check_program(design)
     if design.deviations is not None:
         check_deviations(design, design.deviations)
@@ -52,102 +67,137 @@ def check_fit(design: DriveDesign) -> None:
         check_bearing(design)
 
 
-def _check_sizes(design: DriveDesign) -> None:
-    """Sizes of wave generator, teeth, steps, torque, fatigue and micro-geometry."""
-    _check_wave_generator(design)
-    _check_teeth(design)
-    _check_steps(design)
-    _check_torque(design)
-    _check_fatigue(design)
-    if design.wave_generator.face_width > design.drive.face_width:
-        width = design.drive.face_width
-        _refuse(
-            "wave_generator.face_width",
-            design.wave_generator.face_width,
-            f"above 0 to {width:g} mm (drive.face_width)",
+def _check_conjugate(design: DriveDesign) -> None:
+    """A conjugate profile needs another gear of its own profile, and a cam with two axes of
+    symmetry."""
+    conjugate = [gear for gear in GEARS if isinstance(getattr(design, gear).profile, Conjugate)]
+    for gear in conjugate:
+        name, profile = f"{gear}.profile", getattr(design, gear).profile
+        if len(conjugate) > 1:
+            raise InputError(
+                f'{name}.type = "conjugate" is available for one gear only: allowed another type '
+                f"for one"
+            )
+        require_available(
+            design.wave_generator.type != "asymmetric_parabolic",
+            f'{name}.type = "conjugate"',
+            'wave_generator.type = "asymmetric_parabolic"',
+            "are cams with two axes of symmetry, because both flanks of a tooth are mirror images",
         )
-    _check_linear_solver(design)
-    if design.drive.model == "plane":
-        _check_plane(design)
-    else:
-        _check_micro_geometry(design)
-    _check_outline(design)
+        half = 0.5 * design.drive.face_width if design.has_cup else 0.0
+        allowed = f"-{half:g} to {half:g} mm"
+        require(abs(profile.section) <= half, f"{name}.section", profile.section, allowed)
 
 
-def _refuse(key: str, value: float, allowed: str) -> None:
-    raise InputError(f"{key} = {value:g} is out of range: allowed {allowed}")
+def _check_pancake(design: DriveDesign) -> None:
+    """A pancake drive has a second ring gear, and not what only other drives have."""
+    second, drive = design.dynamic_spline, design.drive
+    if drive.model != "pancake":
+        if second is not None:
+            raise InputError(
+                f'dynamic_spline is given: allowed only with {PANCAKE}, not "{drive.model}"'
+            )
+        return
+    if second is None:
+        raise InputError(f"dynamic_spline is missing: {PANCAKE} needs it")
+    # both ring gears and the gap share the face width of the flexible spline, all on the cam
+    width, cam = drive.face_width, design.wave_generator.face_width
+    allowed = f"above 0 to below {width:g} mm (drive.face_width)"
+    require(second.gap < width, "dynamic_spline.gap", second.gap, allowed)
+    if second.face_width is not None:
+        rest = width - second.gap
+        allowed = f"above 0 to below {rest:g} mm (drive.face_width less dynamic_spline.gap)"
+        require(second.face_width < rest, "dynamic_spline.face_width", second.face_width, allowed)
+    allowed = f"only {width:g} mm (drive.face_width) with {PANCAKE}"
+    require(cam == width, "wave_generator.face_width", cam, allowed)
+    resolved = design.output.root_stress and "root_stress" in design.output.model_fields_set
+    fixed, friction = design.kinematics.wave_generator_is_fixed, design.contact.friction
+    conjugate = second.profile.type == "conjugate"
+    for given, what, allowed in (
+        (design.cup, "cup", 'only with drive.model = "cup"'),
+        (fixed, 'drive.layout = "wave_generator_fixed"', '"ring_fixed" or "spline_fixed"'),
+        (design.lobes != 2, f"wave_generator.lobes = {design.lobes}", "2"),
+        (design.housing, "ring_gear.housing", "without it"),
+        (design.bearing, "wave_generator.bearing", "a cam without a bearing"),
+        (design.deviations, "deviations", "without them"),
+        (design.has_program, "a load program, stiffness or ratcheting", "load.torque"),
+        (friction, f"contact.friction = {friction:g}", "0"),
+        (design.fatigue, "fatigue", "without it"),
+        (design.losses, "losses", "without them"),
+        (resolved, "output.root_stress = true", "false"),
+        (design.solver.condensed_sectors, "solver.condensed_sectors = true", "false"),
+        (conjugate, 'dynamic_spline.profile.type = "conjugate"', "the other profiles"),
+    ):
+        require_available(not given, what, PANCAKE, allowed)
 
 
 def _check_linear_solver(design: DriveDesign) -> None:
     """Friction makes the tangent unsymmetric."""
     linear, friction = design.solver.linear, design.contact.friction
-    if friction > 0.0 and LINEAR_SOLVERS[linear].symmetric_only:
-        general = [name for name, entry in LINEAR_SOLVERS.items() if not entry.symmetric_only]
-        raise InputError(
-            f'solver.linear = "{linear}" is not available with contact.friction = {friction:g}: '
-            f"allowed {' or '.join(map(show, general))} with friction"
-        )
+    general = [name for name, entry in LINEAR_SOLVERS.items() if not entry.symmetric_only]
+    require_available(
+        friction == 0.0 or linear in general,
+        f'solver.linear = "{linear}"',
+        f"contact.friction = {friction:g}",
+        f"{' or '.join(map(show, general))} with friction",
+    )
 
 
 def _check_teeth(design: DriveDesign) -> None:
-    drive = design.drive
-    difference, lobes = drive.teeth_rg - drive.teeth_fs, design.lobes
-    if difference <= 0 or difference % lobes:
-        multiple = "two" if lobes == 2 else f"wave_generator.lobes = {lobes}"
-        raise InputError(
-            f"drive.teeth_rg - drive.teeth_fs = {difference} is out of range: allowed a positive "
-            f"multiple of {multiple}"
-        )
-    if drive.dedendum_coef <= drive.addendum_coef:
-        allowed = f"above {drive.addendum_coef:g} (the addendum) to 2 modules"
-        _refuse("drive.dedendum_coef", drive.dedendum_coef, allowed)
+    drive, lobes = design.drive, design.lobes
+    difference = drive.teeth_rg - drive.teeth_fs
+    multiple = "two" if lobes == 2 else f"wave_generator.lobes = {lobes}"
+    require(
+        difference > 0 and difference % lobes == 0,
+        "drive.teeth_rg - drive.teeth_fs",
+        difference,
+        f"a positive multiple of {multiple}",
+    )
+    allowed = f"above {drive.addendum_coef:g} (the addendum) to 2 modules"
+    deeper = drive.dedendum_coef > drive.addendum_coef
+    require(deeper, "drive.dedendum_coef", drive.dedendum_coef, allowed)
     walls = {f"{gear}.rim": getattr(design, gear).rim for gear in design.gears}
     if design.housing is not None:
         walls["ring_gear.housing.thickness"] = design.housing.thickness
     least, most = THINNEST_RIM * drive.module, THICKEST_RIM * drive.module
+    allowed = f"{least:g} to {most:g} mm ({THINNEST_RIM:g} to {THICKEST_RIM:g} modules)"
     for key, thickness in walls.items():
-        if not least <= thickness <= most:
-            _refuse(
-                key,
-                thickness,
-                f"{least:g} to {most:g} mm ({THINNEST_RIM:g} to {THICKEST_RIM:g} modules)",
-            )
-    if design.inner_radius <= design.deflection:
-        allowed = "a rim that leaves an inner radius above the deflection"
-        _refuse("flexible_spline.rim", design.flexible_spline.rim, allowed)
+        require(least <= thickness <= most, key, thickness, allowed)
+    require(
+        design.inner_radius > design.deflection,
+        "flexible_spline.rim",
+        design.flexible_spline.rim,
+        "a rim that leaves an inner radius above the deflection",
+    )
 
 
 def _check_wave_generator(design: DriveDesign) -> None:
     wave = design.wave_generator
-    if wave.lobes != 2 and not isinstance(wave, Harmonic):
-        raise InputError(
-            f"wave_generator.lobes = {wave.lobes} is not available with wave_generator.type = "
-            f'"{wave.type}": '
-            'allowed with "harmonic"'
-        )
+    require_available(
+        wave.lobes == 2 or isinstance(wave, Harmonic),
+        f"wave_generator.lobes = {wave.lobes}",
+        f'wave_generator.type = "{wave.type}"',
+        'with "harmonic"',
+    )
     if isinstance(wave, FourRoller):
-        if wave.beta >= wave.pin_half_angle:
-            _refuse(
-                "wave_generator.beta",
-                wave.beta,
-                f"above 0 to below {wave.pin_half_angle:g} deg (pin_half_angle)",
-            )
-    elif design.minor_semi_axis < SMALLEST_MINOR_AXIS * design.inner_radius:
-        allowed = (
-            f"values whose minor semi-axis is at least {SMALLEST_MINOR_AXIS:g} of the spline's "
-            f"inner radius"
-        )
-        _refuse("wave_generator.C", wave.C, allowed)
-    elif wave.type == "harmonic":
+        allowed = f"above 0 to below {wave.pin_half_angle:g} deg (pin_half_angle)"
+        require(wave.beta < wave.pin_half_angle, "wave_generator.beta", wave.beta, allowed)
+        return
+    require(
+        design.minor_semi_axis >= SMALLEST_MINOR_AXIS * design.inner_radius,
+        "wave_generator.C",
+        wave.C,
+        f"values whose minor semi-axis is at least {SMALLEST_MINOR_AXIS:g} of the spline's inner "
+        f"radius",
+    )
+    if wave.type == "harmonic":
         _check_concave(design, wave)
 
 
 def _check_concave(design: DriveDesign, wave: Harmonic) -> None:
     """Bores so far from a concave part of a harmonic cam that points of them have several feet on
     it."""
-    a = design.major_semi_axis
-    b = design.minor_semi_axis
-    bore = design.inner_radius
+    a, b, bore = design.major_semi_axis, design.minor_semi_axis, design.inner_radius
     order = design.lobes**2
 
     def room(b: float) -> float:
@@ -155,18 +205,15 @@ def _check_concave(design: DriveDesign, wave: Harmonic) -> None:
 
     if b < bore and room(b) < 0.0:  # the curvature there is the least one of the cam
         least = wave.C * brentq(room, b, bore) / b
-        _refuse(
-            "wave_generator.C",
-            wave.C,
-            f"{least:.4g} (a concave cam near the spline) to 1",
-        )
+        allowed = f"{least:.4g} (a concave cam near the spline) to 1"
+        require(False, "wave_generator.C", wave.C, allowed)
 
 
 def _check_steps(design: DriveDesign) -> None:
     steps, least = design.steps, np.degrees(design.kinematics.period_angle) * design.periods
-    if steps.samples and steps.rotation < 0.999999 * least:
-        allowed = f"{least:.6g} deg (periods: {design.periods}) and more with steps.samples"
-        _refuse("steps.rotation", steps.rotation, allowed)
+    covers = not steps.samples or steps.rotation >= 0.999999 * least
+    allowed = f"{least:.6g} deg (periods: {design.periods}) and more with steps.samples"
+    require(covers, "steps.rotation", steps.rotation, allowed)
 
 
 def _check_torque(design: DriveDesign) -> None:
@@ -174,25 +221,19 @@ def _check_torque(design: DriveDesign) -> None:
     cannot carry."""
     material = design.materials["flexible_spline"]
     shear_modulus = 0.5 * material.modulus / (1.0 + material.poisson)
-    weakest = design.inner_radius**2 * design.cup_thickness
+    weakest, of = design.inner_radius**2 * design.flexible_spline.rim, "rim"
     if design.has_cup:
-        weakest = min(radius**2 * thickness for _, radius, thickness, _ in design.cup_sizes.points)
+        points = design.cup_sizes.points
+        weakest, of = min(radius**2 * thickness for _, radius, thickness, _ in points), "cup's wall"
     most = 0.001 * LARGEST_SHEAR * shear_modulus * 2.0 * np.pi * weakest
     torques = {"load.torque": design.load.torque}
-    torques |= {
-        f"load.program.{k}.torque": stage.torque or 0.0
-        for k, stage in enumerate(design.load.program, 1)
-    }
+    for k, stage in enumerate(design.load.program, 1):
+        torques[f"load.program.{k}.torque"] = stage.torque or 0.0
     if design.stiffness is not None:
         torques["stiffness.torque"] = design.stiffness.torque or 0.0
+    allowed = f"up to {most:.4g} N·m (nominal shear strain of the {of}: {LARGEST_SHEAR:g})"
     for key, torque in torques.items():
-        if abs(torque) > most:
-            of = "cup's wall" if design.has_cup else "rim"
-            _refuse(
-                key,
-                torque,
-                f"up to {most:.4g} N·m (nominal shear strain of the {of}: {LARGEST_SHEAR:g})",
-            )
+        require(abs(torque) <= most, key, torque, allowed)
 
 
 def _check_fatigue(design: DriveDesign) -> None:
@@ -201,20 +242,19 @@ def _check_fatigue(design: DriveDesign) -> None:
     fatigue = design.fatigue
     if fatigue is None:
         return
-    tensile, limit = fatigue.tensile_strength, fatigue.fatigue_limit
-    for key, most, name in (
-        ("yield_strength", tensile, "tensile_strength"),
-        ("fatigue_limit", tensile, "tensile_strength"),
-        ("shear_fatigue_limit", limit, "fatigue_limit"),
+    limit, shear = fatigue.fatigue_limit, fatigue.shear_fatigue_limit
+    for key, larger in (
+        ("yield_strength", "tensile_strength"),
+        ("fatigue_limit", "tensile_strength"),
+        ("shear_fatigue_limit", "fatigue_limit"),
     ):
-        if getattr(fatigue, key) > most:
-            _refuse(
-                f"fatigue.{key}", getattr(fatigue, key), f"above 0 to {most:g} MPa (fatigue.{name})"
-            )
+        value, most = getattr(fatigue, key), getattr(fatigue, larger)
+        require(
+            value <= most, f"fatigue.{key}", value, f"above 0 to {most:g} MPa (fatigue.{larger})"
+        )
     least = limit / np.sqrt(3.0)
-    if fatigue.shear_fatigue_limit < least:
-        allowed = f"{least:.4g} (fatigue.fatigue_limit over the root of 3) to {limit:g} MPa"
-        _refuse("fatigue.shear_fatigue_limit", fatigue.shear_fatigue_limit, allowed)
+    allowed = f"{least:.4g} (fatigue.fatigue_limit over the root of 3) to {limit:g} MPa"
+    require(shear >= least, "fatigue.shear_fatigue_limit", shear, allowed)
 
 
 def _check_plane(design: DriveDesign) -> None:
@@ -226,23 +266,22 @@ def _check_plane(design: DriveDesign) -> None:
         )
     for key in ("wg_crowning", "wg_slope", "fs_crowning"):
         value = getattr(design.micro_geometry, key)
-        if value != 0.0:
-            _refuse(f"micro_geometry.{key}", value, 'only 0 with drive.model = "plane"')
+        require(value == 0.0, f"micro_geometry.{key}", value, 'only 0 with drive.model = "plane"')
 
 
 def _check_micro_geometry(design: DriveDesign) -> None:
-    micro, module = design.micro_geometry, design.drive.module
+    micro, quarter = design.micro_geometry, 0.25 * design.drive.module
     # beyond a quarter of its width the cam is a cone of some 30 degrees, off which the spline
     # slides
     most = min(0.5 * design.deflection, 0.25 * design.wave_generator.face_width)
     limits = "half the deflection, a quarter of the cam's width"
-    if micro.wg_crowning > most:
-        _refuse("micro_geometry.wg_crowning", micro.wg_crowning, f"0 to {most:g} mm ({limits})")
-    if abs(micro.wg_slope) > most:
-        _refuse("micro_geometry.wg_slope", micro.wg_slope, f"-{most:g} to {most:g} mm ({limits})")
-    if micro.fs_crowning > 0.25 * module:
-        allowed = f"0 to {0.25 * module:g} mm (a quarter of the module)"
-        _refuse("micro_geometry.fs_crowning", micro.fs_crowning, allowed)
+    for key, least, largest, why in (
+        ("wg_crowning", 0.0, most, limits),
+        ("wg_slope", -most, most, limits),
+        ("fs_crowning", 0.0, quarter, "a quarter of the module"),
+    ):
+        value, allowed = getattr(micro, key), f"{least:g} to {largest:g} mm ({why})"
+        require(least <= value <= largest, f"micro_geometry.{key}", value, allowed)
 
 
 def _check_outline(design: DriveDesign) -> None:

@@ -6,12 +6,8 @@ import re
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
-from swgpar.load.load_program import (
-    NO_TORQUE,
-    RATCHETING,
-    controls,
-    stiffness_program,
-)
+from swgpar.input.require import require, require_available
+from swgpar.load.load_program import NO_TORQUE, RATCHETING, controls, stiffness_program
 
 NAME = re.compile(r"[A-Za-z0-9_ +-]+")
 """Names of stages: they stand in tables and in names of quantities."""
@@ -23,32 +19,25 @@ ambiguous."""
 
 def given_program(design: DriveDesign) -> str | None:
     """Name of the section that gives the load program; None without one."""
-    return next((name for name, there in _programs(design).items() if there), None)
+    return next((name for name, section in _programs(design).items() if section), None)
 
 
 def check_program(design: DriveDesign) -> None:
     """Raise InputError for the first thing that does not fit in a load program."""
-    given = [name for name, there in _programs(design).items() if there]
+    programs = _programs(design)
+    given = [name for name, section in programs.items() if section]
     if len(given) > 1:
         raise InputError(
-            f"{given[0]} and {given[1]} are both given: allowed one of "
-            f"{', '.join(_programs(design))}"
+            f"{given[0]} and {given[1]} are both given: allowed one of {', '.join(programs)}"
         )
-    if given and design.steps.samples:
-        raise InputError(
-            f"steps.samples = {design.steps.samples} is out of range: allowed only 0 with "
-            f"{given[0]}"
-        )
-    if given and design.losses:
-        raise InputError(
-            f"[losses] is not available with {given[0]}: allowed under one torque, with "
-            f"steps.samples"
-        )
-    if design.fatigue and (design.stiffness or design.ratcheting):
-        raise InputError(
-            f"[fatigue] is not available with {given[0]}: allowed with load.program, or with "
-            f"steps.samples"
-        )
+    if given:
+        samples = design.steps.samples
+        require(samples == 0, "steps.samples", samples, f"only 0 with {given[0]}")
+        allowed = "under one torque, with steps.samples"
+        require_available(not design.losses, "[losses]", given[0], allowed)
+        allowed = "with load.program, or with steps.samples"
+        judged = not design.fatigue or bool(design.load.program)
+        require_available(judged, "[fatigue]", given[0], allowed)
     if design.load.program:
         _check_stages(design)
     if design.stiffness:
@@ -57,89 +46,73 @@ def check_program(design: DriveDesign) -> None:
         _check_ratcheting(design)
 
 
-def _programs(design: DriveDesign) -> dict[str, bool]:
+def _programs(design: DriveDesign) -> dict[str, object]:
     return {
-        "load.program": bool(design.load.program),
-        "[stiffness]": design.stiffness is not None,
-        f"[{RATCHETING}]": design.ratcheting is not None,
+        "load.program": design.load.program,
+        "[stiffness]": design.stiffness,
+        f"[{RATCHETING}]": design.ratcheting,
     }
 
 
 def _check_stages(design: DriveDesign) -> None:
     stages = design.load.program
-    kinds = controls(stages)
-    names = [stage.name for stage in stages]
+    kinds, names = controls(stages), [stage.name for stage in stages]
+    in_other_frame = design.kinematics.wave_generator_is_fixed
     for k, stage in enumerate(stages):
         key = f"load.program.{k + 1}"
         if not NAME.fullmatch(stage.name) or stage.name in names[:k]:
             raise InputError(
                 f"{key}.name = {stage.name!r} is not available: allowed a name that no stage "
-                f"before has, of letters, "
-                "digits, spaces and _ + -"
+                f"before has, of letters, digits, spaces and _ + -"
             )
         if stage.torque is not None and stage.output_rotation is not None:
             raise InputError(
                 f"{key}.torque = {stage.torque:g} and {key}.output_rotation = "
-                f"{stage.output_rotation:g} are both "
-                "given: allowed one of them"
+                f"{stage.output_rotation:g} are both given: allowed one of them"
             )
-        if (
-            kinds[k] == "rotation" and design.kinematics.wave_generator_is_fixed
-        ):  # rotations are prescribed in another frame
+        if kinds[k] == "rotation" and in_other_frame:
             raise InputError(
                 f"{key}.torque is missing: allowed only stages with a torque with drive.layout = "
                 f'"wave_generator_fixed"'
             )
-        if stage.points > 1 and k and kinds[k] != kinds[k - 1]:
-            raise InputError(
-                f"{key}.points = {stage.points} is out of range: allowed 1 where the output "
-                f"changes between torque and "
-                "prescribed rotation"
-            )
-        if stage.torque == 0.0 and not any(other.torque for other in stages):
-            raise InputError(
-                f"{key}.torque = 0 is out of range: allowed beside a stage with another torque, of "
-                f"which a share of "
-                f"{NO_TORQUE:g} stands for zero"
-            )
+        require(
+            stage.points == 1 or k == 0 or kinds[k] == kinds[k - 1],
+            f"{key}.points",
+            stage.points,
+            "1 where the output changes between torque and prescribed rotation",
+        )
+        require(
+            stage.torque != 0.0 or any(other.torque for other in stages),
+            f"{key}.torque",
+            stage.torque,
+            f"beside a stage with another torque, of which a share of {NO_TORQUE:g} stands for "
+            f"zero",
+        )
 
 
 def _check_stiffness(design: DriveDesign) -> None:
     section, program = design.stiffness, stiffness_program(design)
     if program.torque <= 0.0:
         raise InputError("stiffness.torque is missing: give it, or load.torque, above 0 N·m")
-    share = program.lost_motion_torque / program.torque
-    ends = section.break_points
-    if len(ends) != 2 or not share < ends[0] < ends[1] < 1.0:
-        raise InputError(
-            f"stiffness.break_points = {ends} is out of range: allowed two shares of the largest "
-            f"torque, ascending, "
-            f"above {share:.3g} (that of the lost motion) and below 1"
-        )
-    if share <= NO_TORQUE:
-        raise InputError(
-            f"stiffness.lost_motion_share = {section.lost_motion_share:g} is out of range: allowed "
-            f"above {NO_TORQUE:g} "
-            "of the largest torque"
-        )
-    if section.loop is False and design.contact.friction:
-        raise InputError(
-            "stiffness.loop = false is out of range: allowed true with friction, whose loop has an "
-            "area"
-        )
+    share, ends = program.lost_motion_torque / program.torque, section.break_points
+    require(
+        len(ends) == 2 and share < ends[0] < ends[1] < 1.0,
+        "stiffness.break_points",
+        ends,
+        f"two shares of the largest torque, ascending, above {share:.3g} (that of the lost motion) "
+        f"and below 1",
+    )
+    allowed = f"above {NO_TORQUE:g} of the largest torque"
+    lost = section.lost_motion_share
+    require(share > NO_TORQUE, "stiffness.lost_motion_share", lost, allowed)
+    allowed = "true with friction, whose loop has an area"
+    require(section.loop or not design.contact.friction, "stiffness.loop", section.loop, allowed)
 
 
 def _check_ratcheting(design: DriveDesign) -> None:
-    section = design.ratcheting
-    if section.increment > section.limit:
-        raise InputError(
-            f"ratcheting.limit = {section.limit:g} is out of range: allowed {section.increment:g} "
-            f"pitches "
-            "(ratcheting.increment) and more"
-        )
-    pitch = design.kinematics.output_pitch
-    if section.limit * pitch > MOST_ROTATION:
-        raise InputError(
-            f"ratcheting.limit = {section.limit:g} is out of range: allowed up to "
-            f"{MOST_ROTATION / pitch:.3g} pitches, {MOST_ROTATION:g} degrees"
-        )
+    section, pitch = design.ratcheting, design.kinematics.output_pitch
+    key, most = "ratcheting.limit", MOST_ROTATION / pitch
+    allowed = f"{section.increment:g} pitches (ratcheting.increment) and more"
+    require(section.limit >= section.increment, key, section.limit, allowed)
+    allowed = f"up to {most:.3g} pitches, {MOST_ROTATION:g} degrees"
+    require(section.limit <= most, key, section.limit, allowed)

@@ -273,11 +273,17 @@ class DriveDesign(Design):
         return self.steps.pins and self.bearing is None
 
     @property
+    def without_windows(self) -> str:
+        """What keeps windows from resolving the stress at the teeth: a bearing, or two ring gears;
+        empty without."""
+        if self.bearing is not None:
+            return "a bearing"
+        return "" if self.dynamic_spline is None else "two ring gears"
+
+    @property
     def resolves_root_stress(self) -> bool:
-        """Whether windows resolve the stress at the teeth: with one loaded state, on a cam without
-        a bearing, and one ring gear."""
-        simple = self.bearing is None and self.dynamic_spline is None
-        return self.output.root_stress and not self.has_program and simple
+        """Whether windows resolve the stress at the teeth in the one loaded state."""
+        return self.output.root_stress and not self.has_program and not self.without_windows
 
     @property
     def axial_travel(self) -> float:
@@ -326,12 +332,6 @@ class DriveDesign(Design):
         return CupSizes(
             self.cup, self.inner_radius, self.flexible_spline.rim, 0.5 * self.drive.face_width
         )
-
-    @property
-    def cup_thickness(self) -> float:
-        """Thickness (mm) of the cup's wall at the back of the teeth; that of the rim in the plane
-        model without cup."""
-        return self.cup_sizes.thickness if self.has_cup else self.flexible_spline.rim
 
     @property
     def rest_plane(self) -> float:

@@ -3,12 +3,11 @@ may mislead."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.summary import BodySizes, DriveSummary
 from swgpar.evaluation.largest_contact import LargestContact
 from swgpar.evaluation.numerics import BALANCE, Numerics
@@ -16,6 +15,7 @@ from swgpar.evaluation.places import APART, LargestStresses
 from swgpar.evaluation.rotation import Rotation
 from swgpar.evaluation.windows.accuracy import Accuracy
 from swgpar.evaluation.windows.root_stress import RootStress
+from swgpar.geometry.profiles.rigid_teeth import RigidTeeth
 from swgpar.results.history import loaded_increments
 
 ENERGY = 0.05
@@ -43,12 +43,20 @@ class Check(NamedTuple):
 
 def checks(summary: DriveSummary, history: Mapping[str, np.ndarray]) -> list[Check]:
     """All checks of a run, from its summary and history."""
-    design = summary.design
+    steps, contact, module = (
+        summary.design.steps,
+        summary.design.contact,
+        summary.design.drive.module,
+    )
+    period = 0.999999 * np.degrees(summary.design.kinematics.period_angle)
+    covered = steps.samples > 0 or steps.rotation >= period
+    teeth = [summary.design.rigid_teeth(ring) for ring in summary.design.gears[1:]]
+    tolerance = contact.penetration_tolerance * module
     return [
         _balance(summary.numerics),
-        _energy(design, summary.rotation),
-        _penetration(design, history),
-        _clearance(design),
+        _energy(summary.rotation, covered and not summary.design.is_bolted, contact.friction > 0.0),
+        _penetration(tolerance, history),
+        _clearance(teeth, tolerance),
         _edge(summary.contact),
         _resolution(summary.root_stress, summary.accuracy),
         _meshed(summary.stresses),
@@ -71,27 +79,23 @@ def _balance(found: Numerics) -> Check:
     return Check("balance of torques", left <= allowed, text)
 
 
-def _energy(design: DriveDesign, rotation: Rotation) -> Check:
+def _energy(rotation: Rotation, repeats: bool, friction: bool) -> Check:
+    """repeats : whether the rotation covers a period, after which the drive is in the same
+    state"""
     name, expected = "energy", rotation.wg_torque_expected_Nmm
     if rotation.jammed:
         return Check(name, False, rotation.jammed)
-    if design.is_bolted:
-        return Check(name, None, "a drive on bolts does not repeat after a pitch")
     mean = rotation.means.get("wg_torque_Nmm")
-    covered = design.steps.samples or design.steps.rotation >= 0.999999 * np.degrees(
-        design.kinematics.period_angle
-    )
-    if mean is None or not expected or not covered:
+    if mean is None or not expected or not repeats:
         return Check(
-            name, None, "needs a torque, and a rotation over a period of the motion or more"
+            name,
+            None,
+            "needs a torque, a rotation over a period of the motion or more, and no bolts, with "
+            "which a drive does not repeat after a pitch",
         )
-    torque = (
-        "mean torque on the standing wave generator"
-        if design.kinematics.wave_generator_is_fixed
-        else "mean input torque"
-    )
+    torque = "mean torque on the standing wave generator" if rotation.input else "mean input torque"
     text = f"{torque} {mean:.5g} N·mm, by the energy balance {expected:.5g} N·mm"
-    if design.contact.friction:
+    if friction:
         return Check(
             name,
             mean >= expected * (1.0 - ENERGY),
@@ -102,15 +106,12 @@ def _energy(design: DriveDesign, rotation: Rotation) -> Check:
     )
 
 
-def _penetration(design: DriveDesign, history: Mapping[str, np.ndarray]) -> Check:
+def _penetration(allowed: float, history: Mapping[str, np.ndarray]) -> Check:
     loaded = loaded_increments(history)
     if "max_penetration_mm" not in history:  # a result of another version
         return Check("penetration", None, "the history does not have it")
     values = history["max_penetration_mm"][loaded] if len(loaded) else history["max_penetration_mm"]
-    most, allowed = (
-        float(values.max(initial=0.0)),
-        design.contact.penetration_tolerance * design.drive.module,
-    )
+    most = float(values.max(initial=0.0))
     text = (
         f"flanks penetrate each other by up to {1000 * most:.2g} µm; good up to "
         f"{1000 * allowed:.2g} µm"
@@ -118,15 +119,13 @@ def _penetration(design: DriveDesign, history: Mapping[str, np.ndarray]) -> Chec
     return Check("penetration", most <= allowed, text)
 
 
-def _clearance(design: DriveDesign) -> Check:
-    clearance = min(design.rigid_teeth(ring).clearance(181) for ring in design.gears[1:])
-    least = -design.contact.penetration_tolerance * design.drive.module
+def _clearance(meshes: Sequence[RigidTeeth], tolerance: float) -> Check:
+    clearance = min(teeth.clearance(181) for teeth in meshes)
     text = (
         f"smallest distance of the undeformed flanks {1000 * clearance:.3g} µm; good from "
-        f"{1000 * least:.2g} µm: the "
-        "contact takes up an overlap of that size"
+        f"{-1000 * tolerance:.2g} µm: the contact takes up an overlap of that size"
     )
-    return Check("clearance of the flanks", clearance >= least, text)
+    return Check("clearance of the flanks", clearance >= -tolerance, text)
 
 
 def _edge(contact: LargestContact | None) -> Check:

@@ -60,7 +60,7 @@ class LoadSequence:
     start : undeformed drive
     states : at the ends of all increments, in order
     points : of the load program; empty without one
-    torque : N·m, `load.torque`
+    torque : N·m, `load.torque`;  negligible_torque : N·mm, up to which it counts as none
     rotation, increment : deg, `steps.rotation` and `steps.increment`
     samples : angles of one period that are computed and continued by symmetry; 0 without
     periods : that are computed with them: two with friction, whose state settles in the first
@@ -72,6 +72,7 @@ class LoadSequence:
     states: tuple[LoadState, ...]
     points: tuple[ProgramPoint, ...]
     torque: float
+    negligible_torque: float
     rotation: float
     increment: float
     samples: int
@@ -99,6 +100,7 @@ def load_sequence(design: DriveDesign) -> LoadSequence:
     """All load states of a run."""
     kinematics, steps, start = design.kinematics, design.steps, start_state(design)
     points, module = tuple(program_points(design)), design.drive.module
+    negligible = negligible_torque(design)
     states = [
         *_deflection(start, steps.deflect_increments),
         *_engagement(
@@ -109,10 +111,12 @@ def load_sequence(design: DriveDesign) -> LoadSequence:
         states += _program(points, kinematics)
     else:
         torque = kinematics.internal_torque(design.load.torque)
-        counts = abs(torque) > negligible_torque(design)
         angles = rotation_angles(steps, kinematics.period_angle, design.periods)
         states += _rotation(
-            torque if counts else 0.0, steps.load_increments, angles, kinematics.ratio
+            torque if abs(torque) > negligible else 0.0,
+            steps.load_increments,
+            angles,
+            kinematics.ratio,
         )
     if design.dynamic_spline is not None:
         states = [replace(state, spline_held=state.control == "rotation") for state in states]
@@ -122,6 +126,7 @@ def load_sequence(design: DriveDesign) -> LoadSequence:
         states=tuple(states),
         points=points,
         torque=design.load.torque,
+        negligible_torque=negligible,
         rotation=steps.rotation,
         increment=steps.increment,
         samples=steps.samples,

@@ -12,6 +12,7 @@ from swgpar.constraints.race_coupling import RaceCoupling
 from swgpar.contact.ball_contact import LARGEST_REACH, BallContact, BallSet
 from swgpar.contact.point_contact import ball_spring
 from swgpar.contact.race_contact import RaceContact
+from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body import FLEXIBLE_SPLINE, OUTER_RACE, Body
 from swgpar.fem.elements import Elements
@@ -74,11 +75,13 @@ def build_ball_contact(design: DriveDesign, elements: Elements) -> BallContact:
     )
 
 
-def build_race_contact(
-    design: DriveDesign, elements: Elements, half_width: float, pressure_limit: float
-) -> RaceContact:
-    """Contact of the race with the flexible spline. half_width : mm, of the race;  pressure_limit :
-    MPa"""
+def build_bearing_contacts(
+    design: DriveDesign, elements: Elements, pressure_limit: float, edge: float
+) -> WaveGeneratorContacts:
+    """Contacts of the race with the flexible spline, and of the balls with the race.
+
+    pressure_limit : as a share of the modulus;  edge : factor on the width of the race
+    """
     spline, race = elements.bodies[FLEXIBLE_SPLINE], elements.bodies[OUTER_RACE]
     micro = design.micro_geometry
 
@@ -88,19 +91,20 @@ def build_race_contact(
         )[0]
 
     column, layer = opposite_cells(spline.layout.mesh, race.layout.mesh)
-    return RaceContact(
+    contact = RaceContact(
         spline,
         race,
         grid=race_grid(race.layout.mesh, "outer"),
         column=column,
         layer=layer,
-        half_width=half_width,
+        half_width=0.5 * design.race_width * edge,
         radius=design.inner_radius,
         relief=relief,
         n_quadrature=design.contact.wg_quadrature,
         penalty=design.wg_penalty,
-        pressure_limit=pressure_limit,
+        pressure_limit=pressure_limit * design.modulus_of("bearing"),
     )
+    return WaveGeneratorContacts(race=contact, balls=build_ball_contact(design, elements))
 
 
 def race_coupling(partition: Partition, elements: Elements, spline: NodeMeans) -> RaceCoupling:

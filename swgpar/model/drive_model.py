@@ -3,9 +3,9 @@ factories."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -24,22 +24,18 @@ from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
 from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import Contact, Solver
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.condensed_parts import relative_end_rotation
-from swgpar.fem.elements import Elements
+from swgpar.fem.elements import BodyElements, Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.sectors_in_reach import RingSectors, WholeTeeth
 from swgpar.fem.stress import body_fields, part_maxima
 from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
-from swgpar.model.bearing_model import (
-    build_ball_contact,
-    build_race,
-    build_race_contact,
-    race_coupling,
-)
+from swgpar.model.bearing_model import build_bearing_contacts, build_race, race_coupling
 from swgpar.model.contact_distances import contact_search, foot_reach
 from swgpar.model.couplings import ring_guide, spline_attachment
 from swgpar.model.layouts import build_gear, build_layout
@@ -65,6 +61,7 @@ class DriveModel:
     meshes : one sector of each body by name
     partition, elements : ownership and elements
     problem, solver : discrete problem and its Newton solver
+    rigid_contacts : makes the contacts of cam and pins on another mesh of the flexible spline
     phases : wall seconds
     """
 
@@ -76,6 +73,7 @@ class DriveModel:
     elements: Elements
     problem: DiscreteProblem
     solver: NewtonSolver
+    rigid_contacts: Callable[[BodyElements], WaveGeneratorContacts]
     phases: PhaseTimes
 
     def destroy(self) -> None:
@@ -174,12 +172,16 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
     with phases("elements"):
         symmetric = design.contact.friction == 0.0
         elements = Elements(partition, symmetric=symmetric)
-    supports = build_supports(design, partition=partition, elements=elements)
+    supports, on_spline = build_supports(design, partition, elements), rigid_contacts(design)
+    if design.bearing is None:
+        wave_generator = on_spline(elements.bodies[FLEXIBLE_SPLINE])
+    else:
+        wave_generator = build_bearing_contacts(design, elements, PRESSURE_LIMIT, EDGE)
     problem = DiscreteProblem(
         partition=partition,
         elements=elements,
         supports=supports,
-        wave_generator=build_wave_generator_contacts(design, elements=elements),
+        wave_generator=wave_generator,
         flanks=build_flank_contacts(
             design, partition=partition, elements=elements, supports=supports
         ),
@@ -198,7 +200,9 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
         ],
         phases=phases,
     )
-    solver = NewtonSolver(problem, newton_settings(design))
+    solver = NewtonSolver(
+        problem, newton_settings(design.solver, design.contact, design.drive.module)
+    )
     return DriveModel(
         design=design,
         geometry=geometry,
@@ -208,6 +212,7 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
         elements=elements,
         problem=problem,
         solver=solver,
+        rigid_contacts=on_spline,
         phases=phases,
     )
 
@@ -231,7 +236,7 @@ def build_layouts(design: DriveDesign, meshes: Mapping[str, SectorMesh]) -> list
     return layouts
 
 
-def build_supports(design: DriveDesign, *, partition: Partition, elements: Elements) -> Supports:
+def build_supports(design: DriveDesign, partition: Partition, elements: Elements) -> Supports:
     """Couplings of the spline, of a ring gear that is not clamped and of a bearing; the guide of a
     rotating ring."""
     spline = elements.bodies[FLEXIBLE_SPLINE]
@@ -272,40 +277,27 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
     )
 
 
-def build_wave_generator_contacts(
-    design: DriveDesign, *, elements: Elements
-) -> WaveGeneratorContacts:
-    """Contacts of cam and pins, or of a bearing."""
-    if design.bearing is None:
-        return build_rigid_contacts(design, elements=elements)
-    race = build_race_contact(
-        design,
-        elements,
-        0.5 * design.race_width * EDGE,
-        PRESSURE_LIMIT * design.modulus_of("bearing"),
+def rigid_contacts(design: DriveDesign) -> Callable[[BodyElements], WaveGeneratorContacts]:
+    """What makes the contacts of cam and pins on the inner surface, of any mesh of the flexible
+    spline."""
+    contact = partial(
+        RigidContact,
+        surface=design.cam_surface(),
+        radius=design.inner_radius,
+        half_width=0.5 * design.wave_generator.face_width * EDGE,
+        n_quadrature=design.contact.wg_quadrature,
+        penalty=design.wg_penalty,
+        pin_half_angle=float(np.radians(design.wave_generator.pin_half_angle)),
+        lobes=design.lobes,
+        pressure_limit=PRESSURE_LIMIT * design.modulus_of("flexible_spline"),
     )
-    return WaveGeneratorContacts(race=race, balls=build_ball_contact(design, elements))
 
-
-def build_rigid_contacts(design: DriveDesign, *, elements: Elements) -> WaveGeneratorContacts:
-    """Contact of the cam and of the pins on the inner surface."""
-    surface = design.cam_surface()
-    cam, pins = (
-        RigidContact(
-            elements.bodies[FLEXIBLE_SPLINE],
-            surface,
-            pose,
-            radius=design.inner_radius,
-            half_width=0.5 * design.wave_generator.face_width * EDGE,
-            n_quadrature=design.contact.wg_quadrature,
-            penalty=design.wg_penalty,
-            pin_half_angle=float(np.radians(design.wave_generator.pin_half_angle)),
-            lobes=design.lobes,
-            pressure_limit=PRESSURE_LIMIT * design.modulus_of("flexible_spline"),
+    def on(spline: BodyElements) -> WaveGeneratorContacts:
+        return WaveGeneratorContacts(
+            cam=contact(spline, pose=cam_pose), pins=contact(spline, pose=pin_pose)
         )
-        for pose in (cam_pose, pin_pose)
-    )
-    return WaveGeneratorContacts(cam=cam, pins=pins)
+
+    return on
 
 
 def build_flank_contacts(
@@ -334,14 +326,13 @@ def build_flank_contacts(
     return contacts
 
 
-def newton_settings(design: DriveDesign) -> NewtonSettings:
-    """Settings of the solver."""
-    solver, contact = design.solver, design.contact
+def newton_settings(solver: Solver, contact: Contact, module: float) -> NewtonSettings:
+    """Settings of the solver. module : mm"""
     return NewtonSettings(
         rtol=solver.rtol,
         max_iterations=solver.max_iterations,
         max_augmentations=contact.max_augmentations,
-        penetration_tolerance=contact.penetration_tolerance * design.drive.module,
+        penetration_tolerance=contact.penetration_tolerance * module,
         linear=solver.linear,
         reuse_factor=solver.keep_factor,
     )

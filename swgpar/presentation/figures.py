@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.drive_data import SPLINE, DriveData
 from swgpar.errors import InputError
 from swgpar.evaluation.transmission_error import orders
+from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.load.load_states import Stage
 from swgpar.presentation.circumference_figure import FIELDS, draw_circumference
 from swgpar.presentation.contact_figures import (
@@ -48,7 +49,7 @@ class DriveFigures(FigureSet):
 
     def __init__(self, result: DriveData, comm: MPI.Comm, *, gathered: bool) -> None:
         super().__init__(comm, gathered=gathered)
-        self._result = result
+        self._result, self._kinematics = result, result.summary.design.kinematics
 
     @property
     def drawings(self) -> Drawings:
@@ -170,7 +171,7 @@ class DriveFigures(FigureSet):
         the other. Pairs whose contact lies on an edge have hollow marks: their pressure is no
         property of the drive.
         """
-        return draw_pairs(self._pairs(), self._design.lobes)
+        return draw_pairs(self._pairs(), self._kinematics.lobes)
 
     def load_sharing(self) -> Figure:
         """Share (%) of every pair in the forces between the flanks, over its angle from the major
@@ -179,7 +180,7 @@ class DriveFigures(FigureSet):
         All computed increments under load are drawn, and below the number of pairs at these angles.
         """
         pairs, history = self._pairs(), self._result.history
-        return draw_load_sharing(pairs, history, self._angle, self._design.lobes)
+        return draw_load_sharing(pairs, history, self._angle, self._kinematics.lobes)
 
     def haigh(self) -> Figure:
         """Haigh's diagram of all nodes of a sector, and the normal stress over the cycle where the
@@ -211,7 +212,7 @@ class DriveFigures(FigureSet):
     @property
     def _angle(self) -> str:
         """Title of the axis with the column `wg_angle_deg`."""
-        fixed = self._design.kinematics.wave_generator_is_fixed
+        fixed = self._kinematics.wave_generator_is_fixed
         return ANGLE_AGAINST_RING if fixed else ANGLE
 
     def _panels(self, count: int) -> tuple[Figure, list[Axes]]:
@@ -221,7 +222,7 @@ class DriveFigures(FigureSet):
         return figure, found
 
     def _over_period(self) -> str:
-        return ", over one period" if self._design.steps.samples else ""
+        return ", over one period" if self._result.summary.design.steps.samples else ""
 
     def ball_loads(self) -> Figure:
         """Loads of a bearing's balls (N) over the angle from the major axis, and the largest during
@@ -285,10 +286,10 @@ class DriveFigures(FigureSet):
             largest = here[np.argmax(pairs["force_N"][here])]
             angle = cam_angle + float(np.radians(pairs["angle_deg"][largest]))
             z = float(np.nan_to_num(pairs["z_mm"][largest]))
-        design = self._design
-        cam = design.cam_surface() if design.bearing is None else None
+        summary = self._result.summary
+        cam = summary.design.cam_surface() if summary.bearing is None else None
         grids, when = self._grids(increment), self._when(increment)
-        return draw_loaded_teeth(grids, design.geometry, cam, cam_angle, angle, z, when)
+        return draw_loaded_teeth(grids, self._geometry, cam, cam_angle, angle, z, when)
 
     def cup_section(self, increment: int = -1) -> Figure:
         """Sections of the deformed cup along its axis, through the major and the minor axis, by von
@@ -298,12 +299,12 @@ class DriveFigures(FigureSet):
         """
         if not self._has_cup:
             raise InputError(
-                f'drive.model = "{self._design.drive.model}" has no cup: allowed with "cup"'
+                f'drive.model = "{self._geometry.model}" has no cup: allowed with "cup"'
             )
-        design, when = self._design, self._when(increment)
+        when, lobes = self._when(increment), self._kinematics.lobes
         angle = self._cam_angle(self._row(increment))
         grids = self._grids(increment)
-        return draw_cup_section(grids, design.geometry, design.lobes, angle, when)
+        return draw_cup_section(grids, self._geometry, lobes, angle, when)
 
     def stress_around(self, increment: int = -1) -> Figure:
         """Largest s1 and von Mises stress (MPa) of every tooth's sector of the flexible spline,
@@ -311,24 +312,24 @@ class DriveFigures(FigureSet):
 
         increment : as in `DriveData.field`
         """
-        result, design, row = self._result, self._design, self._row(increment)
+        result, row = self._result, self._row(increment)
         sizes = result.summary.bodies[SPLINE]
         return draw_circumference(
-            design.geometry,
+            self._geometry,
             result.mesh(SPLINE).points,
             {name: result.field(name, increment, SPLINE) for name in FIELDS},
-            sizes.elements // (sizes.elements_whole // design.drive.teeth_fs),
+            sizes.elements // (sizes.elements_whole // self._kinematics.teeth_fs),
             float(np.radians(result.history["wg_angle_deg"][row])),
             self._when(increment),
         )
 
     @property
     def _has_cup(self) -> bool:
-        return self._design.drive.model == "cup"
+        return self._geometry.cup is not None
 
-    @property
-    def _design(self) -> DriveDesign:
-        return self._result.summary.design
+    @cached_property
+    def _geometry(self) -> DriveGeometry:
+        return self._result.summary.design.geometry
 
     def _grids(self, increment: int) -> list[pyvista.UnstructuredGrid]:
         """Both whole bodies with their fields; collective where these are gathered. What follows is
@@ -348,9 +349,8 @@ class DriveFigures(FigureSet):
     def _cam_angle(self, row: int) -> float:
         """Angle (rad) of the cam in the fields of a row of the history; 0 where the wave generator
         is fixed."""
-        if self._design.drive.layout == "wave_generator_fixed":
-            return 0.0
-        return float(np.radians(self._result.history["wg_angle_deg"][row]))
+        angle = float(np.radians(self._result.history["wg_angle_deg"][row]))
+        return self._kinematics.in_frame_of_result(angle, angle)
 
     def _when(self, increment: int) -> str:
         row = self._row(increment)

@@ -232,7 +232,9 @@ def test_a_housing_under_two_opposite_radial_loads(halved: bool) -> None:
         module=1.0,
         phases=PhaseTimes(),
     )
-    solver = NewtonSolver(problem, newton_settings(design))
+    solver = NewtonSolver(
+        problem, newton_settings(design.solver, design.contact, design.drive.module)
+    )
     assert solver.solve(LoadState(Stage.ROTATE, 4)).converged
     side = coupling.nodes[np.abs(arm[:, 1]).argmin()]
     position, moved = problem.positions()[side], problem.displacement()[side]

@@ -170,7 +170,7 @@ PANCAKE = [
     ),
     (
         ("cup.length=5", "cup.fillet_radius=1", "cup.inner_radius=3"),
-        "cup is given",
+        "cup is not available",
         'only with drive.model = "cup"',
     ),
 ]

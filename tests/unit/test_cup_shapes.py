@@ -37,7 +37,7 @@ def spline(case: DriveDesign, recipe: str = "full") -> SectorMesh:
 
 @pytest.mark.parametrize("recipe", ["coarse", "medium", "full"])
 def test_a_contour_that_is_straight_changes_no_bit_of_the_mesh(recipe: str) -> None:
-    thickness = shaped({}).cup_thickness
+    thickness = shaped({}).cup_sizes.thickness
     points = [{"distance": at, "thickness": thickness, "rounding": 2.0} for at in (3.1, 7.0)]
     plain, drawn = spline(shaped({}), recipe), spline(shaped({"contour": points}), recipe)
     assert np.array_equal(plain.coords, drawn.coords) and np.array_equal(plain.hexes, drawn.hexes)

@@ -74,7 +74,7 @@ def section_area(design: DriveDesign, gear: str) -> float:
 
 def wall_volume(design: DriveDesign) -> float:
     """Volume of the cup's wall, by Pappus's theorem."""
-    cup, t, r = design.cup, design.cup_thickness, design.inner_radius
+    cup, t, r = design.cup, design.cup_sizes.thickness, design.inner_radius
     cylinder = np.pi * ((r + t) ** 2 - r**2) * (cup.length - cup.fillet_radius)
     middle = r + t - cup.fillet_radius
     end = np.pi * (middle**2 - cup.inner_radius**2) * t

@@ -132,7 +132,7 @@ def section_area(case: DriveDesign, gear: str) -> float:
 
 
 def cup_volume(case: DriveDesign) -> float:
-    cup, t = case.cup, case.cup_thickness
+    cup, t = case.cup, case.cup_sizes.thickness
     outer, inner = cup.fillet_radius, cup.fillet_radius - t
     r_centre = case.inner_radius + t - outer
     cylinder = np.pi * ((case.inner_radius + t) ** 2 - case.inner_radius**2) * (cup.length - outer)
@@ -150,7 +150,7 @@ def test_fillet_at_the_back_of_the_teeth(recipe: str, radius: float) -> None:
     mesh = build_sector(case.geometry, load_recipe(recipe), "flexible_spline")
     plain = build_sector(load_design(REFERENCE).geometry, load_recipe(recipe), "flexible_spline")
     assert mesh.quality["min_scaled_jacobian"] > 0.3
-    back, wall = 0.5 * case.drive.face_width, case.inner_radius + case.cup_thickness
+    back, wall = 0.5 * case.drive.face_width, case.inner_radius + case.cup_sizes.thickness
     r, z = np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]
     on = (
         (r > wall - 1e-9)
@@ -278,7 +278,7 @@ def test_faces_of_the_closed_end_look_along_the_axis_away_from_its_middle() -> N
     area = 0.5 * np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     outside = corners[:, :, 2].mean(axis=1) > case.rest_plane
     assert np.array_equal(np.sign(area[:, 2]), np.where(outside, 1.0, -1.0))
-    r_out = case.inner_radius + case.cup_thickness - case.cup.fillet_radius
+    r_out = case.inner_radius + case.cup_sizes.thickness - case.cup.fillet_radius
     exact = np.pi * (r_out**2 - case.cup.inner_radius**2) / mesh.n_sectors
     for side in (outside, ~outside):
         assert np.abs(area[side, 2]).sum() == pytest.approx(exact, rel=1e-3)
@@ -291,7 +291,7 @@ def test_node_sets() -> None:
     assert np.allclose(np.hypot(bore[:, 0], bore[:, 1]), case.cup.inner_radius, rtol=1e-13)
     end = 0.5 * case.drive.face_width + case.cup.length
     assert bore[:, 2].max() == pytest.approx(end) and bore[:, 2].min() == pytest.approx(
-        end - case.cup_thickness
+        end - case.cup_sizes.thickness
     )
     ring = both["ring_gear"]
     radius = np.hypot(ring.coords[:, 0], ring.coords[:, 1])
@@ -307,7 +307,7 @@ def test_section_area_converges_quadratically(gear: str) -> None:
     profile = case.profile(gear)
     exact = section_area(case, gear)
     interface, free = (
-        (case.inner_radius + case.cup_thickness, case.inner_radius)
+        (case.inner_radius + case.cup_sizes.thickness, case.inner_radius)
         if gear == "flexible_spline"
         else (profile.r_root_circle + 1.0, profile.r_root_circle + case.ring_gear.rim)
     )

@@ -69,7 +69,7 @@ def test_a_fillet_takes_the_place_of_the_notch() -> None:
     design = load_design(REFERENCE, ["cup.back_fillet=0.2"])
     mesh = build_sector(design.geometry, load_recipe("full"), "flexible_spline")
     r, z = np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]
-    wall = design.inner_radius + design.cup_thickness
+    wall = design.inner_radius + design.cup_sizes.thickness
     on = np.flatnonzero(
         (np.abs(np.hypot(r - wall - 0.2, z - 5.2) - 0.2) < 1e-9) & (r <= wall + 0.2) & (z <= 5.2)
     )

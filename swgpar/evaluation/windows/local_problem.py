@@ -18,7 +18,7 @@ from swgpar.constraints.distributing_coupling import node_weights
 from swgpar.constraints.supports import Supports
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.torques import torques
-from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR, Body
+from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
@@ -34,7 +34,7 @@ from swgpar.meshing.interpolation import interpolation
 from swgpar.meshing.sector import SectorMesh
 from swgpar.meshing.tooth_sector import build_sector
 from swgpar.meshing.trim import trimmed
-from swgpar.model.drive_model import DriveModel, build_rigid_contacts, newton_settings
+from swgpar.model.drive_model import DriveModel
 from swgpar.model.regions import END, region_of, warning_of
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
@@ -118,11 +118,12 @@ class LocalProblem:
     """
 
     def __init__(self, model: DriveModel, state: LoadState, tooth: int, recipe: MeshRecipe) -> None:
-        self.model, self.state, design = model, state, model.design
+        self.model, self.state, geometry = model, state, model.geometry
         first = tooth - SECTORS // 2
-        mesh = window_mesh(model.geometry, recipe)
+        mesh = window_mesh(geometry, recipe)
+        layout = model.partition.layouts[FLEXIBLE_SPLINE]
         self.layout = BodyLayout(
-            body=Body(mesh, (design.materials[mesh.body],), design.drive.face_width),
+            body=replace(layout.body, mesh=mesh),
             first_tooth=first,
             count=SECTORS,
             closed=False,
@@ -133,26 +134,25 @@ class LocalProblem:
         self.elements = Elements(self.partition)
         self.body = self.elements.bodies[FLEXIBLE_SPLINE]
         teeth = first + np.arange(SECTORS)
-        drive_mesh = model.partition.layouts[FLEXIBLE_SPLINE].mesh
         self.loads = line_loads(
-            drive_mesh, flank_forces(model, state, teeth, model.problem.flanks_of(RING_GEAR))
+            layout.mesh, flank_forces(model, state, teeth, model.problem.flanks_of(RING_GEAR))
         )
         displacement = self._of_the_drive(teeth)
-        scale = design.modulus_of("flexible_spline") * design.drive.module
+        self.scale = model.problem.supports.scale
         problem = DiscreteProblem(
             partition=self.partition,
             elements=self.elements,
-            supports=Supports(self.partition, [], scale=scale, share=1.0),
-            wave_generator=build_rigid_contacts(design, elements=self.elements),
+            supports=Supports(self.partition, [], scale=self.scale, share=1.0),
+            wave_generator=model.rigid_contacts(self.body),
             boundary_terms=[self._dead_load(), self._cuts(displacement)],
-            module=design.drive.module,
+            module=geometry.module,
             phases=PhaseTimes(),
         )
         self.solver = NewtonSolver(
             problem,
             replace(
-                newton_settings(design),
-                rtol=RTOL[design.drive.model],
+                model.solver.settings,
+                rtol=RTOL[geometry.model],
                 linear="direct",
                 reuse_factor=True,
             ),
@@ -183,15 +183,15 @@ class LocalProblem:
 
     def _attached(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         """Sectors, one by one, and their nodes where closed end or flange is clamped or bolted."""
-        design, mesh = self.model.design, self.layout.mesh
-        if not design.has_attachment or "end" not in mesh.faces:
+        cup, mesh = self.model.design.cup, self.layout.mesh
+        if "end" not in mesh.faces:
             return
         nodes = np.unique(mesh.faces["end"])
         for sector in range(SECTORS):
             angle = self.layout.sector_angle(np.array(self.layout.first_tooth + sector))
             yield (
                 np.array([sector]),
-                nodes[design.cup.is_attached(rotated(mesh.coords[nodes], float(angle))[:, :2])],
+                nodes[cup.is_attached(rotated(mesh.coords[nodes], float(angle))[:, :2])],
             )
 
     def _cuts(self, displacement: np.ndarray) -> PrescribedDisplacement:
@@ -213,17 +213,12 @@ class LocalProblem:
                     held[int(i)] = displacement[sector, node]
         nodes = np.array(sorted(held), dtype=np.int64)
         values = np.array([held[int(i)] for i in nodes]).reshape(-1, 3)
-        stiffness = (
-            STIFFNESS
-            * self.model.design.modulus_of("flexible_spline")
-            * self.model.design.drive.module
-        )
-        return PrescribedDisplacement(self.partition, nodes, values, stiffness)
+        return PrescribedDisplacement(self.partition, nodes, values, STIFFNESS * self.scale)
 
     def _dead_load(self) -> DeadLoad:
         """Contact forces of the flanks, on their nodes of the window."""
         forces = np.zeros((self.partition.n_own, 3))
-        module = self.model.design.drive.module
+        module = self.model.geometry.module
         grids = {grid.side: grid for grid in self.layout.mesh.flanks}
         for (sector, side), load in self.loads.items():
             grid = grids[side]

@@ -243,7 +243,7 @@ def resolve_root_stress(
 
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
-    kind = model.design.drive.model
+    kind = model.geometry.model
     parts = (
         (False,) if kind == "plane" else (False, True)
     )  # between the ends of the teeth, and at them
@@ -334,7 +334,7 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
     in the loaded state, so that the ends of the teeth count only if they do there. Raises like
     `resolve_root_stress`.
     """
-    kind = model.design.drive.model
+    kind = model.geometry.model
     level = PERIOD_LEVEL[kind]
     ends = known.part == ENDS
     tooth = int(_largest_by_tooth(model, ends).argmax())
