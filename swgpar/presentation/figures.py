@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.design.kinematics import Kinematics
 from swgpar.drive_results.drive_data import SPLINE, DriveData
 from swgpar.errors import InputError
 from swgpar.evaluation.transmission_error import orders
@@ -49,7 +50,7 @@ class DriveFigures(FigureSet):
 
     def __init__(self, result: DriveData, comm: MPI.Comm, *, gathered: bool) -> None:
         super().__init__(comm, gathered=gathered)
-        self._result, self._kinematics = result, result.summary.design.kinematics
+        self._result = result
 
     @property
     def drawings(self) -> Drawings:
@@ -326,6 +327,10 @@ class DriveFigures(FigureSet):
     @property
     def _has_cup(self) -> bool:
         return self._geometry.cup is not None
+
+    @property
+    def _kinematics(self) -> Kinematics:
+        return self._result.summary.design.kinematics
 
     @cached_property
     def _geometry(self) -> DriveGeometry:
