@@ -8,6 +8,7 @@ The larger of both is reduced until they are small enough together (docs/theory/
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -200,8 +201,8 @@ class Refinement:
             "drive %.2g %%",
             self.model.n_elements(),
             found.s1,
-            100.0 * found.error / found.s1,
-            100.0 * found.drive_error / found.s1,
+            100.0 * _bound(found.error) / found.s1,
+            100.0 * _bound(found.drive_error) / found.s1,
         )
         return found
 
@@ -274,7 +275,10 @@ def choose_mesh(
     drive = Refinement(design, recipe, sequence, comm, largest, kept, levels)
     refine = {"windows": drive.refine_windows, "mesh": drive.refine_drive}
     while relative_error(drive.found) > accuracy:
-        errors = {"windows": drive.found.error, "mesh": drive.found.drive_error}
+        errors = {
+            "windows": _bound(drive.found.error),
+            "mesh": _bound(drive.found.drive_error),
+        }
         too_large = any(
             errors[part] > accuracy * drive.found.s1 for part in errors.keys() - refine.keys()
         )
@@ -294,4 +298,9 @@ def choose_mesh(
 
 def relative_error(found: RootStress) -> float:
     """Error over the stress."""
-    return found.total_error / abs(found.s1) if found.s1 else 1.0
+    return _bound(found.total_error) / abs(found.s1) if found.s1 else 1.0
+
+
+def _bound(error: float | None) -> float:
+    """The error, without end where it is not known."""
+    return math.inf if error is None else error

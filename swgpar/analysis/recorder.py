@@ -80,7 +80,9 @@ class Recorder(ABC):
     def keep_choice(self, chosen: ChosenMesh, accuracy: float) -> None:
         """Keep the stress that the windows of a mesh chosen for an accuracy gave."""
         self.record.accuracy = Accuracy(
-            asked=accuracy, estimated=chosen.error, reached=chosen.error <= accuracy
+            asked=accuracy,
+            estimated=chosen.error if np.isfinite(chosen.error) else None,
+            reached=chosen.error <= accuracy,
         )
         self.record.root_stress, self.record.coarse = chosen.root_stress, chosen.coarse
 

@@ -44,7 +44,12 @@ def stiffness_error(
         return None
     fine = by_position(stiffness_program(first), rows)[0.0]
     remaining = size_ratio(coarse, recipe) ** ORDER - 1.0
-    return {name: abs(getattr(fine, name) - getattr(found, name)) / remaining for name in NAMES}
+    both = {name: (getattr(fine, name), getattr(found, name)) for name in NAMES}
+    return {
+        name: abs(values[0] - values[1]) / remaining
+        for name, values in both.items()
+        if None not in values
+    }
 
 
 def _first_position(design: DriveDesign) -> DriveDesign:

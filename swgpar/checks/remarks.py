@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.load.load_sequence import negligible_torque
+from swgpar.load.negligible_torque import negligible_torque
 
 CLEARANCES = (
     "tip of spline to root of ring, major axis (mm)",

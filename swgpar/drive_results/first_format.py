@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 
 from swgpar.evaluation.fatigue import CRITERIA, Life
+from swgpar.evaluation.largest_contact import largest_contact
 from swgpar.evaluation.numerics import evaluate_numerics
 from swgpar.evaluation.rotation import Rotation
 from swgpar.evaluation.step_values import step_values
 from swgpar.results.history import Row
+from swgpar.results.table import as_rows
 
 
 def from_first_format(
@@ -33,8 +35,8 @@ def from_first_format(
     found["program"] = (
         {"stages": content["program"]} if content["design"]["load"]["program"] else None
     )
-    if contact := content["contact"]:
-        found["contact"] = {**contact, "on_edge": bool(np.any(pairs["edge"]))}
+    if content["contact"] and (contact := largest_contact(as_rows(pairs))):
+        found["contact"] = asdict(contact)
     if fatigue := content["fatigue"]:
         found["fatigue"] = {
             **fatigue,

@@ -131,12 +131,17 @@ def _clearance(meshes: Sequence[RigidTeeth], tolerance: float) -> Check:
 def _edge(contact: LargestContact | None) -> Check:
     if contact is None:
         return Check("edge contact", None, "no contact under load is known")
+    if contact.largest is None:
+        return Check("edge contact", None, "no pressure of the flanks could be computed")
+    at = contact.largest
     text = (
-        "lies on an edge: stress and pressure there grow with every finer mesh"
-        if contact.edge
+        f"lies on an edge, with {at.force_N:.4g} N: stress and pressure there grow with every "
+        "finer mesh"
+        if at.edge
         else "lies off edges"
     )
-    return Check("edge contact", not contact.edge, f"the largest contact {text}")
+    others = f"; edges carry up to {contact.edge_force_N:.4g} N" if contact.edge_force_N else ""
+    return Check("edge contact", not at.edge, f"the largest pressure of the flanks {text}{others}")
 
 
 def _resolution(root: RootStress | None, accuracy: Accuracy | None) -> Check:
@@ -145,6 +150,9 @@ def _resolution(root: RootStress | None, accuracy: Accuracy | None) -> Check:
             "the stress at the teeth is not resolved by windows: nodal averages have no error "
             "(output.root_stress)"
         )
+        return Check("resolution", None, text)
+    if root.total_error is None:
+        text = "the error of the largest tension at the teeth has no estimate"
         return Check("resolution", None, text)
     share = root.total_error / abs(root.s1) if root.s1 else np.inf
     limit = accuracy.asked if accuracy else RESOLUTION

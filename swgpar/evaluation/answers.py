@@ -6,6 +6,7 @@ units are known before a run, so that studies and optimisations can check what t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass, replace
 from types import UnionType
@@ -14,6 +15,9 @@ from typing import Any, ClassVar, TypeVar, dataclass_transform, get_args, get_ty
 from swgpar.design.drive_design import DriveDesign
 
 T = TypeVar("T")
+
+NO_ESTIMATE, NO_LIMIT = "no estimate", "no limit"
+"""In place of an error: it is not known; the value grows with every finer mesh."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +29,7 @@ class AnswerKind:
     path : where the evaluation has it: names of attributes or keys, with dots between; by default
     the field that declares it
     detail : whether the terminal and the first table of the report leave it out
+    exact : whether it has no error: a count, a number that is given, an error
     """
 
     name: str
@@ -32,6 +37,7 @@ class AnswerKind:
     unit: str = ""
     path: str = ""
     detail: bool = False
+    exact: bool = False
 
 
 @dataclass(frozen=True)
@@ -39,16 +45,19 @@ class Answer:
     """A number that a run has given.
 
     name, text, unit : as of its `AnswerKind`
+    value : None where it cannot be computed; the remark says why
     error : estimated, in the same unit; None where it is not known
+    no_error : in place of an error `NO_ESTIMATE` or `NO_LIMIT`; empty where the number has none
     place : where it is;  remark : what to know about it
     limit : the largest value that is good; None where there is none
     """
 
     name: str
-    value: float
+    value: float | None
     unit: str
     text: str
     error: float | None = None
+    no_error: str = ""
     place: str = ""
     remark: str = ""
     limit: float | None = None
@@ -67,10 +76,36 @@ def answer(
     path: str = "",
     *,
     detail: bool = False,
+    exact: bool = False,
     default: Any = MISSING,
 ) -> Any:
     """A field of an `evaluation` that is an answer; arguments are those of `AnswerKind`."""
-    return part_answers(AnswerKind(name, text, unit, path, detail), default=default)
+    return part_answers(AnswerKind(name, text, unit, path, detail, exact), default=default)
+
+
+def joined_error(*parts: float | None) -> float | None:
+    """Error that independent parts make together; None where one of them is not known.
+
+    A part that is not known is not zero: without it there is no error to state.
+    """
+    known = [part for part in parts if part is not None and math.isfinite(part)]
+    return math.hypot(*known) if len(known) == len(parts) else None
+
+
+def with_error(one: Answer, error: float | None) -> Answer:
+    """The answer with its error; `NO_ESTIMATE` where that is not known."""
+    return replace(one, error=error, no_error=NO_ESTIMATE if error is None else "")
+
+
+def with_no_limit(one: Answer) -> Answer:
+    """The answer of a value that grows with every finer mesh."""
+    return replace(one, error=None, no_error=NO_LIMIT)
+
+
+def known_quotient(above: float, below: float, error: float) -> float | None:
+    """above / below; None where `below` is not larger than its error, as a quotient of round-off
+    is."""
+    return above / below if abs(below) > error else None
 
 
 @dataclass_transform(
@@ -119,11 +154,24 @@ class AnswerGroup:
         return () if missing else declared_answers(cls)
 
     def answers(self) -> Iterator[Answer]:
-        """The answers that have a value."""
+        """The answers that have a value, and those of `reasons`."""
+        reasons = self.reasons()
         for kind in declared_answers(type(self)):
             value = self._at(kind.path)
-            if value is not None:
-                yield Answer(kind.name, float(value), kind.unit, kind.text, detail=kind.detail)
+            if value is not None or kind.name in reasons:
+                yield Answer(
+                    kind.name,
+                    None if value is None else float(value),
+                    kind.unit,
+                    kind.text,
+                    no_error="" if kind.exact or value is None else NO_ESTIMATE,
+                    remark=reasons[kind.name] if value is None else "",
+                    detail=kind.detail,
+                )
+
+    def reasons(self) -> Mapping[str, str]:
+        """Why an answer has no value, by its name: a dash and this sentence are shown."""
+        return {}
 
     def remarks(self) -> Iterator[str]:
         """Sentences that a user needs beside the answers."""

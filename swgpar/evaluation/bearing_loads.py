@@ -48,7 +48,9 @@ class BearingLife:
     L10_turns, L10_hours : at `load.input_speed`, None without load
     """
 
-    load_rating_N: float = answer("bearing.load_rating", "basic dynamic load rating", "N")
+    load_rating_N: float = answer(
+        "bearing.load_rating", "basic dynamic load rating", "N", exact=True
+    )
     load_rating_given: bool
     equivalent_load_N: float = answer(
         "bearing.equivalent_load", "load that gives the same life", "N"
@@ -84,7 +86,7 @@ class BallLoads(AnswerGroup):
     cam_angle_deg: float
     mean_load_N: float = answer("bearing.mean_load", "mean ball load under load", "N")
     unloaded_balls: int = answer(
-        "bearing.unloaded_balls", "largest number of balls without load", detail=True
+        "bearing.unloaded_balls", "largest number of balls without load", detail=True, exact=True
     )
     cage_speed: float
     balls_fixed_to_cam: bool

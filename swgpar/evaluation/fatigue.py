@@ -16,8 +16,10 @@ from swgpar.evaluation.answers import (
     AnswerKind,
     answer,
     evaluation,
+    joined_error,
     part_answers,
     place_text,
+    with_error,
 )
 from swgpar.evaluation.fatigue_criteria import (
     CriticalPlane,
@@ -116,7 +118,8 @@ class SafetyAndLife(AnswerGroup):
 
     least : by criterion, of `CRITERIA`;  regions : of every region by its name
     normal : (3,) of the critical plane, in the frame of the tooth (y radial)
-    mesh_error : of Goodman's safety by the windows, None apart from tooth roots
+    mesh_error : of Goodman's safety by the windows, None apart from tooth roots or where it is not
+    known
     sampling_error : its change by half as many angles, None for an odd number of them
     root_factor, root_factor_error : None without windows
     windows : whether windows resolve the stress at the teeth where the design asks for it
@@ -155,6 +158,7 @@ class SafetyAndLife(AnswerGroup):
         "fatigue limit with surface and size factors",
         "MPa",
         detail=True,
+        exact=True,
     )
 
     TITLE = "safety and life of the flexible spline"
@@ -170,16 +174,12 @@ class SafetyAndLife(AnswerGroup):
         for one in super().answers():
             name = one.name.partition(".")[2]
             if name == "root_factor":
-                one = replace(one, error=self.root_factor_error)
+                one = with_error(one, self.root_factor_error)
             if name in self.least:
                 at = self.least[name]
                 one = replace(one, place=place_text(at.region, None, at.radius, at.z))
-            if (
-                name == "goodman" and self.mesh_error is not None
-            ):  # that of the angles alone says little
-                one = replace(
-                    one, error=float(np.hypot(self.mesh_error, self.sampling_error or 0.0))
-                )
+            if name == "goodman":
+                one = with_error(one, joined_error(self.mesh_error, self.sampling_error))
             yield one
 
     def remarks(self) -> Iterator[str]:
@@ -246,11 +246,11 @@ def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> Fati
         regions=_by_region(nodal, regions, warnings),
         normal=tuple(normal.tolist()),
         mesh_error=float(factor_error / factor / nodal["goodman"][least["goodman"]])
-        if at_root
+        if at_root and factor_error is not None
         else None,
         sampling_error=half,
         root_factor=factor if root_stress else None,
-        root_factor_error=factor_error if root_stress else None,
+        root_factor_error=factor_error,
         windows=model.design.bearing is None and not cycle.sequence.points,
         life=_life(
             damage(values, fatigue),
@@ -303,12 +303,14 @@ def _scaled(root_stress: RootStress | None) -> list[str]:
     return [ROOT, TOOTH_END] if root_stress.region == TOOTH_END else [ROOT]
 
 
-def _root_factor(root_stress: RootStress | None) -> tuple[float, float]:
-    """Largest tension at the teeth by windows over that of nodal averages, and its error; 1 and 0
-    without windows."""
+def _root_factor(root_stress: RootStress | None) -> tuple[float, float | None]:
+    """Largest tension at the teeth by windows over that of nodal averages, and its error, None
+    where it is not known; 1 without windows."""
     if root_stress is None:
-        return 1.0, 0.0
-    return root_stress.s1 / root_stress.on_mesh, root_stress.total_error / root_stress.on_mesh
+        return 1.0, None
+    error = root_stress.total_error
+    factor = root_stress.s1 / root_stress.on_mesh
+    return factor, None if error is None else error / root_stress.on_mesh
 
 
 def _regions(cycle: StressCycle) -> tuple[np.ndarray, np.ndarray]:

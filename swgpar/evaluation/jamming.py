@@ -14,16 +14,17 @@ LEAST_EFFICIENCY = 0.5
 
 
 def jamming_remark(
-    sequence: LoadSequence, rows: Sequence[Row], means: Mapping[str, float]
+    sequence: LoadSequence, rows: Sequence[Row], means: Mapping[str, float], left: float
 ) -> str | None:
     """A sentence where the mean input torque is far from that of the energy balance, T / ratio;
     else None.
 
     Over a period the work of the input torque is that of the output torque, plus what friction
     takes. Less than a period, drives without a torque and bolted ones, which do not repeat after a
-    pitch, are not judged.
+    pitch, are not judged. Nor is a difference that the torque left over can make.
 
     rows : increments of the rotation whose `means` are given
+    left : N·mm, largest torque that an increment leaves over
     """
     if not rows or not sequence.repeats or sequence.loaded.control == "rotation":
         return None
@@ -33,7 +34,8 @@ def jamming_remark(
         np.ptp(angles) + sequence.increment >= np.degrees(kinematics.period_angle)
     )
     mean = means["wg_torque_Nmm"]
-    if not covered or LEAST_EFFICIENCY * expected <= mean <= expected / LEAST_EFFICIENCY:
+    near = LEAST_EFFICIENCY * expected <= mean <= expected / LEAST_EFFICIENCY
+    if not covered or near or abs(mean - expected) <= left:
         return None
     return (
         f"the mean input torque of {mean:.4g} N·mm is far from the {expected:.4g} N·mm of the "

@@ -1,31 +1,35 @@
-"""The contact of flanks with the largest pressure under load."""
+"""The contacts of flanks with the largest pressure under load: of all pairs, and of those off
+edges."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind, answer, evaluation
+from swgpar.evaluation.answers import (
+    NO_ESTIMATE,
+    Answer,
+    AnswerGroup,
+    AnswerKind,
+    answer,
+    evaluation,
+    part_answers,
+    with_no_limit,
+)
 from swgpar.results.history import Row
 
-EDGE = (
-    "lies on an edge: no property of the drive, and the stress at the teeth may be off by more "
-    "than its error"
-)
+EDGE = "no property of the drive, and the stress at the teeth may be off by more than its error"
+
+TOLD = 0.02
+"""Share of the largest force in an increment from which a pair without a pressure is told of."""
 
 
-@evaluation
-class LargestContact(AnswerGroup):
-    """A row of pairs.csv: the one with the largest pressure, of those off an edge if there are any.
-
-    increment, step, wg_angle_deg : when;  tooth, flank, ring_tooth : which
-    ring : the ring gear, in a pancake drive
-    angle_deg, radius_mm, z_mm : where
-    force_N : of the pair;  edge : 1 where it lies on an edge
-    """
+@dataclass(frozen=True)
+class LoadedPair:
+    """A row of pairs.csv: its columns are the fields."""
 
     increment: int
     step: int
@@ -33,31 +37,75 @@ class LargestContact(AnswerGroup):
     tooth: int
     flank: str
     ring_tooth: int
-    ring: str | None = None
     angle_deg: float
+    force_N: float
+    pressure_MPa: float
+    line_load_Nmm: float
+    half_width_mm: float
+    shear_MPa: float
     radius_mm: float
     z_mm: float
-    force_N: float
-    pressure_MPa: float = answer(
-        "contact.pressure",
-        "largest pressure of the flanks under load, off edges",
-        "MPa",
-        "pressure_off_edges",
+    edge: int
+    ring: str = ""
+    edge_place: str = ""
+
+    @property
+    def place(self) -> str:
+        """Words for the place."""
+        on = f" on the {self.ring.replace('_', ' ')}" if self.ring else ""
+        return (
+            f"tooth {self.tooth}, {self.flank} flank{on}, radius {self.radius_mm:.2f}, z "
+            f"{self.z_mm:.2f} mm"
+        )
+
+
+@evaluation
+class LargestContact(AnswerGroup):
+    """Largest pressures of the flanks under load.
+
+    largest : pair with the largest of all pressures;  off_edges : with the largest of those that do
+    not lie on an edge; None without one
+    edge_force_N : 0 where no pair lies on an edge
+    unknown_force_N : largest force of a pair whose pressure could not be computed; 0 without one
+    """
+
+    largest: LoadedPair | None = part_answers(
+        AnswerKind(
+            "contact.pressure",
+            "largest pressure of the flanks under load",
+            "MPa",
+            "largest.pressure_MPa",
+        ),
+        AnswerKind("contact.force", "force of the pair there", "N", "largest.force_N"),
+        AnswerKind("contact.line_load", "line load there", "N/mm", "largest.line_load_Nmm"),
+        AnswerKind(
+            "contact.half_width",
+            "half width of the contact there",
+            "mm",
+            "largest.half_width_mm",
+        ),
+        AnswerKind(
+            "contact.shear",
+            "largest shear stress below the surface there",
+            "MPa",
+            "largest.shear_MPa",
+        ),
+    )
+    off_edges: LoadedPair | None = part_answers(
+        AnswerKind(
+            "contact.pressure_off_edges",
+            "the same of the pairs that do not lie on an edge",
+            "MPa",
+            "off_edges.pressure_MPa",
+        )
+    )
+    edge_force_N: float = answer(
+        "contact.edge_force", "largest force under load of a pair on an edge", "N"
     )
     on_edge: bool = answer(
-        "contact.on_edge", "whether a contact under load lies on an edge: 1 or 0"
+        "contact.on_edge", "whether a contact under load lies on an edge: 1 or 0", exact=True
     )
-    edge: int = answer(
-        "contact.pressure_on_edge",
-        "largest pressure of the flanks under load",
-        "MPa",
-        "pressure_on_edges",
-    )
-    line_load_Nmm: float = answer("contact.line_load", "line load there", "N/mm")
-    half_width_mm: float = answer("contact.half_width", "half width of the contact there", "mm")
-    shear_MPa: float = answer(
-        "contact.shear", "largest shear stress below the surface there", "MPa"
-    )
+    unknown_force_N: float
 
     TITLE = "contact of the flanks under load"
 
@@ -65,35 +113,67 @@ class LargestContact(AnswerGroup):
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
         return super().kinds(design) if design.resolves_root_stress else ()
 
-    @property
-    def pressure_off_edges(self) -> float | None:
-        """The pressure (MPa) where it does not lie on an edge."""
-        return None if self.edge else self.pressure_MPa
-
-    @property
-    def pressure_on_edges(self) -> float | None:
-        """The pressure (MPa) where it lies on an edge."""
-        return self.pressure_MPa if self.edge else None
-
     def answers(self) -> Iterator[Answer]:
-        on = f" on the {self.ring.replace('_', ' ')}" if self.ring else ""
-        place = (
-            f"tooth {self.tooth}, {self.flank} flank{on}, radius {self.radius_mm:.2f}, z "
-            f"{self.z_mm:.2f} mm"
-        )
+        pairs = {"contact.pressure": self.largest, "contact.pressure_off_edges": self.off_edges}
+        largest = self.largest
         for one in super().answers():
-            if one.name.startswith("contact.pressure"):
-                one = replace(one, place=place, remark=EDGE if self.edge else "")
+            pair = pairs.get(one.name)
+            if pair is not None:
+                one = replace(one, place=pair.place, remark=self._remark(pair))
+            if largest and largest.edge and one.name in ("contact.pressure", "contact.shear"):
+                one = with_no_limit(one)
             yield one
+
+    def reasons(self) -> Mapping[str, str]:
+        unknown = f"{NO_ESTIMATE}: {self._unknown}"
+        return {
+            "contact.pressure": unknown,
+            "contact.pressure_off_edges": f"all of the pairs lie on edges, with up to "
+            f"{self.edge_force_N:.4g} N"
+            if self.largest
+            else unknown,
+        }
+
+    @property
+    def _unknown(self) -> str:
+        return (
+            f"the pressure of a pair with {self.unknown_force_N:.4g} N could not be computed"
+            if self.unknown_force_N
+            else ""
+        )
+
+    def _remark(self, pair: LoadedPair) -> str:
+        edge = f"{pair.force_N:.4g} N on the {pair.edge_place or 'edge'}: {EDGE}"
+        return "; ".join(filter(None, (edge if pair.edge else "", self._unknown)))
 
 
 def largest_contact(pairs: Sequence[Row]) -> LargestContact | None:
-    """The contact of the rows of pairs.csv; None where no pressure is known."""
-    known = [pair for pair in pairs if np.isfinite(pair["pressure_MPa"])]
-    if not known:
+    """The contacts of the rows of pairs.csv; None without rows."""
+    if not pairs:
         return None
-    largest = max(known, key=lambda pair: (not pair["edge"], pair["pressure_MPa"]))
-    names = set(LargestContact.__dataclass_fields__) & set(largest)
+    known = [pair for pair in pairs if np.isfinite(pair["pressure_MPa"])]
+    top: dict[int, float] = {}
+    for pair in pairs:
+        top[pair["increment"]] = max(top.get(pair["increment"], 0.0), pair["force_N"])
+    unknown = [
+        pair["force_N"]
+        for pair in pairs
+        if np.isnan(pair["pressure_MPa"]) and pair["force_N"] > TOLD * top[pair["increment"]]
+    ]
+    on_edges = [pair["force_N"] for pair in pairs if pair["edge"]]
     return LargestContact(
-        **{name: largest[name] for name in names}, on_edge=any(pair["edge"] for pair in pairs)
+        largest=_with_largest_pressure(known),
+        off_edges=_with_largest_pressure([pair for pair in known if not pair["edge"]]),
+        edge_force_N=max(on_edges, default=0.0),
+        on_edge=bool(on_edges),
+        unknown_force_N=max(unknown, default=0.0),
+    )
+
+
+def _with_largest_pressure(pairs: Sequence[Row]) -> LoadedPair | None:
+    if not pairs:
+        return None
+    largest = max(pairs, key=lambda pair: pair["pressure_MPa"])
+    return LoadedPair(
+        **{one.name: largest[one.name] for one in fields(LoadedPair) if one.name in largest}
     )

@@ -32,23 +32,29 @@ class LoadSharing(AnswerGroup):
 
     pairs: Spread = part_answers(
         AnswerKind(
-            "sharing.pairs", "pairs of flanks in contact, mean over the rotation", path="pairs.mean"
+            "sharing.pairs",
+            "pairs of flanks in contact, mean over the rotation",
+            path="pairs.mean",
+            exact=True,
         ),
         AnswerKind(
             "sharing.largest_pairs",
             "pairs of flanks in contact, most over the rotation",
             path="pairs.largest",
+            exact=True,
         ),
         AnswerKind(
             "sharing.smallest_pairs",
             "pairs of flanks in contact, fewest over the rotation",
             path="pairs.smallest",
+            exact=True,
         ),
     )
     teeth_share: Spread = answer(
         "sharing.teeth_share",
         "share of the flexible spline's teeth in contact, mean over the rotation",
         path="teeth_share.mean",
+        exact=True,
     )
     largest_force_share: float = answer(
         "sharing.largest_force_share", "largest share of one tooth in the force of all pairs"
@@ -66,6 +72,7 @@ class LoadSharing(AnswerGroup):
         "sharing.torque_error",
         "relative difference of the torques of pairs and teeth",
         detail=True,
+        exact=True,
     )
 
     TITLE = "load sharing over the rotation"

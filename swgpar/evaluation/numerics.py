@@ -21,11 +21,14 @@ class Numerics(AnswerGroup):
     """
 
     balance_error_Nmm: float = answer(
-        "residue.torque", "torque that is left over in an increment, largest", "N·mm"
+        "residue.torque",
+        "torque that is left over in an increment, largest",
+        "N·mm",
+        exact=True,
     )
     largest_tooth_torque_Nmm: float
     condensed_MPa: float | None = answer(
-        "residue.condensed", "bending stress that condensed sectors leave out", "MPa"
+        "residue.condensed", "bending stress that condensed sectors leave out", "MPa", exact=True
     )
 
     TITLE = "torque balance and reductions"
@@ -42,10 +45,15 @@ class Numerics(AnswerGroup):
             )
 
 
+def torque_left(rows: Sequence[Row]) -> float:
+    """Largest torque (N·mm) that an increment of the history leaves over."""
+    return max((row["torque_balance_Nmm"] for row in rows), default=0.0)
+
+
 def evaluate_numerics(rows: Sequence[Row], condensed: float | None) -> Numerics:
     """From the rows of the history. condensed : MPa, as in `Numerics`"""
     return Numerics(
-        balance_error_Nmm=max((row["torque_balance_Nmm"] for row in rows), default=0.0),
+        balance_error_Nmm=torque_left(rows),
         largest_tooth_torque_Nmm=max((abs(row["tooth_torque_Nmm"]) for row in rows), default=0.0),
         condensed_MPa=condensed,
     )

@@ -17,6 +17,8 @@ from swgpar.evaluation.answers import (
     evaluation,
     part_answers,
     place_text,
+    with_error,
+    with_no_limit,
 )
 from swgpar.evaluation.contact_pressure import nodal_pressure
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
@@ -127,16 +129,16 @@ class LargestStresses(AnswerGroup):
         for name, place in (*self.places.items(), *self.regions.items()):
             stress, within, region = name.partition(OF_REGION)
             kind = kinds[stress + within]
-            yield Answer(
+            one = Answer(
                 name=f"largest.{name}",
                 value=place.value,
                 unit=kind.unit,
                 text=f"{kind.text}{region}",
-                error=place.error,
                 place=place.text,
                 remark=place.warning,
                 detail=kind.detail,
             )
+            yield with_no_limit(one) if place.warning else with_error(one, place.error)
 
 
 def find_places(

@@ -11,6 +11,7 @@ import numpy as np
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.kinematics import Kinematics
 from swgpar.evaluation.answers import (
+    NO_ESTIMATE,
     Answer,
     AnswerGroup,
     AnswerKind,
@@ -79,7 +80,12 @@ class ProgramStages(AnswerGroup):
 
     stages: Mapping[str, Mapping[str, float]] = part_answers(
         *(
-            AnswerKind(f"program.STAGE.{name}", f"{name} at the end of the stage STAGE", unit)
+            AnswerKind(
+                f"program.STAGE.{name}",
+                f"{name} at the end of the stage STAGE",
+                unit,
+                exact=name == "wg_angle_deg",
+            )
             for name, unit in COLUMNS.items()
             if name not in ("step", "stage")
         )
@@ -108,9 +114,9 @@ class ProgramStages(AnswerGroup):
     def answers(self) -> Iterator[Answer]:
         for stage, values in self.stages.items():
             for kind in self.kinds_of((stage,)):
-                yield Answer(
-                    kind.name, float(values[kind.name.rpartition(".")[2]]), kind.unit, kind.text
-                )
+                value = float(values[kind.name.rpartition(".")[2]])
+                no_error = "" if kind.exact else NO_ESTIMATE
+                yield Answer(kind.name, value, kind.unit, kind.text, no_error=no_error)
 
 
 def stage_ends(rows: Sequence[PointRow]) -> ProgramStages:

@@ -53,11 +53,8 @@ class RatchetingTorque(AnswerGroup):
 
     def answers(self) -> Iterator[Answer]:
         torque, *others = super().answers()
-        yield replace(
-            torque,
-            error=self.peak_error_Nm,
-            remark="" if self.is_peak else "no peak: it still grows",
-        )
+        beside = f"the points beside it are {self.peak_error_Nm:.3g} N·m lower"
+        yield replace(torque, remark=beside if self.is_peak else "no peak: it still grows")
         yield from others
 
     def remarks(self) -> Iterator[str]:

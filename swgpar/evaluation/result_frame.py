@@ -75,14 +75,12 @@ class InputTorque:
     """Torque of a ring gear that is driven, over the rotation.
 
     torque_expected_Nmm : T_in theta_in + T_out theta_out = 0
-    torque_ripple : largest less smallest, over the mean; None for a mean of 0
     """
 
     torque_Nmm: float = answer("input.torque", "torque of the driven ring gear, mean", "N·mm")
     torque_expected_Nmm: float = answer(
-        "input.expected_torque", "the same by the energy balance", "N·mm"
+        "input.expected_torque", "the same by the energy balance", "N·mm", exact=True
     )
-    torque_ripple: float | None = None
 
 
 def input_torque(
@@ -94,10 +92,7 @@ def input_torque(
     """
     if not kinematics.wave_generator_is_fixed or not rows:
         return None
-    torque = column(rows, "tooth_torque_Nmm")
-    mean = float(torque.mean())
     return InputTorque(
-        torque_Nmm=mean,
+        torque_Nmm=float(column(rows, "tooth_torque_Nmm").mean()),
         torque_expected_Nmm=-kinematics.internal_torque(output_torque) / kinematics.input_ratio,
-        torque_ripple=float(np.ptp(torque)) / abs(mean) if mean else None,
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -14,9 +13,12 @@ from swgpar.evaluation.answers import (
     AnswerKind,
     answer,
     evaluation,
+    known_quotient,
     part_answers,
+    with_error,
 )
 from swgpar.evaluation.jamming import jamming_remark
+from swgpar.evaluation.numerics import torque_left
 from swgpar.evaluation.period import of_period, sampling_error
 from swgpar.evaluation.places import STRESSES, Place
 from swgpar.evaluation.result_frame import InputTorque, input_torque
@@ -72,6 +74,7 @@ class Rotation(AnswerGroup):
         "rotation.expected_wg_torque",
         "mean torque of the wave generator by the energy balance",
         "N·mm",
+        exact=True,
     )
     maxima: Mapping[str, float] = part_answers(
         *_by_column("maximum", "maxima", "largest", detail=True)
@@ -104,7 +107,16 @@ class Rotation(AnswerGroup):
     def answers(self) -> Iterator[Answer]:
         for one in super().answers() if self.means else ():
             group, _, name = one.name.partition(".")
-            yield replace(one, error=self.mesh_error.get(name) if group == "mean" else None)
+            error = self.mesh_error.get(name) if group == "mean" else one.error
+            yield one if error is None else with_error(one, error)
+
+    def reasons(self) -> Mapping[str, str]:
+        if not self.means or self.torque_ripple is not None:
+            return {}
+        return {
+            "rotation.torque_ripple": "the mean input torque is not larger than the torque that "
+            "the increments leave over, or than what the angles change"
+        }
 
     def remarks(self) -> Iterator[str]:
         if self.jammed:
@@ -129,6 +141,7 @@ def evaluate_rotation(
     kinematics, rotation = sequence.kinematics, rotation_rows(sequence, rows)
     sampled = sampled_rows(sequence, rows)
     driven = input_torque(kinematics, sequence.torque, sampled)
+    left = torque_left(rows)
     means: dict[str, float] = {}
     maxima: dict[str, float] = {}
     ripple = deviation = half = None
@@ -137,16 +150,17 @@ def evaluate_rotation(
         names = [name for name in declared if all(name in row for row in sampled)]
         means = {name: float(np.mean([row[name] for row in sampled])) for name in names}
         maxima = {name: float(column(sampled, name).max()) for name in names}
-        torque, mean = column(sampled, INPUT_TORQUE), means[INPUT_TORQUE]
-        ripple = float(np.ptp(torque)) / abs(mean) if mean else None
         angles = column(sampled, "wg_angle_deg"), column(sampled, "output_angle_deg")
         deviation = float(np.ptp(transmission_error(*angles, kinematics.ratio)))
         if sequence.samples:
             half = sampling_error(sequence, list(rows), tuple(names))
+        torque = column(sampled, "tooth_torque_Nmm" if driven else INPUT_TORQUE)
+        change = half[INPUT_TORQUE] if half else 0.0
+        ripple = known_quotient(float(np.ptp(torque)), abs(float(torque.mean())), left + change)
     return Rotation(
         means=means,
         maxima=maxima,
-        torque_ripple=driven.torque_ripple if driven else ripple,
+        torque_ripple=ripple,
         transmission_error_arcsec=deviation,
         mesh_error=mesh_error(root_stress, means, places),
         sampling_error=half,
@@ -155,7 +169,7 @@ def evaluate_rotation(
         else None,
         input=driven,
         wg_torque_expected_Nmm=kinematics.wave_generator_torque(sequence.torque),
-        jammed=jamming_remark(sequence, sampled, means),
+        jammed=jamming_remark(sequence, sampled, means, left),
     )
 
 
@@ -187,5 +201,7 @@ def mesh_error(
         if name in means and place.error
     }
     if root_stress is not None:
-        found["fs_s1"] = abs(root_stress.on_mesh - root_stress.s1) + root_stress.total_error
+        found.pop("fs_s1", None)
+        if root_stress.total_error is not None:
+            found["fs_s1"] = abs(root_stress.on_mesh - root_stress.s1) + root_stress.total_error
     return found

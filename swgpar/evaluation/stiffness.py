@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, fields, replace
 from typing import Any
 
 import numpy as np
 
-from swgpar.evaluation.answers import Answer, AnswerGroup, answer, evaluation
+from swgpar.evaluation.answers import Answer, AnswerGroup, answer, evaluation, with_error
 from swgpar.evaluation.program_results import PointRow, work_by_torque
 from swgpar.load.load_program import (
     BRANCHES,
@@ -44,14 +44,19 @@ class Stiffness:
     """Torsional stiffness at one angle of the wave generator, or its mean, spread or error over
     several.
 
-    K1, K2, K3 : chords of the middle line up to the first break point, to the second and to the top
+    K1, K2, K3 : chords of the middle line up to the first break point, to the second and to the
+    top; None over a torque that is no load
     lost_motion : between the middles of both branches at plus and minus a share of the rated torque
     backlash : where the torque changes its sign
     """
 
-    K1: float = answer("stiffness.K1", "torsional stiffness up to the first break point", "N·m/rad")
-    K2: float = answer("stiffness.K2", "torsional stiffness between the break points", "N·m/rad")
-    K3: float = answer(
+    K1: float | None = answer(
+        "stiffness.K1", "torsional stiffness up to the first break point", "N·m/rad"
+    )
+    K2: float | None = answer(
+        "stiffness.K2", "torsional stiffness between the break points", "N·m/rad"
+    )
+    K3: float | None = answer(
         "stiffness.K3", "torsional stiffness above the second break point", "N·m/rad"
     )
     lost_motion: float = answer("stiffness.lost_motion", "lost motion", "arc minutes")
@@ -64,6 +69,7 @@ class Stiffness:
     loop_work: float = answer("stiffness.loop_work", "area of the loop", "N·mm")
 
 
+CHORDS = ("K1", "K2", "K3")
 NAMES = tuple(field.name for field in fields(Stiffness))
 
 
@@ -99,16 +105,20 @@ class TorsionalStiffness(Stiffness, AnswerGroup):
     def answers(self) -> Iterator[Answer]:
         for one in super().answers():
             name = one.name.partition(".")[2]
-            spread = f"spread over the positions {getattr(self.spread, name):.2g}"
-            yield replace(one, error=(self.mesh_error or {}).get(name), remark=spread)
+            if one.value is not None:
+                spread = f"spread over the positions {getattr(self.spread, name):.2g}"
+                one = with_error(replace(one, remark=spread), (self.mesh_error or {}).get(name))
+            yield one
+
+    def reasons(self) -> Mapping[str, str]:
+        reason = "the torque between the break points is too small beside the spline's bending"
+        return {f"stiffness.{name}": reason for name in CHORDS if getattr(self, name) is None}
 
     def remarks(self) -> Iterator[str]:
         yield (
             f"means over {len(self.positions)} positions of the wave generator, up to "
             f"{self.torque_Nm:g} N·m"
         )
-        if self.mesh_error is None:
-            yield "the error of the stiffness by the mesh is not known"
 
 
 class Branch:
@@ -187,12 +197,14 @@ def at_position(program: StiffnessProgram, rows: Sequence[PointRow]) -> Stiffnes
 
     top, share = program.torque, program.lost_motion_torque
     ends = [0.0, *(b * top for b in program.section.break_points), top]
-    line = np.array([0.5 * (middle(0, torque) + middle(1, torque)) for torque in ends])
-    chords = np.diff(ends) / np.diff(line)
+    line = [0.5 * (middle(0, torque) + middle(1, torque)) for torque in ends]
+    steps = np.diff(ends), np.diff(line)
+    chords = {
+        name: float(torque / rotation) if torque > program.negligible and rotation else None
+        for name, torque, rotation in zip(CHORDS, *steps, strict=True)
+    }
     return Stiffness(
-        K1=float(chords[0]),
-        K2=float(chords[1]),
-        K3=float(chords[2]),
+        **chords,
         lost_motion=(middle(0, share) + middle(1, share)) / ARC_MINUTE,
         hysteresis=(unloading[0].at(0.0) + unloading[1].at(0.0)) / ARC_MINUTE,
         backlash=0.5
@@ -242,6 +254,16 @@ def rows_by_position(
     return by_angle
 
 
+def _over(
+    positions: Mapping[float, Stiffness], reduced: Callable[[list[float]], float]
+) -> dict[str, Any]:
+    """A number for the values of all positions, by field of `Stiffness`; None where one lacks."""
+    table = {name: [getattr(one, name) for one in positions.values()] for name in NAMES}
+    return {
+        name: None if None in values else float(reduced(values)) for name, values in table.items()
+    }
+
+
 def torsional_stiffness(
     program: StiffnessProgram, rows: Sequence[PointRow], error: Mapping[str, float] | None
 ) -> TorsionalStiffness:
@@ -250,13 +272,12 @@ def torsional_stiffness(
     error : of every value by the mesh, None where it is not known
     """
     positions = by_position(program, rows)
-    table = {name: np.array([getattr(one, name) for one in positions.values()]) for name in NAMES}
     return TorsionalStiffness(
-        **{name: float(values.mean()) for name, values in table.items()},
+        **_over(positions, np.mean),
         torque_Nm=program.torque,
         rated_torque_Nm=program.rated_torque,
         break_points=tuple(program.section.break_points),
-        spread=Stiffness(**{name: float(np.ptp(values)) for name, values in table.items()}),
+        spread=Stiffness(**_over(positions, np.ptp)),
         mesh_error=error,
         positions=tuple(
             StiffnessAtAngle(**asdict(one), wg_angle_deg=angle) for angle, one in positions.items()

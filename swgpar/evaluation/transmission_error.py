@@ -64,7 +64,7 @@ class SpectrumLine:
 
 @evaluation
 class TorqueOverTurns:
-    """Torque of the wave generator over the same angles; `ripple` is peak to peak over the mean.
+    """Torque of the wave generator over the same angles.
 
     spectrum : its largest orders, N mm
     """
@@ -79,7 +79,6 @@ class TorqueOverTurns:
         "torque of the wave generator over the same angles, peak to peak",
         "N·mm",
     )
-    ripple: float | None
     spectrum: tuple[SpectrumLine, ...]
 
 
@@ -251,7 +250,6 @@ def evaluate_turns(
     per_period = samples if deviations is None else deviations.angles_per_pitch
     turns = len(rows) * (kinematics.period_angle / per_period) / (2.0 * np.pi)
     error, torque = column(rows, "transmission_error_arcsec"), column(rows, "wg_torque_Nmm")
-    mean = float(torque.mean())
     causes = Causes(kinematics, deviations, turns)
     return TransmissionError(
         turns=turns,
@@ -261,9 +259,8 @@ def evaluate_turns(
         mean=float(error.mean()),
         spectrum=_named(error, turns, causes),
         torque=TorqueOverTurns(
-            mean=mean,
+            mean=float(torque.mean()),
             peak_to_peak=float(np.ptp(torque)),
-            ripple=float(np.ptp(torque)) / abs(mean) if mean else None,
             spectrum=_named(torque, turns, causes),
         ),
     )

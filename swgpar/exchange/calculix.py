@@ -25,7 +25,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.exchange.calculix_model import JobModel, Surface, Term
 from swgpar.exchange.cam_facets import OUTER_FACE, CamFacets, cam_facets
-from swgpar.load.load_sequence import negligible_torque
+from swgpar.load.negligible_torque import negligible_torque
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.inp import write_inp
 

@@ -25,7 +25,8 @@ class MovedTooth:
 
     Attributes
     ----------
-    profile : of the flank;  angle : rad, of the sector;  ends : mm, of its face width
+    body : its name;  profile : of the flank
+    angle : rad, of the sector;  ends : mm, of its face width
     """
 
     def __init__(
@@ -37,7 +38,7 @@ class MovedTooth:
         crowned: FlankCrowning | None = None,
     ) -> None:
         assert layout.mesh.profile is not None  # all gears have one
-        self.profile = layout.mesh.profile
+        self.body, self.profile = layout.name, layout.mesh.profile
         self.mirror = MIRROR if side < 0 else np.ones(2)
         self.angle = float(layout.sector_angle(np.array(tooth)))
         self.crowned = crowned

@@ -30,8 +30,9 @@ from swgpar.log import logger
 from swgpar.materials import contact_modulus
 from swgpar.model.drive_model import DriveModel
 
-SMALLEST = 0.02
-"""Line load, over the largest one, below which the pressure of a pair is not computed."""
+SMALLEST = 1e-3
+"""Line load, over the largest one, below which the pressure of a pair is not computed. On an edge
+a small force has a pressure as large as others."""
 
 WIDTH = 0.05
 """Width over the module within which the contact is looked for at first."""
@@ -84,7 +85,7 @@ class PairContact:
     sliding_mm_s : sliding of the flexible spline's flank on the other in the section, at the speed
     of the input
     edge : 1 where the contact ends at the tip of a profile, or the load at an end of the face
-    width; the pressure is then no property of the drive
+    width; the pressure is then no property of the drive;  edge_place : which of them, in words
     ring : body whose tooth is meant, in a drive with two ring gears; else empty
     stations : along the face width, those that carry a load
 
@@ -107,6 +108,7 @@ class PairContact:
     shear_MPa: float = np.nan
     sliding_mm_s: float = np.nan
     edge: int = 0
+    edge_place: str = ""
     ring: str = ""
     stations: tuple[ContactStation, ...] = ()
 
@@ -254,14 +256,14 @@ def _with_pressure(
     gap = _Gap(tooth, facing)
     if model.design.drive.model == "plane":
         found = _line(model, gap, load, modulus)
-        shape, width, on_edge = found, float(np.ptp(load.z)), found.at_end
+        shape, width, reaches = found, float(np.ptp(load.z)), False
         size = float(along[0])
         stations: tuple[ContactStation, ...] = (
             ContactStation(0.0, size, found.middle, found.half_width, found.peak),
         )
     else:
         patch = _patch(model, gap, load, along, contact.force_N, modulus)
-        shape, on_edge = patch.strongest, patch.at_end or patch.reaches
+        shape, reaches = patch.strongest, patch.reaches
         columns = (patch.z, patch.line_load, patch.middle, patch.half_width, patch.pressure)
         stations = tuple(
             ContactStation(*map(float, values)) for values in zip(*columns, strict=True)
@@ -269,7 +271,13 @@ def _with_pressure(
         width = len(patch.z) * float(patch.z[1] - patch.z[0])
     top = max(stations, key=lambda station: station.pressure_MPa)
     ends = top.s_mm + top.half_width_mm * np.array([[-1.0], [1.0]])
-    on_tip = gap.foot(ends, np.array([top.z_mm])).min() < END * model.design.drive.module
+    ring_tip = gap.foot(ends, np.array([top.z_mm])).min() < END * model.design.drive.module
+    places = {
+        "end of the face width": reaches,
+        f"tip of the {tooth.body.replace('_', ' ')}": shape.at_end,
+        f"tip of the {facing.body.replace('_', ' ')}": ring_tip,
+    }
+    edges = [place for place, reached in places.items() if reached]
     middle = tooth.profile.point(np.clip(top.s_mm, 0.0, tooth.profile.length))[0]
     return replace(
         contact,
@@ -284,7 +292,8 @@ def _with_pressure(
         * model.design.load.input_speed
         * np.pi
         / 30.0,
-        edge=int(on_edge or on_tip),
+        edge=int(bool(edges)),
+        edge_place=" and the ".join(edges),
         stations=stations,
     )
 

@@ -16,6 +16,7 @@ import numpy as np
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.kinematics import Kinematics
 from swgpar.design.program_sections import ProgramStage, Ratcheting, Stiffness
+from swgpar.load.negligible_torque import negligible_torque
 
 NO_TORQUE = 1e-3
 """Share of the largest torque of a program that stands for zero.
@@ -126,6 +127,7 @@ class StiffnessProgram:
 
     section : its keys
     torque, rated_torque : N·m, largest of the loop, and that which the lost motion refers to
+    negligible : N·m, up to which a torque is no load
     angles : deg, of the wave generator
     uses_mirror : whether an angle has the stiffness of that which the drive's mirror plane makes of
     it: without friction
@@ -134,6 +136,7 @@ class StiffnessProgram:
     section: Stiffness
     torque: float
     rated_torque: float
+    negligible: float
     angles: tuple[float, ...]
     uses_mirror: bool
 
@@ -200,6 +203,7 @@ def stiffness_program(design: DriveDesign) -> StiffnessProgram:
         section,
         torque,
         section.rated_torque or torque,
+        1e-3 * negligible_torque(design),
         tuple(period * k / section.positions for k in range(section.positions)),
         uses_mirror=not section.loop and design.is_mirror_symmetric,
     )

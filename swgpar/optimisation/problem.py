@@ -118,7 +118,12 @@ class Problem:
             name: float(outcome.values[name]) for name in names if name in outcome.values
         }
         missing = [name for name in names if not np.isfinite(quantities.get(name, np.nan))]
-        failure = outcome.reason or (f"the run has no value of {missing[0]}" if missing else "")
+        growing = [name for name in names if name in outcome.unbounded]
+        failure = outcome.reason
+        if missing:
+            failure = failure or f"the run has no value of {missing[0]}"
+        elif growing:  # a smaller number there is no better design
+            failure = f"{growing[0]} has no limit: it grows with every finer mesh"
         return self._ended(values, failure, quantities, outcome.wall_s or 0.0)
 
     def _violations(self, quantities: dict[str, float]) -> dict[str, float]:

@@ -11,17 +11,20 @@ NOTHING = 1e-9
 """Size below which a value is round-off and 0 is shown."""
 
 
-def value_text(value: float) -> str:
-    """A value with five digits."""
+def value_text(value: float | None) -> str:
+    """A value with five digits; a dash where there is none."""
+    if value is None:
+        return "—"
     return number(0.0 if abs(value) < NOTHING else float(value))
 
 
-def error_text(error: float | None) -> str:
-    """An error with two digits, without a power of ten and without a break of the line; empty where
-    it is unknown."""
+def error_text(answer: Answer) -> str:
+    """The error with two digits, without a power of ten and without a break of the line, or what
+    stands in its place."""
+    error = answer.error
     if error is None:
-        return ""
-    digits = 1 - int(np.floor(np.log10(error))) if 0.0 < error < np.inf else 0
+        return answer.no_error.replace(" ", "\u00a0")
+    digits = 1 - int(np.floor(np.log10(error))) if error > 0.0 else 0
     return f"±\u00a0{round(error, digits):.{max(digits, 0)}f}"
 
 

@@ -90,6 +90,6 @@ def _groups(summary: DriveSummary) -> list[Group]:
 def _table(answers: Iterable[Answer]) -> Table:
     rows = []
     for answer in answers:
-        numbers = [answer.value, answer.unit, error_text(answer.error)]
+        numbers = ["—" if answer.value is None else answer.value, answer.unit, error_text(answer)]
         rows.append(Row([answer.text, *numbers, answer.place, remark_text(answer), answer.name]))
     return Table(["", "value", "unit", "error", "where", "remark", "name"], rows)

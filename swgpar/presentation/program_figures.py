@@ -9,6 +9,7 @@ import numpy as np
 
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.evaluation.stiffness import TorsionalStiffness
+from swgpar.presentation.answer_text import value_text
 from swgpar.results.figure_set import panels
 
 if TYPE_CHECKING:
@@ -50,9 +51,8 @@ def _mark_chords(axes: Axes, stiffness: TorsionalStiffness) -> None:
     """Mark the torques at which the chords of K1, K2 and K3 end."""
     for share in stiffness.break_points:
         axes.axhline(share * stiffness.torque_Nm, color="0.4", ls=":", lw=0.8)
-    words = "\n".join(
-        f"{name} = {getattr(stiffness, name):.4g} N·m/rad" for name in ("K1", "K2", "K3")
-    )
+    chords = {name: value_text(getattr(stiffness, name)) for name in ("K1", "K2", "K3")}
+    words = "\n".join(f"{name} = {chord} N·m/rad" for name, chord in chords.items())
     words += f"\nlost motion {stiffness.lost_motion:.3g}′"
     words += f", hysteresis {abs(stiffness.hysteresis):.2g}′"
     axes.text(0.02, 0.98, words, transform=axes.transAxes, va="top", fontsize=9)

@@ -82,7 +82,7 @@ def _print_answers(answers: AnswerGroup) -> None:
             if words
         ]
         what = Padding(Group(answer.text, *below), (0, 0, 0, 2))
-        table.add_row(what, value_text(answer.value), error_text(answer.error), answer.unit)
+        table.add_row(what, value_text(answer.value), error_text(answer), answer.unit)
     console.print(f"\n{answers.TITLE}", style="bold", markup=False)
     console.print(table)
     for remark in answers.remarks():

@@ -24,7 +24,8 @@ class Outcome:
     """What became of a job.
 
     status : "finished" or "failed";  reason : one sentence, empty when finished
-    values, wall_s, elements, newton_mean, history : as in `Measured`; empty and None when failed
+    values, wall_s, unbounded, elements, newton_mean, history : as in `Measured`; empty and None
+    when failed
     kept : whether an earlier call of the study had finished it
     """
 
@@ -32,6 +33,7 @@ class Outcome:
     reason: str = ""
     values: dict[str, float] = field(default_factory=dict)
     wall_s: float | None = None
+    unbounded: frozenset[str] = frozenset()
     elements: int | None = None
     newton_mean: float | None = None
     history: Mapping[str, np.ndarray] = field(default_factory=dict)

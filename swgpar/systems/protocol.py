@@ -47,6 +47,7 @@ class Measured:
     """Numbers that a study takes from a run.
 
     values : all quantities by name, without those that the run does not have
+    unbounded : names of those that grow with every finer mesh
     wall_s : seconds;  elements, newton_mean : of the mesh, and Newton iterations of an increment;
     None without a mesh
     history : columns of the history that are drawn against the angle of the wave generator; empty
@@ -55,6 +56,7 @@ class Measured:
 
     values: dict[str, float]
     wall_s: float
+    unbounded: frozenset[str] = frozenset()
     elements: int | None = None
     newton_mean: float | None = None
     history: Mapping[str, np.ndarray] = field(default_factory=dict)

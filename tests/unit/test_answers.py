@@ -4,6 +4,7 @@ numbers."""
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,9 @@ from rich.console import Console
 
 import swgpar
 from support.paths import DATA
+from swgpar.drive_results.report_checks import checks
 from swgpar.drive_results.summary_file import summary_from, summary_to_json
+from swgpar.evaluation.answers import NO_ESTIMATE, joined_error, known_quotient
 from swgpar.presentation import terminal
 from swgpar.presentation.answer_text import error_text, value_text
 from swgpar.presentation.drive_report import drive_report
@@ -40,9 +43,7 @@ def test_numbers_and_remarks_are_whole_on_a_terminal_of_80_columns(
     for answer in result.summary.values():
         if answer.detail:
             continue
-        ending = " ".join(
-            filter(None, (value_text(answer.value), error_text(answer.error), answer.unit))
-        )
+        ending = " ".join(filter(None, (value_text(answer.value), error_text(answer), answer.unit)))
         assert any(" ".join(row.split()).endswith(ending.replace("\u00a0", " ")) for row in rows), (
             answer.name
         )
@@ -79,3 +80,31 @@ def test_an_answer_says_what_it_is() -> None:
     assert summary["residue.torque"].value < summary["residue.torque"].limit
     assert summary["fatigue.goodman"].value == summary.fatigue.least["goodman"].safety
     assert "bearing.largest_load" not in summary and summary.get("bearing.largest_load") is None
+
+
+def test_a_part_of_an_error_that_is_not_known_leaves_no_estimate() -> None:
+    assert joined_error(3.0, 4.0) == pytest.approx(5.0)
+    assert joined_error(3.0, None) is None and joined_error(3.0, float("inf")) is None
+    result = swgpar.open_result(DATA / "first_format" / "plane")
+    summary = result.summary
+    assert summary["root.s1"].error > 0.0 and summary["root.mean_s1"].error > 0.0
+    unknown = replace(summary.root_stress, drive_error=None)
+    answers = {answer.name: answer for answer in unknown.answers()}
+    for name in ("root.s1", "root.mean_s1"):
+        assert answers[name].error is None and answers[name].no_error == NO_ESTIMATE
+        assert error_text(answers[name]) == "no\u00a0estimate"
+    assert "root.s1_error" not in answers and unknown.lost_in_root is None
+    for found, good in ((summary, True), (replace(summary, root_stress=unknown), None)):
+        verdicts = {check.name: check.good for check in checks(found, result.history)}
+        assert verdicts["resolution"] is good
+
+
+def test_quotients_of_round_off_have_no_value() -> None:
+    assert known_quotient(3.0, -2.0, 1.9) == -1.5
+    assert known_quotient(3.0, 1e-9, 1e-8) is None and known_quotient(0.0, 0.0, 0.0) is None
+    rotation = replace(
+        swgpar.open_result(DATA / "first_format" / "plane").summary.rotation, torque_ripple=None
+    )
+    (answer,) = (one for one in rotation.answers() if one.name == "rotation.torque_ripple")
+    assert answer.value is None and value_text(answer.value) == "—"
+    assert answer.remark.startswith("the mean input torque") and not error_text(answer)

@@ -179,9 +179,11 @@ def test_errors_in_roots_are_those_of_the_tension_there() -> None:
         for name, place in with_errors(places, shares, resolved(201.0, 200.0)).items()
     }
     assert close["fs_s3_apart"] == pytest.approx(2.2)
-    unknown = replace(resolved(250.0, 200.0), error=np.inf)  # a single window
+    unknown = replace(resolved(250.0, 200.0), error=None)  # a single window
     for root_stress in (None, resolved(250.0, 200.0, "rim inside"), unknown):
-        assert with_errors(places, shares, root_stress)["fs_s1"].error == pytest.approx(2.0)
+        errors = with_errors(places, shares, root_stress)
+        assert errors["fs_s1"].error is None  # nothing says what nodal averages lose there
+        assert errors["rg_vm"].error == pytest.approx(2.0)
     assert with_errors(places, {}, None)["fs_s1"].error is None
 
 
@@ -218,7 +220,8 @@ def test_a_start_on_a_coarser_mesh_gives_errors() -> None:
     ).summary
     errors = {name: place.error for name, place in summary.stresses.places.items()}
     for name, place in summary.stresses.places.items():
-        assert (errors[name] is None) == bool(place.warning), name
+        in_root = 2.0 * place.in_root > place.value  # without windows
+        assert (errors[name] is None) == bool(place.warning or in_root), name
         assert errors[name] is None or 0.0 < errors[name] < 0.5 * place.value
     for name, error in summary.rotation.mesh_error.items():
         share = errors[name] / summary.stresses.places[name].value

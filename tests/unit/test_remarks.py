@@ -14,7 +14,8 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.jamming import jamming_remark
-from swgpar.load.load_sequence import RING_FLEXIBILITY, load_sequence, negligible_torque
+from swgpar.load.load_sequence import load_sequence
+from swgpar.load.negligible_torque import RING_FLEXIBILITY, negligible_torque
 
 PERIOD = ("steps.rotation=9", "steps.increment=3")
 
@@ -59,12 +60,12 @@ def test_a_running_drive_is_not() -> None:
         (20.1, True),
         (-10.0, True),
     ):
-        assert bool(jamming_remark(sequence, rows, {"wg_torque_Nmm": mean})) == jams
+        assert bool(jamming_remark(sequence, rows, {"wg_torque_Nmm": mean}, 0.0)) == jams
         assert (
-            jamming_remark(sequence, rows[:1], {"wg_torque_Nmm": mean}) is None
+            jamming_remark(sequence, rows[:1], {"wg_torque_Nmm": mean}, 0.0) is None
         )  # less than a period
-        assert jamming_remark(unloaded, rows, {"wg_torque_Nmm": mean}) is None
-    assert jamming_remark(sequence, [], {}) is None
+        assert jamming_remark(unloaded, rows, {"wg_torque_Nmm": mean}, 0.0) is None
+    assert jamming_remark(sequence, [], {}, 0.0) is None
 
 
 def test_the_ring_between_two_forces() -> None:

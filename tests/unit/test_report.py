@@ -52,7 +52,7 @@ def test_a_run_leaves_one_page_that_needs_nothing_else(folder: Path) -> None:
 
 def test_the_transmission_error_with_deviations_is_an_answer(folder: Path) -> None:
     summary = swgpar.open_result(folder).summary
-    torque = TorqueOverTurns(mean=1.0, peak_to_peak=0.0, ripple=0.0, spectrum=())
+    torque = TorqueOverTurns(mean=1.0, peak_to_peak=0.0, spectrum=())
     error = TransmissionError(
         turns=1.0,
         angles=8,
@@ -107,7 +107,9 @@ def test_verdicts_follow_the_numbers(folder: Path) -> None:
     assert (
         verdicts(rotation=replace(summary.rotation, jammed="the teeth may jam"))["energy"] is False
     )
-    assert verdicts(contact=replace(summary.contact, edge=1))["edge contact"] is False
+    on_edge = replace(summary.contact.largest, edge=1)
+    assert verdicts(contact=replace(summary.contact, largest=on_edge))["edge contact"] is False
+    assert verdicts(contact=replace(summary.contact, largest=None))["edge contact"] is None
     assert verdicts(contact=None)["edge contact"] is None
     root = RootStress(
         s1=100.0,
@@ -122,6 +124,7 @@ def test_verdicts_follow_the_numbers(folder: Path) -> None:
         part=BETWEEN,
         by_part={BETWEEN: [100.0]},
         elements=1000,
+        drive_error=1.0,
     )
     assert verdicts(root_stress=root)["resolution"] is False
     assert verdicts(root_stress=replace(root, error=2.0))["resolution"] is True

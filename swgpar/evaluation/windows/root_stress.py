@@ -23,8 +23,11 @@ from swgpar.evaluation.answers import (
     AnswerKind,
     answer,
     evaluation,
+    joined_error,
     part_answers,
     place_text,
+    with_error,
+    with_no_limit,
 )
 from swgpar.evaluation.places import root_nodes
 from swgpar.evaluation.windows.local_problem import SECTORS, LocalProblem, WindowStress, tooth_nodes
@@ -105,12 +108,13 @@ PARTS = BETWEEN, ENDS = "between the ends", "ends"
 class OverPeriod:
     """s1 (MPa) over the sampled period.
 
-    mean_error : by the meshes, in proportion to that of the loaded state
+    mean_error : by the meshes, in proportion to that of the loaded state; None where it is not
+    known
     sampling_error : change of the mean by half as many angles, None for an odd number of them
     """
 
     mean: float
-    mean_error: float
+    mean_error: float | None
     sampling_error: float | None
     maximum: float
 
@@ -119,7 +123,7 @@ class OverPeriod:
 class RootStress(AnswerGroup):
     """Largest tensile stress at the teeth.
 
-    error : MPa, estimated, of the window's mesh
+    error : MPa, estimated, of the window's mesh; None where it is not known
     region : as of a `Place`;  warning : why there is no limit to converge to; empty where there is
     one
     tooth : number, counter-clockwise from +y in the undeformed drive
@@ -134,11 +138,12 @@ class RootStress(AnswerGroup):
     """
 
     s1: float = answer("root.s1", "largest tension at the teeth under load, by windows", "MPa")
-    error: float = answer(
+    error: float | None = answer(
         "root.s1_error",
         "its error by the windows and by the mesh of the drive",
         "MPa",
         "total_error",
+        exact=True,
     )
     on_mesh: float = answer(
         "root.s1_on_mesh", "the same by nodal averages of the drive's mesh", "MPa"
@@ -174,9 +179,10 @@ class RootStress(AnswerGroup):
         for one in super().answers():
             if one.name == "root.s1":
                 where = place_text(self.region, self.tooth, self.radius, self.z, self.angle_deg)
-                one = replace(one, error=self.total_error, place=where, remark=self.warning)
+                one = with_error(replace(one, place=where, remark=self.warning), self.total_error)
+                one = with_no_limit(one) if self.warning else one
             elif one.name == "root.mean_s1" and over is not None:
-                one = replace(one, error=over.mean_error)
+                one = with_error(one, over.mean_error)
             yield one
 
     def remarks(self) -> Iterator[str]:
@@ -191,10 +197,9 @@ class RootStress(AnswerGroup):
         return self.by_part[self.part]
 
     @property
-    def total_error(self) -> float:
-        """Error (MPa) of the window's and, where it is known, of the drive's mesh; they are
-        independent."""
-        return math.hypot(self.error, self.drive_error or 0.0)
+    def total_error(self) -> float | None:
+        """Error (MPa) of the window's and of the drive's mesh; None where one is not known."""
+        return joined_error(self.error, self.drive_error)
 
     @property
     def lost_in_root(self) -> float | None:
@@ -203,7 +208,7 @@ class RootStress(AnswerGroup):
         if (
             self.in_root <= 0.0
             or self.region not in (TOOTH_ROOT, TOOTH_END)
-            or not math.isfinite(self.total_error)
+            or self.total_error is None
         ):
             return None
         s1 = self.s1 if self.region == TOOTH_ROOT else self.by_part[BETWEEN][-1]
@@ -216,8 +221,9 @@ class RootStress(AnswerGroup):
             return None
         values = np.array([value for _, value in self.period])
         half = abs(float(values.mean() - values[::2].mean())) if len(values) % 2 == 0 else None
-        mean = float(values.mean())
-        return OverPeriod(mean, self.total_error * mean / self.s1, half, float(values.max()))
+        mean, error = float(values.mean()), self.total_error
+        share = None if error is None else error / self.s1
+        return OverPeriod(mean, None if share is None else share * mean, half, float(values.max()))
 
 
 def window_recipe(model: str, level: int) -> MeshRecipe:
@@ -430,7 +436,7 @@ def _place(
     angle = float(layout.sector_angle(np.array(found.tooth)) - np.arctan2(x, y))
     return RootStress(
         s1=found.value,
-        error=error,
+        error=error if math.isfinite(error) else None,
         on_mesh=on_mesh,
         region=found.region,
         warning=found.warning,
