@@ -3,14 +3,13 @@ drive_mesh.inp.
 
 Steps:
 
-1. The inner surface of the flexible spline gets the displacement of the bent spline; no contact
-acts.
+1. The inner surface of the flexible spline gets the displacement of the bent spline, without
+   contact.
 2. It is let go on the cam. The output does not rotate.
 3. The flanks may touch. The output rotates until the loaded flanks meet.
 4. The torque acts in place of that rotation.
 5. Nothing changes. CalculiX keeps the places of contact of the beginning of an increment. Where
-surfaces slide in
-   it, forces on both are not on one line. In this step nothing slides.
+   surfaces slide in it, forces on both are not on one line. In this step nothing slides.
 """
 
 from __future__ import annotations
@@ -44,7 +43,7 @@ CAM_OVERHANG = 0.1
 """Of the plane model's cam over either end, as a share of the face width."""
 
 
-def write_calculix(design: DriveDesign, recipe: MeshRecipe, folder: Path) -> list[Path]:
+def write_calculix(design: DriveDesign, folder: Path, recipe: MeshRecipe) -> list[Path]:
     """Write the job and its mesh; `ccx -i drive` in the folder runs it.
 
     Raises
@@ -55,17 +54,10 @@ def write_calculix(design: DriveDesign, recipe: MeshRecipe, folder: Path) -> lis
     _check(design)
     model = JobModel(design, recipe)
     mesh, job = folder / MESH, folder / JOB
-    write_inp(
-        mesh,
-        model.drive,
-        model.surfaces,
-        design.materials,
-        design.drive.face_width,
-        plane_stress=model.plane,
-    )
-    half = 0.5 * design.wave_generator.face_width
+    width, half = design.drive.face_width, 0.5 * design.wave_generator.face_width
+    write_inp(mesh, model.drive, model.surfaces, design.materials, width, plane_stress=model.plane)
     if model.plane:
-        half = (0.5 + CAM_OVERHANG) * design.drive.face_width
+        half = (0.5 + CAM_OVERHANG) * width
     cam = cam_facets(design, half, model.inner_gap())
     with job.open("w", encoding="ascii") as file:
         file.writelines(f"{line}\n" for line in _job(model, cam))
@@ -102,21 +94,17 @@ def _check(design: DriveDesign) -> None:
         )
 
 
-def _numbered(numbers: Iterable[int]) -> str:
-    return ", ".join(str(k) for k in numbers)
-
-
 def _equation(terms: list[Term]) -> Iterator[str]:
     yield from ("*EQUATION", str(len(terms)))
-    for k in range(0, len(terms), 4):
-        yield ", ".join(
-            f"{node + 1}, {axis}, {factor:.12e}" for node, axis, factor in terms[k : k + 4]
-        )
+    written = [f"{node + 1}, {axis}, {factor:.12e}" for node, axis, factor in terms]
+    for k in range(0, len(written), 4):
+        yield ", ".join(written[k : k + 4])
 
 
 def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
     design, ring_fixed = model.design, model.design.kinematics.standing_gear == "ring_gear"
     output = len(model.points) + len(cam.points)
+    first, second = output + 1, output + 2
     bore, outer = model.surface(model.spline, "bore"), model.surface(model.ring, "outer")
     planar = ("ALL_NODES, 3, 3",) if model.plane else ()
     fixed = ["CAM, 1, 3", *planar]
@@ -128,30 +116,22 @@ def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
         equations = [*model.mean_motion(outer, output, in_housing=True), *model.housing(outer)]
         equations += model.mean_motion(bore, output + 2)
         bore_held = [f"{output + 3}, 1, 3", f"{output + 4}, 1, 3"]
-    held, rotation = (
-        [f"{output + 1}, 1, 3", f"{output + 2}, 1, 2", *bore_held],
-        f"{output + 2}, 3, 3",
-    )
+    held, rotation = [f"{first}, 1, 3", f"{second}, 1, 2", *bore_held], f"{second}, 3, 3"
     dependent = {terms[0][0] for terms in equations}
     equations += model.ties() if model.plane else ()
 
     yield from _heading(model, cam)
     yield f"*INCLUDE, INPUT={MESH}"
     yield from _cam(model, cam)
-    yield from ("*NODE, NSET=OUTPUT", f"{output + 1}, 0., 0., 0.", f"{output + 2}, 0., 0., 0.")
+    yield from ("*NODE, NSET=OUTPUT", f"{first}, 0., 0., 0.", f"{second}, 0., 0., 0.")
     if bore_held:
         yield from ("*NODE, NSET=HELD", f"{output + 3}, 0., 0., 0.", f"{output + 4}, 0., 0., 0.")
     for terms in equations:
         yield from _equation(terms)
-    for name, penalty in (
-        ("ON_CAM", design.wg_penalty),
-        ("ON_FLANKS", design.penalty("flexible_spline", "ring_gear")),
-    ):
-        yield from (
-            f"*SURFACE INTERACTION, NAME={name}",
-            "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
-        )
-        yield f"{penalty:.12g}"
+    on_flanks = design.penalty("flexible_spline", "ring_gear")
+    for name, penalty in (("ON_CAM", design.wg_penalty), ("ON_FLANKS", on_flanks)):
+        yield f"*SURFACE INTERACTION, NAME={name}"
+        yield from ("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{penalty:.12g}")
     for pair in PAIRS.values():
         name = "ON_CAM" if pair == CAM else "ON_FLANKS"
         yield from (f"*CONTACT PAIR, INTERACTION={name}, TYPE=SURFACE TO SURFACE", pair)
@@ -188,12 +168,9 @@ def _cam(model: JobModel, cam: CamFacets) -> Iterator[str]:
         yield f"{k}, {x:.12e}, {y:.12e}, {z:.12e}"
     yield "*ELEMENT, TYPE=C3D8, ELSET=CAM"
     for k, nodes in enumerate(cam.elements + n + 1, start=m + 1):
-        yield f"{k}, {_numbered(nodes)}"
-    yield from (
-        "*SOLID SECTION, ELSET=CAM, MATERIAL=FLEXIBLE_SPLINE_MATERIAL",
-        "*SURFACE, NAME=CAM, TYPE=ELEMENT",
-    )
-    yield f"CAM, S{OUTER_FACE + 1}"
+        yield ", ".join(map(str, (k, *nodes)))
+    yield "*SOLID SECTION, ELSET=CAM, MATERIAL=FLEXIBLE_SPLINE_MATERIAL"
+    yield from ("*SURFACE, NAME=CAM, TYPE=ELEMENT", f"CAM, S{OUTER_FACE + 1}")
 
 
 def _bend(model: JobModel, dependent: set[int], held: Iterable[str]) -> Iterator[str]:
@@ -201,13 +178,13 @@ def _bend(model: JobModel, dependent: set[int], held: Iterable[str]) -> Iterator
     conditions"""
     nodes = np.array([k for k in model.inner_nodes() if k not in dependent])
     u = BentSpline(model.design).displacement(model.points[nodes])
-    lines = ["*BOUNDARY", *held]
-    for node, values in zip(nodes + 1, u, strict=True):
-        lines += [
-            f"{node}, {k}, {k}, {values[k - 1]:.12e}"
-            for k in ((1, 2) if model.plane else (1, 2, 3))
-        ]
-    yield from _step("1: bent without contact", *lines, remove=list(PAIRS.values()))
+    bent = [
+        f"{node}, {axis}, {axis}, {value:.12e}"
+        for node, values in zip(nodes + 1, u[:, : 2 if model.plane else 3], strict=True)
+        for axis, value in enumerate(values, start=1)
+    ]
+    lines = ("*BOUNDARY", *held, *bent)
+    yield from _step("1: bent without contact", *lines, remove=[CAM, *FLANKS])
 
 
 def _torque(model: JobModel, surface: Surface) -> Iterator[str]:
@@ -216,9 +193,7 @@ def _torque(model: JobModel, surface: Surface) -> Iterator[str]:
     x = model.points[surface.nodes, :2]
     share = torque * surface.weight / float((surface.weight * (x**2).sum(axis=1)).sum())
     yield "*CLOAD"
-    for node, (fx, fy) in zip(
-        surface.nodes + 1, share[:, None] * np.column_stack([-x[:, 1], x[:, 0]]), strict=True
-    ):
+    for node, fx, fy in zip(surface.nodes + 1, -share * x[:, 1], share * x[:, 0], strict=True):
         yield from (f"{node}, 1, {fx:.12e}", f"{node}, 2, {fy:.12e}")
 
 
@@ -234,12 +209,8 @@ def _step(
 
     add, remove, acting : contact pairs that are switched on, off, or whose forces are printed
     """
-    yield from (
-        f"** step {name}",
-        f"*STEP, NLGEOM, INC=1000{parameters}",
-        "*STATIC",
-        "1., 1., 1e-6",
-    )
+    yield from (f"** step {name}", f"*STEP, NLGEOM, INC=1000{parameters}")
+    yield from ("*STATIC", "1., 1., 1e-6")
     for action, pairs in (("REMOVE", remove), ("ADD", add)):
         for pair in pairs:
             yield from (f"*MODEL CHANGE, TYPE=CONTACT PAIR, {action}", pair)

@@ -91,19 +91,18 @@ class JobModel:
     def surfaces(self) -> dict[str, Ints]:
         """Element and face (n, 2), both from 0, of the surfaces in contact: each side of the flanks
         is one."""
-        found, first = {}, 0
+        surfaces, first = {}, 0
         for mesh in self.meshes.values():
             quads = {f"{mesh.body}_{SIDES[grid.side]}": _quads(grid.nodes) for grid in mesh.flanks}
             if mesh is self.spline:
                 quads[f"{mesh.body}_inner"] = mesh.faces["inner"]
             for name, corners in quads.items():
                 copies = np.repeat(element_faces(mesh, corners)[None], mesh.n_sectors, axis=0)
-                copies[..., 0] += (
-                    first + len(mesh.elements) * np.arange(mesh.n_sectors, dtype=np.int32)[:, None]
-                )
-                found[name] = copies.reshape(-1, 2)
+                sectors = np.arange(mesh.n_sectors, dtype=np.int32)[:, None]
+                copies[..., 0] += first + len(mesh.elements) * sectors
+                surfaces[name] = copies.reshape(-1, 2)
             first += len(mesh.elements) * mesh.n_sectors
-        return found
+        return surfaces
 
     def surface(self, mesh: SectorMesh, name: str) -> Surface:
         """The nodes of a node set of a body."""
@@ -145,19 +144,16 @@ class JobModel:
 
     def faceted_teeth(self) -> RigidTeeth:
         """Rigid teeth whose flanks at mid-width are polygons."""
-        return replace(
-            self.design.rigid_teeth(), spline=_polygon(self.spline), ring=_polygon(self.ring)
-        )
+        spline, ring = _polygon(self.spline), _polygon(self.ring)
+        return replace(self.design.rigid_teeth(), spline=spline, ring=ring)
 
     def ties(self) -> Iterator[list[Term]]:
         """Plane model: the upper layer of nodes moves with the lower one."""
         for name, mesh in self.flat.items():
             upper = np.flatnonzero(mesh.lower_nodes != np.arange(len(mesh.coords)))
-            solid = self.meshes[name]
-            pairs = np.stack(
-                [self.numbers(solid, upper), self.numbers(solid, mesh.lower_nodes[upper])], axis=-1
-            )
-            for above, below in np.unique(pairs.reshape(-1, 2), axis=0).tolist():
+            pairs = self.numbers(self.meshes[name], np.array([upper, mesh.lower_nodes[upper]]))
+            pairs = np.moveaxis(pairs, 1, -1).reshape(-1, 2)
+            for above, below in np.unique(pairs, axis=0).tolist():
                 for axis in (1, 2):
                     yield [(above, axis, 1.0), (below, axis, -1.0)]
 
@@ -197,20 +193,11 @@ class JobModel:
         x = self.points[surface.mean]
         arm, n = x - x.mean(axis=0), len(x)
         radius2 = float((arm[:, :2] ** 2).sum())
-        top, left, bottom, right = (
-            int(k)
-            for k in (
-                arm[:, 1].argmax(),
-                arm[:, 0].argmin(),
-                arm[:, 1].argmin(),
-                arm[:, 0].argmax(),
-            )
-        )
+        (right, top), (left, bottom) = arm[:, :2].argmax(axis=0), arm[:, :2].argmin(axis=0)
         one, none = np.full(n, 1.0 / n), np.zeros(n)
         # of the displacements along x, y and z; the node that depends on the others, and its axis
-        rows = [
-            ((reference + 1, 3), (-arm[:, 1] / radius2, arm[:, 0] / radius2, none), (bottom, 0))
-        ]
+        turn = -arm[:, 1] / radius2, arm[:, 0] / radius2, none
+        rows = [((reference + 1, 3), turn, (bottom, 0))]
         if not in_housing:
             rows += [
                 ((reference, 1), (one, none, none), (top, 0)),
@@ -226,21 +213,16 @@ class JobModel:
         if in_housing:
             normal, axes = self._chords(surface.mean)
             for k, (first, second) in enumerate(axes):
-                factors[:, 3 * k + second] -= (
-                    normal[k, second] / normal[k, first] * factors[:, 3 * k + first]
-                )
+                slope = normal[k, second] / normal[k, first]
+                factors[:, 3 * k + second] -= slope * factors[:, 3 * k + first]
                 factors[:, 3 * k + first] = 0.0
         dependent = [3 * k + axis for *_, (k, axis) in rows]
         # none of the dependent displacements is left in the equations of the others
         inverse = np.linalg.inv(factors[:, dependent])
         solved = inverse @ factors
         for i, first in enumerate(dependent):
-            columns = [
-                first,
-                *np.setdiff1d(
-                    np.flatnonzero(np.abs(solved[i]) > 1e-12 * np.abs(solved[i]).max()), dependent
-                ),
-            ]
+            used = np.flatnonzero(np.abs(solved[i]) > 1e-12 * np.abs(solved[i]).max())
+            columns = [first, *np.setdiff1d(used, dependent)]
             terms = [(int(surface.mean[c // 3]), c % 3 + 1, float(solved[i, c])) for c in columns]
             yield terms + [(*rows[j][0], -float(f)) for j, f in enumerate(inverse[i]) if f]
 
@@ -253,10 +235,7 @@ def _quads(grid: Ints) -> Ints:
 def _polygon(mesh: SectorMesh) -> ToothProfile:
     flank = mesh.flanks[0]
     points = mesh.coords[flank.nodes[:, int(np.abs(flank.z).argmin())], :2]
-    lines = np.diff(points, axis=0)
-    angle, length = np.arctan2(lines[:, 1], lines[:, 0]), np.hypot(*lines.T)
-    segments = [
-        Segment("facet", (p[0], p[1]), a, 0.0, s)
-        for p, a, s in zip(points, angle, length, strict=False)
-    ]
-    return replace(mesh.profile, segments=tuple(segments))
+    x, y = np.diff(points, axis=0).T
+    sides = zip(points, np.arctan2(y, x), np.hypot(x, y), strict=False)
+    segments = tuple(Segment("facet", (p[0], p[1]), angle, 0.0, s) for p, angle, s in sides)
+    return replace(mesh.profile, segments=segments)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.exchange.outlines import cam_parts
+from swgpar.exchange.outlines import cam_outlines
 
 SAGITTA = 1e-4
 """Largest height of the cam's curve over a facet, as a share of the module."""
@@ -36,9 +36,9 @@ def cam_facets(design: DriveDesign, half_width: float, inset: float) -> CamFacet
     """Facets of the cam with crowning and slope, in |z| <= half_width (mm).
 
     inset : mm, by which the surface lies below the exact one. The facets of the flexible spline lie
-    within its exact
-        inner cylinder; their mean distance from it is the inset with which facets touch as the
-        exact surfaces do. The mean height of the curve over the facets of the cam is taken off.
+        within its exact inner cylinder; their mean distance from it is the inset with which facets
+        touch as the exact surfaces do. The mean height of the curve over the facets of the cam is
+        taken off.
     """
     surface, module = design.cam_surface(), design.drive.module
     count = 256
@@ -49,7 +49,7 @@ def cam_facets(design: DriveDesign, half_width: float, inset: float) -> CamFacet
     points: list[np.ndarray] = []
     elements: list[np.ndarray] = []
     first = 0
-    for part in cam_parts(design, count):
+    for part in cam_outlines(design, count):
         x, y = part.T
         if np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) < 0.0:  # clockwise
             part = part[::-1]
@@ -61,9 +61,8 @@ def cam_facets(design: DriveDesign, half_width: float, inset: float) -> CamFacet
         for _ in range(3):
             level, gradient, _ = surface.evaluate(grid[:, 1].reshape(-1, 3))
             slope2 = (gradient[:, :2] ** 2).sum(axis=1)
-            grid[:, 1, :, :2] -= (level / slope2)[:, None].reshape(stations + 1, n, 1) * gradient[
-                :, :2
-            ].reshape(stations + 1, n, 2)
+            step = (level / slope2)[:, None] * gradient[:, :2]
+            grid[:, 1, :, :2] -= step.reshape(stations + 1, n, 2)
         grid[:, 1, :, :2] += (2.0 / 3.0 * sagitta - inset) * normal
         grid[:, 0, :, :2] = grid[:, 1, :, :2] - DEPTH * module * normal
         number = first + np.arange(grid[..., 0].size).reshape(grid.shape[:3])
@@ -82,5 +81,5 @@ def cam_facets(design: DriveDesign, half_width: float, inset: float) -> CamFacet
 
 
 def _sagitta(design: DriveDesign, count: int) -> float:
-    middles = [0.5 * (part + np.roll(part, -1, axis=0)) for part in cam_parts(design, count)]
+    middles = [0.5 * (part + np.roll(part, -1, axis=0)) for part in cam_outlines(design, count)]
     return float(-design.cam().evaluate(np.concatenate(middles))[0].min())

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -23,39 +22,29 @@ def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
 
     Raises InputError without the package ezdxf.
     """
-    ezdxf = _ezdxf()
-    document = ezdxf.new("R2010", units=4)  # mm
+    try:
+        from ezdxf.filemanagement import new
+    except ImportError:
+        raise InputError(
+            "the format dxf needs the package ezdxf: pip install 'swgpar[exchange]'"
+        ) from None
+    document = new("R2010", units=4)  # mm
     space = document.modelspace()
     for gear in design.gears:
         document.layers.add(gear)
         _draw(space, gear_outline(design, gear), gear)
-        rim = (
-            design.inner_radius
-            if gear == "flexible_spline"
-            else design.geometry.gears[gear].outer_radius
-        )
+        outer = design.geometry.gears[gear].outer_radius
+        rim = design.inner_radius if gear == "flexible_spline" else outer
         space.add_circle((0.0, 0.0), rim, dxfattribs={"layer": gear})
     if design.housing is not None:
         document.layers.add("housing")
         space.add_circle((0.0, 0.0), design.geometry.outer_radius, dxfattribs={"layer": "housing"})
     document.layers.add("wave_generator")
-    for points in cam_outlines(
-        design
-    ):  # a polyline of this many points is within 0.02 µm of the curve
+    for points in cam_outlines(design):  # within 0.02 µm of the curve
         space.add_lwpolyline(points.tolist(), close=True, dxfattribs={"layer": "wave_generator"})
     path = folder / "drive.dxf"
     document.saveas(path)
     return [path]
-
-
-def _ezdxf() -> ModuleType:
-    try:
-        import ezdxf
-    except ImportError:
-        raise InputError(
-            "the format dxf needs the package ezdxf: pip install 'swgpar[exchange]'"
-        ) from None
-    return ezdxf
 
 
 def _draw(space: Any, edges: Iterable[Edge], layer: str) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.drive_data import DriveData
@@ -25,10 +24,8 @@ OF_DESIGN: Mapping[str, Callable[[DriveDesign, Path], list[Path]]] = {
 }
 """Formats of a design: its geometry."""
 
-ON_MESH: Mapping[str, Callable[[DriveDesign, MeshRecipe, Path], list[Path]]] = {
-    "inp": write_calculix
-}
-"""Formats of a design on a mesh: a job of another program."""
+ON_MESH: Mapping[str, Callable[..., list[Path]]] = {"inp": write_calculix}
+"""Formats of a design on a mesh of a `recipe`: a job of another program."""
 
 OF_RESULT: Mapping[str, Callable[[DriveData, Path], list[Path]]] = {
     "vtkhdf": write_vtkhdf,
@@ -58,12 +55,12 @@ def export_files(
         A format that the source does not have, one whose package or mesh is missing, or a mesh that
         no format has.
     """
-    writers: dict[str, Callable[[Any, Path], list[Path]]]
+    writers: dict[str, Callable[..., list[Path]]] = {**OF_RESULT}
+    noun = "a result"
     if isinstance(source, DriveDesign):
         noun = "a design"
-        writers = {**OF_DESIGN, **{name: _on(recipe, write) for name, write in ON_MESH.items()}}
-    else:
-        noun, writers = "a result", dict(OF_RESULT)
+        on_mesh = {name: partial(write, recipe=recipe) for name, write in ON_MESH.items()}
+        writers = {**OF_DESIGN, **on_mesh}
     for name in formats:
         if name not in writers:
             raise InputError(
@@ -83,9 +80,3 @@ def export_files(
         writers["fmu"] = partial(write_fmu, periodic=ripple)
     folder.mkdir(parents=True, exist_ok=True)
     return [path for name in formats for path in writers[name](source, folder)]
-
-
-def _on(
-    recipe: MeshRecipe | None, write: Callable[[DriveDesign, MeshRecipe, Path], list[Path]]
-) -> Callable[[DriveDesign, Path], list[Path]]:
-    return lambda design, folder: write(design, recipe, folder)

@@ -46,42 +46,39 @@ class Variable(NamedTuple):
     text: str
 
 
+def _variables(causality: str, *rows: tuple[str, str, str]) -> tuple[Variable, ...]:
+    return tuple(Variable(name, causality, unit, text) for name, unit, text in rows)
+
+
 VARIABLES = (
-    Variable("wave_generator_angle", "input", "rad", "angle of the wave generator"),
-    Variable("wave_generator_speed", "input", "rad/s", "speed of the wave generator"),
-    Variable("output_angle", "input", "rad", "angle of the output"),
-    Variable("output_speed", "input", "rad/s", "speed of the output"),
-    Variable("friction_torque", "parameter", "N.m", "friction against the speed of the wind-up"),
-    Variable(
-        "friction_speed",
-        "parameter",
-        "rad/s",
-        "speed of the wind-up at which 76 % of its friction act, above 0",
+    *_variables(
+        "input",
+        ("wave_generator_angle", "rad", "angle of the wave generator"),
+        ("wave_generator_speed", "rad/s", "speed of the wave generator"),
+        ("output_angle", "rad", "angle of the output"),
+        ("output_speed", "rad/s", "speed of the output"),
     ),
-    Variable("loss_torque", "parameter", "N.m", "friction against the speed of the wave generator"),
-    Variable(
-        "loss_speed",
+    *_variables(
         "parameter",
-        "rad/s",
-        "speed of the wave generator at which 76 % of it act, above 0",
+        ("friction_torque", "N.m", "friction against the speed of the wind-up"),
+        (
+            "friction_speed",
+            "rad/s",
+            "speed of the wind-up at which 76 % of its friction act, above 0",
+        ),
+        ("loss_torque", "N.m", "friction against the speed of the wave generator"),
+        ("loss_speed", "rad/s", "speed of the wave generator at which 76 % of it act, above 0"),
+        ("damping", "N.m.s/rad", "viscous damping of the wind-up"),
+        ("wave_generator_start_angle", "rad", "wave_generator_angle with the major axis on +y"),
+        ("output_start_angle", "rad", "output_angle that belongs to it without torque and error"),
     ),
-    Variable("damping", "parameter", "N.m.s/rad", "viscous damping of the wind-up"),
-    Variable(
-        "wave_generator_start_angle",
-        "parameter",
-        "rad",
-        "wave_generator_angle with the major axis on +y",
+    *_variables(
+        "output",
+        ("wave_generator_torque", "N.m", "torque of the drive on the wave generator"),
+        ("output_torque", "N.m", "torque of the drive on the output"),
+        ("windup", "rad", "angle of the output beyond ratio and kinematic error"),
+        ("kinematic_error", "rad", "kinematic error of the output"),
     ),
-    Variable(
-        "output_start_angle",
-        "parameter",
-        "rad",
-        "output_angle that belongs to it without torque and error",
-    ),
-    Variable("wave_generator_torque", "output", "N.m", "torque of the drive on the wave generator"),
-    Variable("output_torque", "output", "N.m", "torque of the drive on the output"),
-    Variable("windup", "output", "rad", "angle of the output beyond ratio and kinematic error"),
-    Variable("kinematic_error", "output", "rad", "kinematic error of the output"),
 )
 """In the order of the C file."""
 
@@ -130,11 +127,8 @@ def write_fmu(result: DriveData, folder: Path, periodic: DriveData | None = None
 
 def start_values(model: SpringModel) -> dict[str, float]:
     """Start values of all variables that are set from outside; zero but for friction and losses."""
-    return {
-        one.name: float(getattr(model, one.name, 0.0))
-        for one in VARIABLES
-        if one.causality in ("input", "parameter")
-    }
+    given = [one.name for one in VARIABLES if one.causality != "output"]
+    return {name: float(getattr(model, name, 0.0)) for name in given}
 
 
 def header(model: SpringModel) -> str:
@@ -150,26 +144,17 @@ def header(model: SpringModel) -> str:
 
 
 def _knots(name: str, knots: np.ndarray) -> str:
-    rows = ",\n".join(
-        "  {" + ", ".join(repr(float(value)) for value in knot) + "}" for knot in knots
-    )
-    return (
-        f"#define N_{name} {len(knots)}\nstatic const double {name}[N_{name}][3] = {{\n{rows}}};\n"
-    )
+    rows = ",\n".join("  {" + ", ".join(map(repr, knot)) + "}" for knot in knots.tolist())
+    table = f"static const double {name}[N_{name}][3] = {{\n{rows}}};\n"
+    return f"#define N_{name} {len(knots)}\n{table}"
 
 
 def model_description(guid: str, starts: dict[str, float]) -> bytes:
     """Text of modelDescription.xml."""
     outputs = [index for index, one in enumerate(VARIABLES, start=1) if one.causality == "output"]
-    values = {"name": NAME, "guid": guid, "version": __version__, "units": UNITS}
-    text = render(
-        "exchange/model_description.xml.j2",
-        **values,
-        variables=VARIABLES,
-        starts=starts,
-        outputs=outputs,
-    )
-    return text.encode()
+    facts = {"name": NAME, "guid": guid, "version": __version__, "units": UNITS}
+    tables = {"variables": VARIABLES, "outputs": outputs, "starts": starts}
+    return render("exchange/model_description.xml.j2", **facts, **tables).encode()
 
 
 def compiled(source: str, body: str) -> bytes | None:
@@ -192,12 +177,8 @@ def compiled(source: str, body: str) -> bytes | None:
         code.write_text(source, encoding="utf-8")
         (Path(folder) / "drive.h").write_text(body, encoding="utf-8")
         flags = ["-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden"]
-        run = subprocess.run(
-            [*compiler, *flags, str(code), "-o", str(binary), "-lm"],
-            capture_output=True,
-            text=True,
-            errors="replace",
-        )
+        command = [*compiler, *flags, str(code), "-o", str(binary), "-lm"]
+        run = subprocess.run(command, capture_output=True, text=True, errors="replace")
         if run.returncode:
             reason = (run.stderr.strip().splitlines() or [f"exit code {run.returncode}"])[0]
             raise OutputError(f"the C compiler {compiler[0]} cannot build the FMU: {reason}")
@@ -207,8 +188,7 @@ def compiled(source: str, body: str) -> bytes | None:
 def c_compiler() -> Sequence[str]:
     """Command of a C compiler: that in CC, else the first of cc, gcc and clang; empty without
     any."""
-    names = (
-        shlex.split(os.environ.get("CC", ""))
-        or [name for name in ("cc", "gcc", "clang") if shutil.which(name)][:1]
-    )
-    return names if names and shutil.which(names[0]) else []
+    given = shlex.split(os.environ.get("CC", ""))
+    if given:
+        return given if shutil.which(given[0]) else []
+    return [name for name in ("cc", "gcc", "clang") if shutil.which(name)][:1]

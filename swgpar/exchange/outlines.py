@@ -7,6 +7,7 @@ within `TOLERANCE` of the exact one.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -51,9 +52,7 @@ class Edge(NamedTuple):
 def flank_edges(profile: ToothProfile) -> list[Edge]:
     """The flank at x > 0, from its root to its tip."""
     edges = []
-    for begin, end, segment in zip(
-        profile.breaks[:-1], profile.breaks[1:], profile.segments, strict=True
-    ):
+    for (begin, end), segment in zip(pairwise(profile.breaks), profile.segments, strict=True):
         if not isinstance(segment, Segment):
             edges.append(Edge(profile.point(np.linspace(begin, end, FLANK_POINTS))[::-1]))
             continue
@@ -81,14 +80,9 @@ def gear_outline(design: DriveDesign, gear: GearName) -> list[Edge]:
     return [edge.turned(phase + pitch * k) for k in range(profile.n_teeth) for edge in tooth]
 
 
-def cam_outlines(design: DriveDesign) -> list[np.ndarray]:
-    """Closed curves of the cam, each (n, 2) mm without the first point again: one, or one for each
-    roller."""
-    return cam_parts(design, CAM_POINTS)
-
-
-def cam_parts(design: DriveDesign, count: int) -> list[np.ndarray]:
-    """Closed curves of the cam of about `count` points in all."""
+def cam_outlines(design: DriveDesign, count: int = CAM_POINTS) -> list[np.ndarray]:
+    """Closed curves of the cam of about `count` points in all, each (n, 2) mm without the first
+    point again: one, or one for each roller."""
     points = design.cam().outline(count)
     parts = 4 if isinstance(design.wave_generator, FourRoller) else 1
     return list(points.reshape(parts, -1, 2))

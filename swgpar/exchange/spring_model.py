@@ -59,8 +59,7 @@ def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
     """The model from a run with [stiffness] and from one of the same drive over a period.
 
     periodic : with steps.samples or [deviations], for the kinematic error; with [losses] also for
-    the loss torque;
-        None for neither
+        the loss torque; None for neither
 
     Raises
     ------
@@ -73,19 +72,16 @@ def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
             "the format fmu needs a run with [stiffness]: the kinematic error comes from a second "
             "run, --ripple FOLDER"
         )
-    if (
-        summary.design.kinematics.wave_generator_is_fixed
-    ):  # the columns of both runs count the rotation of the wave generator
+    # the columns of both runs count the rotation of the wave generator
+    if summary.design.kinematics.wave_generator_is_fixed:
         raise InputError(
             f'drive.layout = "{summary.design.drive.layout}" is not available with the format fmu: '
-            'allowed "ring_fixed" '
-            'or "spline_fixed"'
+            'allowed "ring_fixed" or "spline_fixed"'
         )
     ratio = summary.ratio
     table = spring_table(result)
-    direction = -np.sign(
-        ratio
-    )  # a positive torque of the table acts against the motion of the output
+    # a positive torque of the table acts against the motion of the output
+    direction = -np.sign(ratio)
     torque, windup = direction * table["torque_Nm"], direction * table["windup_rad"]
     order = np.argsort(torque)
     torque, windup = torque[order], windup[order]

@@ -22,6 +22,7 @@ import numpy as np
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GearName
 from swgpar.exchange.outlines import Edge, cam_outlines, gear_outline
+from swgpar.geometry.arrays import Floats
 from swgpar.meshing.gmsh_session import gmsh_model
 
 PIECES = 32
@@ -42,9 +43,7 @@ def write_step(design: DriveDesign, folder: Path) -> list[Path]:
     """
     paths = []
     names: list[Solid] = [*design.gears, "wave_generator"]
-    if design.housing:
-        names.append("housing")
-    for name in names:
+    for name in [*names, "housing"] if design.housing else names:
         path = folder / f"{name}.step"
         with gmsh_model(name) as gmsh:
             _build(gmsh, design, name)
@@ -80,23 +79,14 @@ def _build(gmsh: ModuleType, design: DriveDesign, name: Solid) -> None:
     back, front = design.axial_range("ring_gear" if name == "housing" else name)
     width = front - back
     if name == "housing":
-        _extrude(
-            gmsh,
-            [
-                _circle(gmsh, radius, back)
-                for radius in (
-                    design.geometry.outer_radius,
-                    design.geometry.gears["ring_gear"].outer_radius,
-                )
-            ],
-            width,
-        )
+        inner = design.geometry.gears["ring_gear"].outer_radius
+        radii = (design.geometry.outer_radius, inner)
+        _extrude(gmsh, [_circle(gmsh, radius, back) for radius in radii], width)
         return
     teeth = _loop(gmsh, gear_outline(design, name), back)
     if name != "flexible_spline":
-        _extrude(
-            gmsh, [_circle(gmsh, design.geometry.gears[name].outer_radius, back), teeth], width
-        )
+        outer = _circle(gmsh, design.geometry.gears[name].outer_radius, back)
+        _extrude(gmsh, [outer, teeth], width)
         return
     toothed = _extrude(gmsh, [teeth, _circle(gmsh, design.inner_radius, back)], width)
     if design.has_cup:
@@ -106,11 +96,11 @@ def _build(gmsh: ModuleType, design: DriveDesign, name: Solid) -> None:
 def _extrude(gmsh: ModuleType, loops: Sequence[int], width: float) -> tuple[int, int]:
     """The solid between closed curves, the first outside; its dimension and tag."""
     surface = gmsh.model.occ.addPlaneSurface(list(loops))
-    return next(
-        entity
-        for entity in gmsh.model.occ.extrude([(2, surface)], 0.0, 0.0, width)
-        if entity[0] == 3
-    )
+    return _solid(gmsh.model.occ.extrude([(2, surface)], 0.0, 0.0, width))
+
+
+def _solid(entities: Sequence[tuple[int, int]]) -> tuple[int, int]:
+    return next(entity for entity in entities if entity[0] == 3)
 
 
 def _circle(gmsh: ModuleType, radius: float, z: float) -> int:
@@ -147,9 +137,8 @@ def _loop(gmsh: ModuleType, edges: Sequence[Edge], z: float) -> int:
         elif len(edge.points) == 2:
             curves.append(occ.addLine(start, end))
         else:
-            curves.append(
-                occ.addSpline([start, *(occ.addPoint(*p, z) for p in edge.points[1:-1]), end])
-            )
+            inside = [occ.addPoint(*point, z) for point in edge.points[1:-1]]
+            curves.append(occ.addSpline([start, *inside, end]))
     return occ.addCurveLoop(curves)
 
 
@@ -175,20 +164,15 @@ class _Meridian:
     def arc(self, r: float, z: float, center: tuple[float, float]) -> None:
         """The shorter arc to a point, or that of an ellipse with axes along r and z; none without a
         size."""
-        sizes = [
-            max(abs(a - c), abs(b - c)) for a, b, c in zip(self.place, (r, z), center, strict=True)
-        ]
-        if min(sizes) < SAME:  # a fillet without one of its sizes is a corner
-            self.line(center[0], center[1])
+        arms = np.abs(np.subtract([self.place, (r, z)], center))
+        sizes = arms.max(axis=0)
+        if sizes.min() < SAME:  # a fillet without one of its sizes is a corner
+            self.line(*center)
             self.line(r, z)
             return
         middle, start = self.occ.addPoint(center[0], 0.0, center[1]), self.at
-        round_arc = (
-            abs(np.hypot(*np.subtract(self.place, center)) - np.hypot(r - center[0], z - center[1]))
-            < SAME
-        )
         self.at = self._end(r, z)
-        if round_arc:
+        if np.ptp(np.hypot(*arms.T)) < SAME:
             self.curves.append(self.occ.addCircleArc(start, middle, self.at))
             return
         along = (1.0, 0.0) if sizes[0] > sizes[1] else (0.0, 1.0)
@@ -210,24 +194,23 @@ def _wall(gmsh: ModuleType, design: DriveDesign) -> tuple[int, int]:
     section.line(r_first + fillet, wall.back)
     if fillet:
         section.arc(r_first, wall.back + fillet, (r_first + fillet, wall.back + fillet))
-    for _, (s, r), center in wall.outer.pieces():
-        _continue(section, wall.back, s, r, center)
+    for _, end, center in wall.outer.pieces():
+        _continue(section, wall.back, end, center)
     section.arc(r_center, wall.faces[1], (r_center, z_center))
     for z in wall.faces[::-1]:
         section.line(wall.edge, z)
     section.line(r_center, wall.faces[0])
     section.arc(wall.inner.points[-1, 1], z_center, (r_center, z_center))
-    for (s, r), _, center in wall.inner.pieces()[:0:-1]:
-        _continue(section, wall.back, s, r, center)
+    for end, _, center in wall.inner.pieces()[:0:-1]:
+        _continue(section, wall.back, end, center)
     solid = occ.revolve([(2, section.surface())], 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 2.0 * np.pi)
-    return next(entity for entity in solid if entity[0] == 3)
+    return _solid(solid)
 
 
-def _continue(
-    section: _Meridian, back: float, s: float, r: float, center: np.ndarray | None
-) -> None:
+def _continue(section: _Meridian, back: float, end: Floats, center: Floats | None) -> None:
     """A piece of a wall's line to a distance from the back of the teeth and a radius."""
+    distance, r = end
     if center is None:
-        section.line(r, back + s)
+        section.line(r, back + distance)
     else:
-        section.arc(r, back + s, (center[1], back + center[0]))
+        section.arc(r, back + distance, (center[1], back + center[0]))

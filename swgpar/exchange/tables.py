@@ -11,20 +11,14 @@ import numpy as np
 from swgpar.errors import InputError
 from swgpar.evaluation.stiffness import Loop, rows_by_position
 from swgpar.load.load_program import stiffness_program
-from swgpar.results.table import format_columns
+from swgpar.results.table import as_rows, format_columns
 
 if TYPE_CHECKING:
     from swgpar.drive_results.drive_data import DriveData
 
 TABLES = (
-    "history",
-    "pairs",
-    "contact_lines",
-    "program",
-    "transmission_error",
-    "losses",
-    "fatigue_cycle",
-    "balls",
+    *("history", "pairs", "contact_lines", "program"),
+    *("transmission_error", "losses", "fatigue_cycle", "balls"),
 )
 """Attributes of a `DriveData` that are tables."""
 
@@ -65,29 +59,26 @@ def write_look_up(result: DriveData, folder: Path) -> list[Path]:
     InputError
         The run has neither a stiffness loop nor a transmission error.
     """
-    paths = []
+    tables = {}
     if result.program and result.summary.stiffness:
-        paths.append(folder / SPRING)
-        paths[-1].write_bytes(format_columns(spring_table(result)))
+        tables[folder / SPRING] = spring_table(result)
     if result.transmission_error:
-        paths.append(folder / RIPPLE)
-        paths[-1].write_bytes(format_columns(ripple_table(result.transmission_error)))
-    if not paths:
+        tables[folder / RIPPLE] = ripple_table(result.transmission_error)
+    for path, columns in tables.items():
+        path.write_bytes(format_columns(columns))
+    if not tables:
         raise InputError(
             "the format lookup needs a run with [stiffness], steps.samples or [deviations]: this "
             "one has neither a stiffness loop nor a transmission error"
         )
-    return paths
+    return list(tables)
 
 
 def spring_table(result: DriveData) -> dict[str, np.ndarray]:
     """Columns of spring.csv of a run with [stiffness]: wind-up at the torques of its loops, mean
     over the positions."""
     program = stiffness_program(result.summary.design)
-    rows = [
-        dict(zip(result.program, values, strict=True))
-        for values in zip(*result.program.values(), strict=True)
-    ]
+    rows = as_rows(result.program)
     loops = [Loop(here) for here in rows_by_position(program, rows).values()]
     torques = np.array(program.torques)
     levels = np.concatenate([-torques[::-1], torques])

@@ -54,36 +54,31 @@ def write_vtkhdf(result: DriveData, folder: Path) -> list[Path]:
     with h5py.File(path, "w") as file:
         root = file.create_group("VTKHDF", track_order=True)
         root.attrs["Version"] = np.array([2, 0])
-        root.attrs.create(
-            "Type", np.bytes_("UnstructuredGrid"), dtype=h5py.string_dtype("ascii", 16)
-        )
+        kind = h5py.string_dtype("ascii", 16)
+        root.attrs.create("Type", np.bytes_("UnstructuredGrid"), dtype=kind)
         root["NumberOfPoints"], root["NumberOfCells"] = np.array([n]), np.array([m])
         root["NumberOfConnectivityIds"] = np.array([8 * m])
         root["Points"], root["Connectivity"] = points, cells.ravel().astype(np.int64)
-        root["Offsets"], root["Types"] = (
-            8 * np.arange(m + 1),
-            np.full(m, HEXAHEDRON, dtype=np.uint8),
-        )
+        root["Offsets"] = 8 * np.arange(m + 1)
+        root["Types"] = np.full(m, HEXAHEDRON, dtype=np.uint8)
         root["CellData/body"] = whole.cell_data["body"].astype(np.int32)
         group = root.create_group("Steps")
         group.attrs["NSteps"] = steps
         group["Values"] = step_times(result)
         group["NumberOfParts"] = np.ones(steps, dtype=np.int64)
-        for name in ("PartOffsets", "PointOffsets"):
+        for name in ("PartOffsets", "PointOffsets", "CellDataOffsets/body"):
             group[name] = np.zeros(steps, dtype=np.int64)
         for name in ("CellOffsets", "ConnectivityIdOffsets"):
             group[name] = np.zeros((steps, 1), dtype=np.int64)
-        group["CellDataOffsets/body"] = np.zeros(steps, dtype=np.int64)
         for step in range(steps):
             grid = whole if step == 0 else result.grid(step, whole=True)
             for name, values in grid.point_data.items():
                 values = np.nan_to_num(np.asarray(values))
                 values = values[:, TENSOR] if values.ndim == 2 and values.shape[1] == 6 else values
                 if step == 0:
+                    shape = (steps * n, *values.shape[1:])
                     kind = np.float64 if name == "displacement" else np.float32
-                    root.create_dataset(
-                        f"PointData/{name}", (steps * n, *values.shape[1:]), dtype=kind
-                    )
+                    root.create_dataset(f"PointData/{name}", shape, dtype=kind)
                     group[f"PointDataOffsets/{name}"] = n * np.arange(steps)
                 root[f"PointData/{name}"][step * n : (step + 1) * n] = values
     return [path]

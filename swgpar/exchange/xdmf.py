@@ -27,18 +27,13 @@ def write_xdmf(result: DriveData, folder: Path) -> list[Path]:
     folder."""
     require_fields(result, "xdmf")
     path = folder / NAME
-    with (
-        chdir(folder),
-        meshio.xdmf.TimeSeriesWriter(NAME) as series,
-    ):  # it opens drive.h5 in the working directory
+    # meshio opens drive.h5 in the working directory
+    with chdir(folder), meshio.xdmf.TimeSeriesWriter(NAME) as series:
         for step, time in enumerate(step_times(result)):
             grid = result.grid(step, whole=True)
             if step == 0:
-                series.write_points_cells(
-                    np.asarray(grid.points), {"hexahedron": grid.cells.reshape(-1, 9)[:, 1:]}
-                )
-            fields = {
-                name: np.nan_to_num(np.asarray(values)) for name, values in grid.point_data.items()
-            }
+                cells = {"hexahedron": grid.cells.reshape(-1, 9)[:, 1:]}
+                series.write_points_cells(np.asarray(grid.points), cells)
+            fields = {name: np.nan_to_num(values) for name, values in grid.point_data.items()}
             series.write_data(time, fields, {"body": [grid.cell_data["body"].astype(np.int32)]})
     return [path, path.with_suffix(".h5")]
