@@ -24,9 +24,7 @@ if TYPE_CHECKING:
         mesh,
         new,
         open_result,
-        optimise,
         run,
-        study,
     )
     from swgpar.design.drive_design import DriveDesign
     from swgpar.errors import (
@@ -40,8 +38,9 @@ if TYPE_CHECKING:
     from swgpar.meshing.drive_mesh import DriveMesh
     from swgpar.meshing.recipe import MeshRecipe
     from swgpar.optimisation.result import OptimisationResult
+    from swgpar.optimisation.run_optimisation import optimise
     from swgpar.presentation.drive_result import DriveResult
-    from swgpar.studies.study import StudyResult
+    from swgpar.studies.study import StudyResult, study
     from swgpar.systems.gear_train import TrainResult
 
 _MODULES = {
@@ -51,8 +50,8 @@ _MODULES = {
     "load_mesh": "api",
     "run": "api",
     "open_result": "api",
-    "study": "api",
-    "optimise": "api",
+    "study": "studies.study",
+    "optimise": "optimisation.run_optimisation",
     "check": "api",
     "mesh": "api",
     "DriveDesign": "design.drive_design",

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from mpi4py import MPI
 
@@ -21,7 +21,7 @@ from swgpar.checks.starter import CamType, Model, Profile, Request, Shape, as_to
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError, SwgparError
 from swgpar.input.design import Design
-from swgpar.input.toml_file import Overrides, apply_overrides, read_toml
+from swgpar.input.toml_file import Overrides, apply_overrides, read_toml, require_source
 from swgpar.meshing import MeshRecipe, build_sector_meshes
 from swgpar.meshing import load_recipe as _load_recipe
 from swgpar.meshing.drive_mesh import DriveMesh
@@ -32,10 +32,6 @@ from swgpar.results.figure_set import save_figures
 from swgpar.results.folder import REPORT, given_folder, read_design
 from swgpar.run_options import RunOptions
 from swgpar.systems import Result, system_of, system_of_table
-
-if TYPE_CHECKING:
-    from swgpar.optimisation import OptimisationResult
-    from swgpar.studies import StudyResult
 
 DesignLike = Design | str | Path | Mapping[str, Any]
 """A design, the path of its file, or the content of one."""
@@ -141,7 +137,7 @@ def load_design(design: DesignLike, overrides: Overrides = ()) -> Design:
     """
     if isinstance(design, Design):
         return design.with_values(overrides) if overrides else design
-    _require("design", design)
+    require_source("design", design)
     table = dict(design) if isinstance(design, Mapping) else read_toml(design)
     return system_of_table(table).load(apply_overrides(table, overrides))
 
@@ -167,7 +163,7 @@ def load_mesh(mesh: MeshLike) -> MeshRecipe:
     """
     if isinstance(mesh, MeshRecipe):
         return mesh
-    _require("mesh", mesh)
+    require_source("mesh", mesh)
     return make_recipe(dict(mesh)) if isinstance(mesh, Mapping) else _load_recipe(mesh)
 
 
@@ -236,6 +232,7 @@ def run(
     >>> result.summary["root.s1"].value, result.history["fs_s1"].max()
     """
     folder = None if out is None else given_folder(out)
+    terminal = log.console.is_terminal if progress is None else progress
     given = RunOptions(
         folder,
         accuracy=accuracy,
@@ -243,10 +240,10 @@ def run(
         restart=restart,
         overwrite=overwrite,
         comm=comm,
-        terminal=_terminal(progress),
+        terminal=terminal,
     )
     checked, options = on_all(comm, lambda: _checked(design, mesh, given))
-    with log.session(comm, terminal=given.terminal):
+    with log.session(comm, terminal=terminal):
         system = system_of(checked)
         result = system.run(checked, options)
         if folder is not None:
@@ -372,123 +369,6 @@ def open_result(folder: str | Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Result:
     return system.open(folder, comm)
 
 
-def study(
-    study: str | Path | Mapping[str, Any],
-    out: str | Path | None = None,
-    *,
-    restart: bool = False,
-    overwrite: bool = False,
-    progress: bool | None = None,
-    comm: MPI.Comm = MPI.COMM_WORLD,
-) -> StudyResult:
-    """Compute many designs and compare them; collective.
-
-    Parameters
-    ----------
-    study : path or mapping
-        A study file (TOML), or its content ``{"study": {...}}`` with paths relative to the working
-        directory.
-    out : path
-        Folder of the study: study.csv, published.csv, study.html, and the results of every case.
-        Without it the study is in memory and leaves no files.
-    restart : bool
-        Keep what is finished in `out`, continue what was interrupted, try again what failed.
-    overwrite : bool
-        Replace a study that `out` already holds.
-    progress : bool
-        Report every case on the terminal. Default: only on a terminal.
-    comm : communicator
-        Each rank works on cases of its own.
-
-    Returns
-    -------
-    StudyResult
-        A case that fails does not stop the others: see ``failed``.
-
-    Raises
-    ------
-    InputError
-        A study file that cannot be used.
-    OutputError
-        The folder cannot be written, or holds another study.
-
-    Examples
-    --------
-    >>> found = swgpar.study({"study": {
-    ...     "design": "drivers/plane_half_turn.toml", "meshes": ["plane_coarse"],
-    ...     "vary": {"load.torque": [5.0, 10.0, 20.0]}}})
-    >>> found.table["mean.fs_s1"]
-    """
-    from swgpar.studies import run_study  # a run needs no studies
-
-    _require("study", study)
-
-    return run_study(
-        study,
-        out,
-        restart=restart,
-        overwrite=overwrite,
-        terminal=_terminal(progress),
-        comm=comm,
-    )
-
-
-def optimise(
-    optimisation: str | Path,
-    out: str | Path,
-    *,
-    restart: bool = False,
-    overwrite: bool = False,
-    progress: bool | None = None,
-    comm: MPI.Comm = MPI.COMM_WORLD,
-) -> OptimisationResult:
-    """Search for the best design; collective.
-
-    Parameters
-    ----------
-    optimisation : path
-        An optimisation file (TOML): variables with bounds, objectives and constraints.
-    out : path
-        Folder: optimise.csv, optimise.html, the storage, and the design files of the best designs
-        in best/.
-    restart : bool
-        Continue the search in `out`.
-    overwrite : bool
-        Replace a search that `out` already holds. A search in a database is never removed.
-    progress : bool
-        Report every evaluation on the terminal. Default: only on a terminal.
-    comm : communicator
-        Each rank tries designs of its own.
-
-    Returns
-    -------
-    OptimisationResult
-        A design that is refused or fails is infeasible and does not stop the search.
-
-    Raises
-    ------
-    InputError
-        An optimisation file that cannot be used.
-    OutputError
-        The folder or the database cannot be used, or holds another search.
-
-    Examples
-    --------
-    >>> found = swgpar.optimise("drivers/optimise/parabolic_cam.toml", "results/cam")
-    >>> found.evaluations[found.best[0]].values
-    """
-    from swgpar.optimisation import run_optimisation  # a run needs no optimisation
-
-    return run_optimisation(
-        optimisation,
-        out,
-        restart=restart,
-        overwrite=overwrite,
-        terminal=_terminal(progress),
-        comm=comm,
-    )
-
-
 def check(
     design: DesignLike, overrides: Overrides = (), mesh: MeshLike | None = None
 ) -> dict[str, float]:
@@ -575,20 +455,6 @@ def mesh(
     whole = on_all(comm, make)
     on_all(comm, lambda: whole.write(folder, formats) if comm.rank == 0 else None)
     return whole
-
-
-def _require(name: str, value: Any) -> None:
-    """Refuse what is neither a path nor the content of a file."""
-    if not isinstance(value, (str, Path, Mapping)):
-        raise InputError(
-            f"{name} is of the type {type(value).__name__}: allowed are a path, a dict or a loaded "
-            f"{name}"
-        )
-
-
-def _terminal(progress: bool | None) -> bool:
-    """Whether to report on the terminal."""
-    return log.console.is_terminal if progress is None else progress
 
 
 def _checked(

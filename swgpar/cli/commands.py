@@ -32,28 +32,27 @@ def _run(arguments: argparse.Namespace) -> None:
 
 
 def _study(arguments: argparse.Namespace) -> None:
-    from swgpar import api
+    from swgpar.studies.study import study
     from swgpar.studies.terminal import print_results
 
     _begin(arguments, "cases")
-    given = _given(api.study, arguments)
-    study = api.study(arguments.study, arguments.out, progress=True, **given)
-    _show(arguments.out, lambda: print_results(study.results, study.comparisons))
+    result = study(arguments.study, arguments.out, progress=True, **_given(study, arguments))
+    _show(arguments.out, lambda: print_results(result.results, result.comparisons))
     _end()
-    if study.failed:
+    if result.failed:
         raise StudyError(
-            f"{len(study.failed)} of {len(study.results)} runs failed: the reasons are in "
+            f"{len(result.failed)} of {len(result.results)} runs failed: the reasons are in "
             f"{Path(arguments.out) / 'study.csv'}"
         )
 
 
 def _optimise(arguments: argparse.Namespace) -> None:
-    from swgpar import api
+    from swgpar.optimisation.run_optimisation import optimise
     from swgpar.optimisation.terminal import print_result
 
     _begin(arguments, "evaluations")
-    given = _given(api.optimise, arguments)
-    result = api.optimise(arguments.optimisation, arguments.out, progress=True, **given)
+    given = _given(optimise, arguments)
+    result = optimise(arguments.optimisation, arguments.out, progress=True, **given)
     _show(arguments.out, lambda: print_result(result))
     _end()
 
@@ -143,7 +142,8 @@ def _design(arguments: argparse.Namespace) -> Design:
 
 def _given(function: Callable[..., Any], arguments: argparse.Namespace) -> dict[str, Any]:
     """The options of the command that are keywords of a function of the Python interface."""
-    keywords = inspect.getfullargspec(function).kwonlyargs
+    parameters = inspect.signature(function).parameters.values()
+    keywords = [each.name for each in parameters if each.kind is each.KEYWORD_ONLY]
     return {name: value for name, value in vars(arguments).items() if name in keywords}
 
 

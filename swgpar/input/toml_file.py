@@ -39,6 +39,15 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         raise InputError(f"{path} is not valid TOML: {reason}") from None
 
 
+def require_source(name: str, value: Any) -> None:
+    """Refuse what is neither a path nor the content of a file."""
+    if not isinstance(value, (str, Path, Mapping)):
+        raise InputError(
+            f"{name} is of the type {type(value).__name__}: allowed are a path, a dict or a loaded "
+            f"{name}"
+        )
+
+
 def parse_value(text: str) -> Any:
     """Return `text` read as a TOML value; a text that is none stays a bare string."""
     try:

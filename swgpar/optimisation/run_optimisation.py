@@ -9,7 +9,7 @@ from typing import Any
 
 from mpi4py import MPI
 
-from swgpar import watch
+from swgpar import log, watch
 from swgpar.input.toml_file import to_toml
 from swgpar.optimisation.problem import Problem, make_problem
 from swgpar.optimisation.report import make_report
@@ -32,21 +32,53 @@ SCREEN = " screen"
 
 
 @releasing
-def run_optimisation(
-    source: str | Path,
+def optimise(
+    optimisation: str | Path,
     out: str | Path,
     *,
     restart: bool = False,
     overwrite: bool = False,
-    terminal: bool = False,
+    progress: bool | None = None,
     comm: MPI.Comm = MPI.COMM_WORLD,
 ) -> OptimisationResult:
-    """Search for the best design; collective. Parameters and errors are those of `swgpar.optimise`.
+    """Search for the best design; collective.
 
-    terminal : whether rank 0 reports on the terminal
+    Parameters
+    ----------
+    optimisation : path
+        An optimisation file (TOML): variables with bounds, objectives and constraints.
+    out : path
+        Folder: optimise.csv, optimise.html, the storage, and the design files of the best designs
+        in best/.
+    restart : bool
+        Continue the search in `out`.
+    overwrite : bool
+        Replace a search that `out` already holds. A search in a database is never removed.
+    progress : bool
+        Report every evaluation on the terminal. Default: only on a terminal.
+    comm : communicator
+        Each rank tries designs of its own.
+
+    Returns
+    -------
+    OptimisationResult
+        A design that is refused or fails is infeasible and does not stop the search.
+
+    Raises
+    ------
+    InputError
+        An optimisation file that cannot be used.
+    OutputError
+        The folder or the database cannot be used, or holds another search.
+
+    Examples
+    --------
+    >>> found = swgpar.optimise("drivers/optimise/parabolic_cam.toml", "results/cam")
+    >>> found.evaluations[found.best[0]].values
     """
+    terminal = log.console.is_terminal if progress is None else progress
     begin, folder = time.perf_counter(), given_folder(out)
-    spec = on_all(comm, lambda: load_specification(source))
+    spec = on_all(comm, lambda: load_specification(optimisation))
     problem = on_all(comm, lambda: make_problem(spec))
     section, screen = spec.section, spec.section.screen
     cheaper = on_all(comm, lambda: make_problem(spec, screen=True)) if screen else None
@@ -92,15 +124,8 @@ def _claim(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
         for path in (*kept, out / REPORT, *(out / BEST).glob(DESIGNS)):
             path.unlink(missing_ok=True)
 
-    claim_folder(
-        comm,
-        out,
-        "an optimisation",
-        lambda: any(path.exists() for path in kept),
-        remove,
-        restart=restart,
-        overwrite=overwrite,
-    )
+    what = "an optimisation"
+    claim_folder(comm, out, what, kept, remove, restart=restart, overwrite=overwrite)
 
 
 def _write(

@@ -119,9 +119,7 @@ class DriveFigures(FigureSet):
         Over whole turns with deviations, or over the sampled period of the ideal drive.
         """
         rows = _needed(
-            self._result.transmission_error,
-            "transmission error",
-            "steps.samples or [deviations]",
+            self._result.transmission_error, "transmission error", "steps.samples or [deviations]"
         )
         summary = self._result.summary.transmission_error
         figure, (upper, lower) = panels(2, 7.0, 6.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
 
@@ -20,7 +20,7 @@ def claim_folder(
     comm: MPI.Comm,
     out: Path,
     what: str,
-    present: Callable[[], bool],
+    marks: Iterable[Path],
     remove: Callable[[], None],
     *,
     restart: bool,
@@ -28,7 +28,8 @@ def claim_folder(
 ) -> None:
     """Make and lock a folder. `releasing` must decorate the caller; collective.
 
-    what : the folder holds, in messages;  present, remove : whether it does, and how to remove it
+    what : the folder holds, in messages;  marks : paths of which one is there then
+    remove : removes what the folder holds
     """
     with agreed(comm, out):
         if comm.rank == 0:
@@ -36,7 +37,7 @@ def claim_folder(
             acquire(out)
             if overwrite and not restart:
                 remove()
-            elif not restart and present():
+            elif not restart and any(mark.exists() for mark in marks):
                 raise OutputError(
                     f"{out} already holds {what}: continue it with restart = true (--restart), "
                     "replace it with overwrite = true (--overwrite), or choose another folder"

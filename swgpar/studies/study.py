@@ -11,8 +11,9 @@ from typing import Any
 
 from mpi4py import MPI
 
-from swgpar import watch
+from swgpar import log, watch
 from swgpar.errors import InputError, OutputError
+from swgpar.input.toml_file import require_source
 from swgpar.results.atomic import agreed, on_root, write_from_root
 from swgpar.results.folder import given_folder, remove_results
 from swgpar.results.lock import releasing
@@ -123,21 +124,57 @@ class _Book:
 
 
 @releasing
-def run_study(
-    source: str | Path | Mapping[str, Any],
+def study(
+    study: str | Path | Mapping[str, Any],
     out: str | Path | None = None,
     *,
     restart: bool = False,
     overwrite: bool = False,
-    terminal: bool = False,
+    progress: bool | None = None,
     comm: MPI.Comm = MPI.COMM_WORLD,
 ) -> StudyResult:
-    """Run all cases of a study; collective. Parameters and errors are those of `swgpar.study`.
+    """Compute many designs and compare them; collective.
 
-    terminal : whether rank 0 reports on the terminal
+    Parameters
+    ----------
+    study : path or mapping
+        A study file (TOML), or its content ``{"study": {...}}`` with paths relative to the working
+        directory.
+    out : path
+        Folder of the study: study.csv, published.csv, study.html, and the results of every case.
+        Without it the study is in memory and leaves no files.
+    restart : bool
+        Keep what is finished in `out`, continue what was interrupted, try again what failed.
+    overwrite : bool
+        Replace a study that `out` already holds.
+    progress : bool
+        Report every case on the terminal. Default: only on a terminal.
+    comm : communicator
+        Each rank works on cases of its own.
+
+    Returns
+    -------
+    StudyResult
+        A case that fails does not stop the others: see ``failed``.
+
+    Raises
+    ------
+    InputError
+        A study file that cannot be used.
+    OutputError
+        The folder cannot be written, or holds another study.
+
+    Examples
+    --------
+    >>> found = swgpar.study({"study": {
+    ...     "design": "drivers/plane_half_turn.toml", "meshes": ["plane_coarse"],
+    ...     "vary": {"load.torque": [5.0, 10.0, 20.0]}}})
+    >>> found.table["mean.fs_s1"]
     """
+    require_source("study", study)
+    terminal = log.console.is_terminal if progress is None else progress
     folder = None if out is None else given_folder(out)
-    study, jobs = on_root(comm, lambda: _read(source))  # whatever happens to the file meanwhile
+    file, jobs = on_root(comm, lambda: _read(study))  # whatever happens to the file meanwhile
     if folder is not None:
         _claim(folder, comm, restart, overwrite)
     elif restart:
@@ -161,15 +198,15 @@ def run_study(
         outcome = run_one(job.case.system, job.case.design, options, job.case.refusal)
         send((order[index], outcome))
 
-    book = _Book(study, jobs, folder, terminal) if comm.rank == 0 else None
+    book = _Book(file, jobs, folder, terminal) if comm.rank == 0 else None
     try:
-        do_runs(comm, study.section.parallel, len(jobs), run, book.receive if book else None)
+        do_runs(comm, file.section.parallel, len(jobs), run, book.receive if book else None)
     finally:
         if book is not None and book.progress is not None:
             book.progress.stop()
     results = comm.bcast(book.results() if book else None)
     if folder is not None:
-        _write(study, results, folder, comm)
+        _write(file, results, folder, comm)
     return StudyResult(results, None if folder is None else folder.absolute())
 
 
@@ -188,7 +225,7 @@ def _claim(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
         for name in (TABLE, PUBLISHED, REPORT):
             (out / name).unlink(missing_ok=True)
 
-    claim_folder(comm, out, "a study", cases.exists, remove, restart=restart, overwrite=overwrite)
+    claim_folder(comm, out, "a study", [cases], remove, restart=restart, overwrite=overwrite)
     with agreed(comm, cases):
         if comm.rank == 0:
             cases.mkdir(exist_ok=True)

@@ -153,7 +153,7 @@ def test_a_standing_wave_generator_changes_nothing_up_to_the_loaded_state(tmp_pa
         folder = tmp_path / layout
         folder.mkdir()
         job, _ = write_calculix(
-            load_design(DESIGN, [*PLANE, f"drive.layout={layout}"]), load_recipe(RECIPE), folder
+            load_design(DESIGN, [*PLANE, f"drive.layout={layout}"]), folder, load_recipe(RECIPE)
         )
         jobs.append(job.read_text().replace(",", " ").split())
     number = re.compile(r"-?\d\.\d+e[+-]\d+")
