@@ -31,6 +31,10 @@ def _check_rest(rest: Sequence[str], options: Sequence[str], petsc: bool) -> Non
         after_option = option
 
 
+def _print_error(error: object) -> None:
+    print(f"swgpar: error: {error}", file=sys.stderr, flush=True)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Entry point; returns the exit code: 0, that of the error, 130 or 143 after a signal."""
     from swgpar import watch
@@ -56,7 +60,7 @@ def _main(arguments: Sequence[str] | None) -> int:
 
         alone = getattr(error, "alone", False) and MPI.COMM_WORLD.size > 1
         if MPI.COMM_WORLD.rank == 0 or alone:
-            print(f"swgpar: error: {error}", file=sys.stderr, flush=True)
+            _print_error(error)
         if alone:  # the other ranks wait for this one
             MPI.COMM_WORLD.Abort(error.exit_code)
         return error.exit_code
@@ -64,11 +68,7 @@ def _main(arguments: Sequence[str] | None) -> int:
         sys.stderr.close()
         return 1
     except MemoryError:
-        print(
-            "swgpar: error: not enough memory: take a coarser mesh, or more memory",
-            file=sys.stderr,
-            flush=True,
-        )
+        _print_error("not enough memory: take a coarser mesh, or more memory")
         if command in SOLVING:
             from mpi4py import MPI
 

@@ -193,14 +193,7 @@ def _print(lines: Iterable[str]) -> None:
 
 
 COMMANDS: dict[str, Callable[[argparse.Namespace], None]] = {
-    "new": _new,
-    "run": _run,
-    "study": _study,
-    "optimise": _optimise,
-    "mesh": _mesh,
-    "check": _check,
-    "report": _report,
-    "view": _view,
-    "export": _export,
+    command.__name__.removeprefix("_"): command
+    for command in (_new, _run, _study, _optimise, _mesh, _check, _report, _view, _export)
 }
 """By name."""

@@ -65,9 +65,8 @@ Overrides = Sequence[str] | Mapping[str, Any]
 def apply_overrides(table: dict[str, Any], overrides: Overrides) -> dict[str, Any]:
     """Return a copy of `table` with the keys of `overrides` set, in order."""
     if isinstance(overrides, Mapping):
-        values = {key: _plain(value) for key, value in overrides.items()}
-        for key, value in values.items():
-            table = with_value(table, key, value)
+        for key, value in overrides.items():
+            table = with_value(table, key, _plain(value))
         return table
     for override in overrides:
         key, text = split_override(override)
@@ -76,13 +75,11 @@ def apply_overrides(table: dict[str, Any], overrides: Overrides) -> dict[str, An
 
 
 def _plain(value: Any) -> Any:
-    """A value as TOML would give it: no NumPy numbers, arrays or tuples."""
+    """A copy as TOML would give it: no NumPy numbers, arrays or tuples."""
     value = value.tolist() if hasattr(value, "tolist") else value
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
-    return (
-        {key: _plain(item) for key, item in value.items()} if isinstance(value, Mapping) else value
-    )
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, (list, tuple)) else value
 
 
 def split_override(override: str) -> tuple[str, str]:
@@ -104,14 +101,13 @@ def with_value(table: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
     Raises InputError where a part of the key names a value instead of a section, or an entry that
     is not there.
     """
-    table = _copy(table)
+    table = _plain(table)
     target, names = table, key.split(".")
     for depth, name in enumerate(names[:-1], start=1):
-        target = (
-            _entry(target, name, key, value)
-            if isinstance(target, list)
-            else target.setdefault(name, {})
-        )
+        if isinstance(target, list):
+            target = _entry(target, name, key, value)
+        else:
+            target = target.setdefault(name, {})
         if not isinstance(target, dict | list):
             raise InputError(
                 f"{show_key(key)} = {show(value)} cannot be applied: {show_key(*names[:depth])} = "
@@ -132,13 +128,6 @@ def _entry(tables: list[Any], number: str, key: str, value: Any) -> Any:
     raise InputError(
         f"{key} = {show(value)} cannot be applied: {number} is no entry, allowed 1 to {len(tables)}"
     )
-
-
-def _copy(value: Any) -> Any:
-    """A copy of tables and lists in each other."""
-    if isinstance(value, dict):
-        return {key: _copy(item) for key, item in value.items()}
-    return [_copy(item) for item in value] if isinstance(value, list) else value
 
 
 def to_toml(table: Mapping[str, Any]) -> str:

@@ -26,9 +26,6 @@ FIXED = {
 }
 
 
-TEMPLATE = "presentation/drive_report.html.j2"
-
-
 @dataclass(frozen=True)
 class Group:
     """Answers of an evaluation, as a table, and its remarks."""
@@ -40,28 +37,26 @@ class Group:
 
 def drive_report(result: DriveResult) -> bytes:
     """The whole page; reads the figures in the results folder. Call it on one rank."""
-    summary = result.summary
-    design = summary.design
-    view = scene(result)
-    found = checks(summary, result.history)
+    summary, view = result.summary, scene(result)
+    design, drive = summary.design, summary.design.drive
+    judged = checks(summary, result.history)
     memory = summary.peak_memory_MB_per_rank
     details = [answer for answer in summary.values() if answer.detail]
     return result_page(
-        TEMPLATE,
-        f"Strain wave gear {design.drive.teeth_fs}/{design.drive.teeth_rg}, {design.load.torque:g} "
-        "N·m",
+        "presentation/drive_report.html.j2",
+        f"Strain wave gear {drive.teeth_fs}/{drive.teeth_rg}, {design.load.torque:g} N·m",
         RunFacts(result.design_table, summary.versions, summary.ranks, summary.wall_s, memory),
         result.folder,
         result.plot.names,
         wide=WIDE,
         scripts=(SCRIPT,) if view else (),
         description=_description(summary),
-        look=[check.name for check in found if check.good is False],
+        look=[check.name for check in judged if check.good is False],
         drawings=draw_drive(design),
         groups=_groups(summary),
         details=_table(details) if details else None,
         not_asked=[f"{kind.TITLE} ({kind.ASKED_BY})" for kind in summary.not_asked_for()],
-        checks=found,
+        checks=judged,
         scene=view,
         plane=result.is_plane,
     )
@@ -79,12 +74,12 @@ def _description(summary: DriveSummary) -> str:
 
 def _groups(summary: DriveSummary) -> list[Group]:
     """The answers by evaluation, without details."""
-    found = []
+    groups = []
     for evaluation in summary.groups():
         shown = [answer for answer in evaluation.answers() if not answer.detail]
         if shown:
-            found.append(Group(evaluation.TITLE, _table(shown), list(evaluation.remarks())))
-    return found
+            groups.append(Group(evaluation.TITLE, _table(shown), list(evaluation.remarks())))
+    return groups
 
 
 def _table(answers: Iterable[Answer]) -> Table:

@@ -67,16 +67,11 @@ def sector_picture(sector: SectorFields, plane: bool) -> np.ndarray:
     )
     grid.point_data["safety"] = np.clip(sector.fields["safety_goodman"], *SHOWN)
     plotter = off_screen_plotter(1200, 900)
-    plotter.add_mesh(
-        grid.extract_surface(algorithm="dataset_surface"),
-        scalars="safety",
-        cmap="turbo_r",
-        clim=SHOWN,
-        log_scale=True,
-        show_edges=True,
-        edge_opacity=0.2,
-        scalar_bar_args={"title": "safety by Goodman", "position_x": 0.2, "position_y": 0.02},
-    )
+    surface = grid.extract_surface(algorithm="dataset_surface")
+    bar = {"title": "safety by Goodman", "position_x": 0.2, "position_y": 0.02}
+    colours = {"scalars": "safety", "cmap": "turbo_r", "clim": SHOWN, "log_scale": True}
+    edges = {"show_edges": True, "edge_opacity": 0.2}
+    plotter.add_mesh(surface, scalar_bar_args=bar, **colours, **edges)
     if plane:
         plotter.enable_parallel_projection()
         plotter.view_xy()

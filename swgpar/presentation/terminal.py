@@ -49,19 +49,14 @@ def print_drive(history: Mapping[str, np.ndarray], summary: DriveSummary) -> Non
 def _print_history(history: Mapping[str, np.ndarray]) -> None:
     driven = {"wg_angle_deg": "input_angle_deg", "wg_torque_Nmm": "input_torque_Nmm"}
     names = [driven.get(name, name) if driven.get(name) in history else name for name in COLUMNS]
-    title = (
-        "largest stresses over the bodies (MPa, nodal averages); torque in N·mm, angles in degrees"
-    )
+    title = "largest stresses over the bodies (MPa, nodal averages)"
+    title += "; torque in N·mm, angles in degrees"
     table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))  # fits into 80 columns
     for heading, _ in COLUMNS.values():
         table.add_column(heading, justify="right", no_wrap=True)
+    forms = [form for _, form in COLUMNS.values()]
     for values in zip(*(history[name] for name in names), strict=True):
-        table.add_row(
-            *(
-                format(value, spec)
-                for value, (_, spec) in zip(values, COLUMNS.values(), strict=True)
-            )
-        )
+        table.add_row(*map(format, values, forms))
     console.print(table)
 
 
@@ -76,12 +71,9 @@ def _print_answers(answers: AnswerGroup) -> None:
     for justify in ("right", "left", "left"):
         table.add_column(justify=justify, no_wrap=True)
     for answer in shown:
-        below = [
-            Padding(Text(words), (0, 0, 0, 2))
-            for words in (answer.place, remark_text(answer))
-            if words
-        ]
-        what = Padding(Group(answer.text, *below), (0, 0, 0, 2))
+        below = [Text(words) for words in (answer.place, remark_text(answer)) if words]
+        indented = [Padding(text, (0, 0, 0, 2)) for text in below]
+        what = Padding(Group(answer.text, *indented), (0, 0, 0, 2))
         table.add_row(what, value_text(answer.value), error_text(answer), answer.unit)
     console.print(f"\n{answers.TITLE}", style="bold", markup=False)
     console.print(table)

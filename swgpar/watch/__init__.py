@@ -78,15 +78,15 @@ def armed() -> Iterator[None]:
 def rearm() -> None:
     """Handle the signals again after a library has taken them, inside `armed`: PETSc does when it
     starts."""
-    for number in SIGNALS if _command.armed else ():
+    if not _command.armed:
+        return
+    for number in SIGNALS:
         if signal.getsignal(number) is signal.SIG_IGN:
             signal.signal(number, signal.SIG_IGN)
         else:
             _watch.arm(number)
-    if (
-        _command.armed
-    ):  # PETSc ends all ranks when the reader of the output has gone; Python raises BrokenPipeError
-        signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+    # PETSc ends all ranks when the reader of the output has gone; Python raises BrokenPipeError
+    signal.signal(signal.SIGPIPE, signal.SIG_IGN)
 
 
 def begin(kind: str, out: str, *, restarts: bool, terminal: bool) -> None:
@@ -99,12 +99,8 @@ def begin(kind: str, out: str, *, restarts: bool, terminal: bool) -> None:
     restarts : whether --restart continues them
     terminal : whether a progress bar may be on the terminal; without one there are signs of life
     """
-    saved_in = shortened(printable(out), PATH_LETTERS)
-    _set_command(
-        replace(
-            _command, kind=kind, saved=saved_in, restarts=restarts, before=CLEAN if terminal else ""
-        )
-    )
+    folder, before = shortened(printable(out), PATH_LETTERS), CLEAN if terminal else ""
+    _set_command(replace(_command, kind=kind, saved=folder, restarts=restarts, before=before))
     saved(kind, 0, 0)
     doing("still computing")
     if not terminal:
