@@ -16,6 +16,7 @@ from swgpar.evaluation.rotation import Rotation
 from swgpar.evaluation.windows.accuracy import Accuracy
 from swgpar.evaluation.windows.root_stress import RootStress
 from swgpar.geometry.profiles.rigid_teeth import RigidTeeth
+from swgpar.load.negligible_torque import negligible_torque
 from swgpar.results.history import loaded_increments
 
 ENERGY = 0.05
@@ -48,13 +49,18 @@ def checks(summary: DriveSummary, history: Mapping[str, np.ndarray]) -> list[Che
         summary.design.contact,
         summary.design.drive.module,
     )
+    loaded = 1000.0 * summary.design.load.torque > negligible_torque(summary.design)
     period = 0.999999 * np.degrees(summary.design.kinematics.period_angle)
     covered = steps.samples > 0 or steps.rotation >= period
     teeth = [summary.design.rigid_teeth(ring) for ring in summary.design.gears[1:]]
     tolerance = contact.penetration_tolerance * module
     return [
         _balance(summary.numerics),
-        _energy(summary.rotation, covered and not summary.design.is_bolted, contact.friction > 0.0),
+        _energy(
+            summary.rotation,
+            loaded and covered and not summary.design.is_bolted,
+            contact.friction > 0.0,
+        ),
         _penetration(tolerance, history),
         _clearance(teeth, tolerance),
         _edge(summary.contact),
@@ -79,19 +85,20 @@ def _balance(found: Numerics) -> Check:
     return Check("balance of torques", left <= allowed, text)
 
 
-def _energy(rotation: Rotation, repeats: bool, friction: bool) -> Check:
-    """repeats : whether the rotation covers a period, after which the drive is in the same
-    state"""
+def _energy(rotation: Rotation, judged: bool, friction: bool) -> Check:
+    """judged : whether there is a load, and the rotation covers a period, after which the drive is
+    in the same state"""
     name, expected = "energy", rotation.wg_torque_expected_Nmm
     if rotation.jammed:
         return Check(name, False, rotation.jammed)
     mean = rotation.means.get("wg_torque_Nmm")
-    if mean is None or not expected or not repeats:
+    if mean is None or not judged:
         return Check(
             name,
             None,
-            "needs a torque, a rotation over a period of the motion or more, and no bolts, with "
-            "which a drive does not repeat after a pitch",
+            "needs a torque that is not small beside the spline's bending, a rotation over a "
+            "period of the motion or more, and no bolts, with which a drive does not repeat after "
+            "a pitch",
         )
     torque = "mean torque on the standing wave generator" if rotation.input else "mean input torque"
     text = f"{torque} {mean:.5g} N·mm, by the energy balance {expected:.5g} N·mm"

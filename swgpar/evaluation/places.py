@@ -117,10 +117,11 @@ class LargestStresses(AnswerGroup):
 
     @classmethod
     def of(cls, places: Mapping[str, Place]) -> LargestStresses:
-        """From places by the names of `find_places`."""
+        """From places by the names of `find_places`; without those for which there is no node."""
+        known = {name: place for name, place in places.items() if np.isfinite(place.value)}
         return cls(
-            places={name: place for name, place in places.items() if OF_REGION not in name},
-            regions={name: place for name, place in places.items() if OF_REGION in name},
+            places={name: place for name, place in known.items() if OF_REGION not in name},
+            regions={name: place for name, place in known.items() if OF_REGION in name},
         )
 
     def answers(self) -> Iterator[Answer]:

@@ -78,9 +78,11 @@ def read(out: Path) -> TrainResult:
     summary = read_summary(out)
     tables = {path.stem: read_columns(path) for path in sorted((out / TABLES).glob("*.csv"))}
     compared = _read_compared(out / PUBLISHED) if (out / PUBLISHED).exists() else []
-    return TrainResult(
-        read_columns(out / history.NAME), tables, summary["quantities"], summary, compared, out
-    )
+    quantities = {
+        name: np.array(found, dtype=float).tolist()  # null is a number that is not finite
+        for name, found in summary["quantities"].items()
+    }
+    return TrainResult(read_columns(out / history.NAME), tables, quantities, summary, compared, out)
 
 
 def _read_compared(path: Path) -> list[dict[str, Any]]:

@@ -24,6 +24,7 @@ def error_text(answer: Answer) -> str:
     error = answer.error
     if error is None:
         return answer.no_error.replace(" ", "\u00a0")
+    error = 0.0 if error < NOTHING else error
     digits = 1 - int(np.floor(np.log10(error))) if error > 0.0 else 0
     return f"±\u00a0{round(error, digits):.{max(digits, 0)}f}"
 

@@ -7,8 +7,9 @@ process that is killed leaves the previous file, never a part of a new one.
 from __future__ import annotations
 
 import json
+import math
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import fields, is_dataclass
 from pathlib import Path
@@ -129,15 +130,32 @@ def write_from_root(comm: MPI.Comm, path: Path, content: bytes) -> None:
 
 
 def to_json(data: dict[str, Any]) -> bytes:
-    """JSON text of a dict that may hold NumPy scalars and arrays, paths and dataclasses."""
+    """JSON text of a dict that may hold NumPy scalars and arrays, paths and dataclasses.
 
-    def plain(value: Any) -> Any:
-        if isinstance(value, (np.generic, np.ndarray)):
-            return value.tolist()
-        if isinstance(value, Path):
-            return str(value)
-        if is_dataclass(value):
-            return {each.name: getattr(value, each.name) for each in fields(value)}
-        raise TypeError(f"a {type(value).__name__} cannot be written as JSON")
+    Numbers that are not finite become null: JSON has none.
+    """
+    return (json.dumps(_finite(data), indent=2, allow_nan=False) + "\n").encode()
 
-    return (json.dumps(data, indent=2, default=plain) + "\n").encode()
+
+def plain(value: Any) -> Any:
+    """A NumPy scalar or array, a path or a dataclass as the `json` module writes it."""
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    if isinstance(value, Path):
+        return str(value)
+    if is_dataclass(value):
+        return {each.name: getattr(value, each.name) for each in fields(value)}
+    raise TypeError(f"a {type(value).__name__} cannot be written as JSON")
+
+
+def _finite(value: Any) -> Any:
+    """The value in types of JSON, with None for numbers that are not finite."""
+    if value is None or isinstance(value, (str, bool, int)):
+        return value
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {key: _finite(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(one) for one in value]
+    return _finite(plain(value))

@@ -20,14 +20,14 @@ from pydantic import TypeAdapter, ValidationError
 
 from swgpar.errors import OutputError
 from swgpar.results import parallel_hdf5
-from swgpar.results.atomic import agreed, sentence, to_json
+from swgpar.results.atomic import agreed, plain, sentence
 from swgpar.results.parallel_hdf5 import Block
 
 T = TypeVar("T")
 
 NAME = "checkpoint.h5"
 
-VERSION = 7
+VERSION = 8
 """Of the content, a run's included."""
 
 _ATTRS, _VERSION, _DIGEST = "attrs_json", "version", "attrs_sha256"
@@ -48,7 +48,7 @@ def write_checkpoint(path: Path, comm: MPI.Comm, blocks: Mapping[str, Block], co
     sums = {body: comm.allreduce(_sum(block.array, block.first)) for body, block in rows.items()}
     # An HDF5 attribute ends at 64 KiB, the history of a long run does not: the text goes into a
     # data set.
-    text = comm.bcast(to_json({_CONTENT: content, _SUMS: sums}) if comm.rank == 0 else None)
+    text = comm.bcast(_text({_CONTENT: content, _SUMS: sums}) if comm.rank == 0 else None)
     for key, values in (
         (_ATTRS, np.frombuffer(text, dtype=np.uint8)),
         (_DIGEST, np.frombuffer(hashlib.sha256(text).digest(), dtype=np.uint8)),
@@ -56,6 +56,12 @@ def write_checkpoint(path: Path, comm: MPI.Comm, blocks: Mapping[str, Block], co
     ):
         rows[key] = Block(values if comm.rank == 0 else values[:0], 0, len(values))
     parallel_hdf5.write(path, comm, rows)
+
+
+def _text(content: Mapping[str, Any]) -> bytes:
+    """The content for `json.loads`, numbers that are not finite among it: columns of tables have
+    them."""
+    return json.dumps(content, default=plain).encode()
 
 
 def read_checkpoint(path: Path, comm: MPI.Comm, kind: type[T]) -> T:
