@@ -18,7 +18,6 @@ from scipy.optimize import brentq
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.checks.design_file import load_design
 from swgpar.design.sections import GEARS
-from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe_counts import RATIO, resized
 from swgpar.model.drive_model import DriveModel
@@ -79,7 +78,7 @@ def measure(family: str) -> list[Row]:
     elements = []
     for ratio in ratios:
         recipe = resized(load_recipe(name), ratio)
-        model = solve_to_load(design, recipe, load_sequence(design), MPI.COMM_WORLD, model)
+        model = solve_to_load(design, recipe, MPI.COMM_WORLD, model)
         levels.append(by_region(model))
         elements.append(model.n_elements())
         if MPI.COMM_WORLD.rank == 0:

@@ -20,7 +20,7 @@ import swgpar
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.mesh_refinement import Refinement
 from swgpar.analysis.shortcuts import with_shortcuts
-from swgpar.evaluation.place_errors import CoarseStresses, with_errors
+from swgpar.evaluation.place_errors import with_errors
 from swgpar.evaluation.places import find_places
 from swgpar.evaluation.windows.root_stress import LEVELS, resolve_root_stress
 from swgpar.half_space.pair_contact import pair_contacts
@@ -37,15 +37,13 @@ def solve(case: dict[str, Any]) -> dict[str, Any]:
     design = with_shortcuts(
         swgpar.load_design(case["design"], case["overrides"]), recipe, levels=False
     ).design
-    sequence = load_sequence(design)
-    loaded = sequence.loaded
+    loaded = load_sequence(design).loaded
     coarse = None
     if case["further"] is None:
-        usual = Refinement(design, recipe, sequence, MPI.COMM_WORLD, LARGEST)
-        model, found = usual.model, usual.found
-        coarse = CoarseStresses(usual.coarse_places, usual.ratio)
+        usual = Refinement(design, recipe, MPI.COMM_WORLD, LARGEST)
+        model, found, coarse = usual.model, usual.found, usual.compared
     else:
-        model = solve_to_load(design, recipe, sequence, MPI.COMM_WORLD)
+        model = solve_to_load(design, recipe, MPI.COMM_WORLD)
         found = resolve_root_stress(model, loaded, LEVELS[design.drive.model] + case["further"])
     pairs = pair_contacts(model, loaded)
     edge = any(pair.edge for pair in pairs)

@@ -1,5 +1,4 @@
-"""Start with the loaded state: from the bent shape, or on coarser meshes with interpolation onto
-the finer one.
+"""Start with the loaded state: from the bent shape, or on coarser meshes with interpolation.
 
 Most Newton iterations of a start find out which points touch. On a mesh with half of the elements
 in every direction they cost an eighth or less. Its loaded state is so close that a few iterations
@@ -16,14 +15,12 @@ from mpi4py import MPI
 
 from swgpar.analysis.bent_start import bend
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.saved_state import StartStates
 from swgpar.analysis.shortcuts import finds_contacts
-from swgpar.analysis.start_states import StartStates
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.rotation import rotated
-from swgpar.load.load_sequence import LoadSequence
-from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.interpolation import interpolation
@@ -57,69 +54,60 @@ def levels(design: DriveDesign, recipe: MeshRecipe) -> list[MeshRecipe]:
 
     None with friction, because the loaded state then depends on the path to it.
     """
-    found: list[MeshRecipe] = []
-    while len(found) < design.steps.start_levels and not design.contact.friction:
-        simpler = coarser(found[0] if found else recipe)
-        if simpler == (found[0] if found else recipe):
+    recipes = [recipe]
+    while len(recipes) <= design.steps.start_levels and not design.contact.friction:
+        simpler = coarser(recipes[0])
+        if simpler == recipes[0]:
             break
-        found.insert(0, simpler)
-    return found
+        recipes.insert(0, simpler)
+    return recipes[:-1]
 
 
 def solve_to_load(
     design: DriveDesign,
     recipe: MeshRecipe,
-    sequence: LoadSequence,
     comm: MPI.Comm,
     coarse: DriveModel | None = None,
     *,
     kept: StartStates | None = None,
 ) -> DriveModel:
-    """The drive on one mesh in its loaded state, from the loaded state of the model `coarse`, which
-    is released.
+    """The loaded drive on one mesh, from the loaded state of the model `coarse`, which is released.
 
-    sequence : of the run
     kept : loaded states of an earlier run, to which this one is added
 
     Raises ConvergenceError or InputError where a mesh does not allow it.
     """
-    stepper = None
+    model = None
     try:
-        stepper = LoadStepper(build_drive_model(design, recipe, comm=comm))
-        loaded = sequence.loaded
-        taken_over = kept is not None and kept.restore(stepper.model, recipe)
+        model = build_drive_model(design, recipe, comm=comm)
+        stepper = LoadStepper(model)
+        taken_over = kept is not None and kept.restore(model, recipe)
         if taken_over:
             if coarse is not None:
                 coarse.destroy()
-                coarse = None
-            iterations = [_settle(stepper, loaded)]
+            iterations = [_settle(stepper)]
         elif coarse is not None:
-            source, coarse = coarse, None
-            take_over(source, stepper, loaded)
-            stepper.advance(loaded)
-            iterations = [stepper.iterations]
+            iterations = [take_over(coarse, stepper)]
         else:
-            iterations = _reach_load(stepper, sequence)
+            iterations = _reach_load(stepper)
         if kept is not None and not taken_over:
-            kept.save(stepper.model, recipe)
-            _settle(
-                stepper, loaded
-            )  # so that the forces are those of a run that takes this state over
+            kept.save(model, recipe)
+            _settle(stepper)  # so that the forces are those of a run that takes this state over
     except SwgparError:
-        for model in (coarse, None if stepper is None else stepper.model):
-            if model is not None:
-                model.destroy()
+        for one in (coarse, model):
+            if one is not None:
+                one.destroy()
         raise
     counted = " + ".join(map(str, iterations))
     logger.info(
-        "loaded on a mesh of %d elements, Newton iterations %s", stepper.model.n_elements(), counted
+        "loaded on a mesh of %d elements, Newton iterations %s", model.n_elements(), counted
     )
-    return stepper.model
+    return model
 
 
-def _settle(stepper: LoadStepper, loaded: LoadState) -> int:
-    """Search the contacts anew at the present x, which is that of the loaded state; returns Newton
-    iterations."""
+def _settle(stepper: LoadStepper) -> int:
+    """Search the contacts anew at x, that of the loaded state; returns Newton iterations."""
+    loaded = stepper.sequence.loaded
     stepper.resume_at(loaded)
     stepper.advance(loaded)
     return stepper.iterations
@@ -130,35 +118,33 @@ def starts_bent(design: DriveDesign) -> bool:
     return design.steps.bent_start and not design.contact.friction
 
 
-def _reach_load(stepper: LoadStepper, sequence: LoadSequence) -> list[int]:
+def _reach_load(stepper: LoadStepper) -> list[int]:
     """From the bent shape if the design asks for it and that works, else step by step; returns
     Newton iterations."""
     if starts_bent(stepper.design):
         try:
-            _jump(stepper, sequence)
+            _jump(stepper)
             return [stepper.iterations]
         except ConvergenceError as error:
             logger.info("no start from the bent shape: %s", error)
             stepper.reset()
     iterations = []
-    loaded = sequence.loaded
-    for state in sequence.states:
+    for state in stepper.sequence.states:
         stepper.advance(state)
         iterations.append(stepper.iterations)
-        if state == loaded:
+        if state == stepper.sequence.loaded:
             break
     return iterations
 
 
-def _jump(stepper: LoadStepper, sequence: LoadSequence) -> None:
+def _jump(stepper: LoadStepper) -> None:
     bend(stepper.model)
-    stepper.jump(sequence.loaded)
+    stepper.jump(stepper.sequence.loaded)
 
 
 def start_at_load(
     stepper: LoadStepper,
     recipe: MeshRecipe,
-    sequence: LoadSequence,
     on_coarse: Callable[[DriveModel, MeshRecipe], None],
     kept: StartStates,
 ) -> bool:
@@ -176,7 +162,7 @@ def start_at_load(
         ways.append([])
     for recipes in ways:
         try:
-            start_loaded(stepper, recipes, sequence, on_coarse, kept)
+            start_loaded(stepper, recipes, on_coarse, kept)
             return True
         except (ConvergenceError, InputError) as error:
             what = "on coarser meshes" if recipes else "from the bent shape"
@@ -188,38 +174,38 @@ def start_at_load(
 def start_loaded(
     stepper: LoadStepper,
     recipes: list[MeshRecipe],
-    sequence: LoadSequence,
     on_coarse: Callable[[DriveModel, MeshRecipe], None] = lambda model, recipe: None,
     kept: StartStates | None = None,
 ) -> None:
     """Bring `stepper` to the loaded state by way of coarser meshes, the coarsest of `recipes`
     first, or bent at once.
 
-    sequence : of the run
     on_coarse : called with the model on the last of the coarser meshes, and its recipe; it raises
-    nothing
+        nothing
     kept : see `solve_to_load`
 
     Raises ConvergenceError or InputError where a mesh does not allow it; `stepper` is then to be
     reset.
     """
     target, coarse = stepper.model, None
-    loaded = sequence.loaded
     with target.phases("start"):
         if not recipes:
-            _jump(stepper, sequence)
+            _jump(stepper)
             return
         for recipe in recipes:
-            coarse = solve_to_load(target.design, recipe, sequence, target.comm, coarse, kept=kept)
+            coarse = solve_to_load(target.design, recipe, target.comm, coarse, kept=kept)
         on_coarse(coarse, recipes[-1])
-        take_over(coarse, stepper, loaded)
-        stepper.advance(loaded)
+        take_over(coarse, stepper)
 
 
-def take_over(coarse: DriveModel, stepper: LoadStepper, loaded: LoadState) -> None:
-    """Take over the loaded state of the model on another mesh, and release that model."""
+def take_over(coarse: DriveModel, stepper: LoadStepper) -> int:
+    """Take over the loaded state of the model on another mesh, release that model, and solve;
+    returns Newton iterations."""
+    loaded = stepper.sequence.loaded
     try:
         transfer(coarse, coarse.problem.x, stepper.model, stepper.problem.x)
     finally:
         coarse.destroy()
     stepper.load_state = loaded
+    stepper.advance(loaded)
+    return stepper.iterations

@@ -31,7 +31,6 @@ from swgpar.evaluation.transmission_error import TurnPoint
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.partition import split
 from swgpar.geometry.rotation import rotated
-from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import coarser
@@ -122,15 +121,14 @@ class DeviatingDrive:
     def __init__(self, design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> None:
         self.design, self.deviations = turn_design(design), design.deviations
         mesh = turn_mesh(recipe) if self.deviations.mesh == "coarse" else recipe
-        sequence = load_sequence(self.design)
-        self.model: DriveModel = solve_to_load(self.design, mesh, sequence, comm)
+        self.model: DriveModel = solve_to_load(self.design, mesh, comm)
         problem = self.model.problem
         near = NEAR * design.drive.module + design.backlash
         problem.contact_search = replace(
             problem.contact_search, distances=SearchRange(near=near, reach=near, touch=near)
         )
         self.stepper = LoadStepper(self.model)
-        self.loaded = sequence.loaded
+        self.loaded = self.stepper.sequence.loaded
         self.stepper.resume_at(self.loaded)
         of_spline, of_ring = (
             gear_deviations(self.deviations, gear, design.drive.teeth(gear)) for gear in GEARS

@@ -12,7 +12,7 @@ from swgpar.analysis.predictor import KnownState, predict
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.torques import torques
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.load.load_sequence import start_state
+from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import logger
 from swgpar.model.drive_model import DriveModel
@@ -43,15 +43,16 @@ class LoadStepper:
 
     Attributes
     ----------
-    load_state : the state reached;  iterations, residual : Newton iterations and last residual of
-    the last increment
+    sequence : load states of the design's run;  load_state : the state reached
+    iterations, residual : Newton iterations and last residual of the last increment
     known_states : periodic states that predictions start from
     """
 
     def __init__(self, model: DriveModel) -> None:
         self.model, self.design = model, model.design
         self.problem, self.solver = model.problem, model.solver
-        self.load_state = start_state(model.design)
+        self.sequence = load_sequence(model.design)
+        self.load_state = self.sequence.start
         self.iterations = 0
         self.residual = 0.0
         self.known_states: list[KnownState] = []
@@ -60,7 +61,7 @@ class LoadStepper:
 
     def reset(self) -> None:
         """Go back to the undeformed drive."""
-        self.load_state, self.known_states = start_state(self.design), []
+        self.load_state, self.known_states = self.sequence.start, []
         self._last = self._before = None
         self.problem.x.set(0.0)
         self.problem.resume({})
@@ -245,7 +246,7 @@ class LoadStepper:
             # the ring bends in proportion to the travel of the pins, or to the growth of the cam
             first, old, new = (
                 s.cam_clearance if s.pin_inset is None else s.pin_inset
-                for s in (start_state(self.design), here, state)
+                for s in (self.sequence.start, here, state)
             )
             self.problem.x.scale((first - new) / (first - old))
 

@@ -1,5 +1,4 @@
-"""Meshes for an accuracy: of the drive, and of the windows that resolve the largest tensile stress
-at the teeth.
+"""Meshes for an accuracy: of the drive, and of the windows at its teeth.
 
 The drive is loaded on a mesh and on a coarser one. The change of the stress in a window between
 them gives the error of the drive's mesh, the order seen on three windows that of the window's mesh.
@@ -17,12 +16,12 @@ from mpi4py import MPI
 from swgpar.analysis.accuracy import ROUGH
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.forecast import fits, forecast
+from swgpar.analysis.saved_state import StartStates
 from swgpar.analysis.shortcuts import finds_contacts
-from swgpar.analysis.start_states import StartStates
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.evaluation.place_errors import CoarseStresses
-from swgpar.evaluation.places import Place, find_places
+from swgpar.evaluation.places import find_places
 from swgpar.evaluation.windows.root_stress import (
     FEWEST_LEVELS,
     LEVELS,
@@ -31,7 +30,7 @@ from swgpar.evaluation.windows.root_stress import (
     resolve_root_stress,
 )
 from swgpar.half_space.pair_contact import pair_contacts
-from swgpar.load.load_sequence import LoadSequence
+from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe, build_sector_meshes
@@ -53,8 +52,7 @@ LEAST_WITH_EDGES = 0.02
 plane_coarse by 0.7 to 2.7 % of the stress."""
 
 SMALLEST_RATIO = 1.05
-"""Ratio of element sizes that an error is judged by at least: the smallest recipes can hardly be
-coarsened."""
+"""Least ratio of element sizes of an error: the smallest recipes can hardly be coarsened."""
 
 LARGEST = {"plane": 1_500_000, "cup": 700_000}
 """Elements of the whole drive beyond which no finer mesh is taken; they need about 7 and 12 GB."""
@@ -76,8 +74,7 @@ class ChosenMesh:
 
 
 def compared_stresses(model: DriveModel, state: LoadState) -> Mapping[str, Sequence[float]]:
-    """Stresses (MPa) in windows on a coarser mesh of the drive, for `drive_error`: only the last
-    one is computed."""
+    """Stresses (MPa) in the last windows on a coarser mesh of the drive, for `drive_error`."""
     return resolve_root_stress(model, state, COMPARED_LEVELS, COMPARED_LEVELS - 1).by_part
 
 
@@ -88,13 +85,11 @@ def drive_error(
     least: float,
     before: float | None = None,
 ) -> float:
-    """Error (MPa) of the finer of two meshes of the drive by the stresses in the windows that both
-    drive.
+    """Error (MPa) of the finer of two meshes of the drive by the stresses in windows of both.
 
-    coarse : s1 (MPa) on the same windows, coarse to fine, by part of the teeth;  ratio : of the
-    element sizes
-    least : share of the stress, see `least_error`;  before : error of the coarser mesh, if it is
-    known
+    coarse : s1 (MPa) on the same windows, coarse to fine, by part of the teeth
+    ratio : of the element sizes;  least : share of the stress, see `least_error`
+    before : error of the coarser mesh, if it is known
 
     A change that is small by chance is no convergence: the error is at least what remains of that
     before, or else `least` of the stress.
@@ -107,8 +102,7 @@ def drive_error(
 
 
 def least_error(model: DriveModel, state: LoadState) -> float:
-    """Least error by the mesh of the drive that two meshes can show, as a share of the stress;
-    collective."""
+    """Least error that two meshes of the drive can show, as a share of the stress; collective."""
     edge = any(pair.edge for pair in pair_contacts(model, state))
     return LEAST_WITH_EDGES if edge else LEAST[model.design.drive.model]
 
@@ -123,88 +117,78 @@ class Refinement:
 
     Parameters
     ----------
-    design, sequence, comm : the drive, load states of its run, communicator
     recipe : the first mesh, compared with a coarser one, or where that would not find the contacts
-    with a finer one
+        with a finer one
     largest : elements of the whole drive beyond which no mesh is taken
     kept : loaded states of an earlier run, to which those of this one are added
     levels : windows on the first mesh; None for the usual ones
+
+    Attributes
+    ----------
+    model, recipe, found : the present mesh and the stress by its windows
+    coarse, compared : what the mesh before it gives in windows, and at the places
     """
 
     def __init__(
         self,
         design: DriveDesign,
         recipe: MeshRecipe,
-        sequence: LoadSequence,
         comm: MPI.Comm,
         largest: int,
         kept: StartStates | None = None,
         levels: int | None = None,
     ) -> None:
-        self.design = design
-        self.sequence = sequence
-        self.comm = comm
-        self.largest = largest
-        self.kind, self.kept = design.drive.model, kept
+        self.design, self.comm, self.largest, self.kept = design, comm, largest, kept
+        self.loaded, self.kind = load_sequence(design).loaded, design.drive.model
         self.levels = levels or LEVELS[self.kind]
         coarse = resized(recipe, 1.0 / RATIO)
         if not finds_contacts(coarse):
             coarse, recipe = recipe, resized(recipe, RATIO)
-        self.recipe, self.ratio = recipe, size_ratio(coarse, recipe)
-        self.model = solve_to_load(design, coarse, sequence, comm, kept=kept)
+        self.recipe = recipe
+        self._load(coarse)
         try:
             self.coarse = compared_stresses(self.model, self.loaded)
-            self.coarse_places = self._places()
-            self._load(recipe)
+            self.compared = self._compared(size_ratio(coarse, recipe))
+            self._replace(recipe)
             self.found = self._resolve()
         except SwgparError:
             self.model.destroy()
             raise
 
-    @property
-    def loaded(self) -> LoadState:
-        """The loaded state."""
-        return self.sequence.loaded
+    def _compared(self, ratio: float) -> CoarseStresses:
+        """The largest stresses on the present mesh, coarser than the next one by the ratio."""
+        places = find_places(self.model, self.loaded, self.model.stresses()[1])
+        return CoarseStresses(places, ratio)
 
-    def _places(self) -> dict[str, Place]:
-        return find_places(self.model, self.loaded, self.model.stresses()[1])
+    def _load(self, recipe: MeshRecipe, coarse: DriveModel | None = None) -> None:
+        self.model = solve_to_load(self.design, recipe, self.comm, coarse, kept=self.kept)
 
-    def _load(self, recipe: MeshRecipe) -> None:
-        """Take the model on this mesh, from the present one's state where the path to the state
-        does not matter."""
-        coarse = self.model
+    def _replace(self, recipe: MeshRecipe) -> None:
+        """Take the model on this mesh, from the present one's state where its path is of no
+        account."""
         if self.design.contact.friction:
-            coarse.destroy()
-            self.model = solve_to_load(
-                self.design, recipe, self.sequence, self.comm, kept=self.kept
-            )
-            return
+            self.model.destroy()
+            return self._load(recipe)
         try:
-            self.model = solve_to_load(
-                self.design, recipe, self.sequence, self.comm, coarse, kept=self.kept
-            )
+            self._load(recipe, self.model)
         except (ConvergenceError, InputError) as error:
             logger.info("the state of another mesh does not lead to that of this one: %s", error)
-            self.model = solve_to_load(
-                self.design, recipe, self.sequence, self.comm, kept=self.kept
-            )
+            self._load(recipe)
 
     def _resolve(self, before: float | None = None) -> RootStress:
         """Windows on the present mesh. before : error (MPa) of the mesh before it"""
         found = resolve_root_stress(self.model, self.loaded, self.levels)
         least = least_error(self.model, self.loaded)
-        found = replace(
-            found, drive_error=drive_error(self.coarse, found, self.ratio, least, before)
-        )
+        error = drive_error(self.coarse, found, self.compared.ratio, least, before)
         logger.info(
             "%d elements: s1 %.1f MPa under load; error by the windows %.2g %%, by the mesh of the "
             "drive %.2g %%",
             self.model.n_elements(),
             found.s1,
             100.0 * _bound(found.error) / found.s1,
-            100.0 * _bound(found.drive_error) / found.s1,
+            100.0 * error / found.s1,
         )
-        return found
+        return replace(found, drive_error=error)
 
     def refine_windows(self) -> bool:
         """Resolve the stress with a finer window; False where there is none."""
@@ -221,29 +205,26 @@ class Refinement:
 
     def refine_drive(self) -> bool:
         """Take a finer mesh of the drive; False where there is none, or where it is too large."""
+        limit = self.design.solver.memory_limit
         try:
             finer = resized(self.recipe, RATIO)
             needs = forecast(self.design, finer)
-            if needs.elements > self.largest or not fits(
-                needs, self.design.solver.memory_limit, self.comm
-            ):
+            if needs.elements > self.largest or not fits(needs, limit, self.comm):
                 return False
             build_sector_meshes(self.design.geometry, finer)
         except InputError:
             return False
-        earlier = self.coarse, self.ratio, self.found, self.coarse_places
-        self.coarse_places = self._places()
-        self.coarse, self.ratio = self.found.by_part, size_ratio(self.recipe, finer)
+        earlier = self.coarse, self.compared, self.found
+        self.compared = self._compared(size_ratio(self.recipe, finer))
+        self.coarse = self.found.by_part
         try:
-            self._load(finer)
+            self._replace(finer)
             self.found = self._resolve(self.found.drive_error)
         except (ConvergenceError, InputError) as error:
             logger.warning("no finer mesh of the drive: %s", error)
-            self.coarse, self.ratio, self.found, self.coarse_places = earlier
+            self.coarse, self.compared, self.found = earlier
             self.model.destroy()
-            self.model = solve_to_load(
-                self.design, self.recipe, self.sequence, self.comm, kept=self.kept
-            )
+            self._load(self.recipe)
             return False
         self.recipe = finer
         return True
@@ -252,7 +233,6 @@ class Refinement:
 def choose_mesh(
     design: DriveDesign,
     recipe: MeshRecipe,
-    sequence: LoadSequence,
     accuracy: float,
     comm: MPI.Comm,
     *,
@@ -262,9 +242,7 @@ def choose_mesh(
     """Refine `recipe` and the windows until the estimated relative error of the root's stress is at
     most `accuracy`.
 
-    sequence : of the run
-    largest : elements of the whole drive beyond which no finer mesh is taken; None for those of
-    `LARGEST`
+    largest : elements of the whole drive beyond which no finer mesh is taken; None for `LARGEST`
     kept : see `Refinement`
 
     Ends with the best mesh where the accuracy is out of reach, and says so. Raises ConvergenceError
@@ -272,17 +250,15 @@ def choose_mesh(
     """
     largest = LARGEST[design.drive.model] if largest is None else largest
     levels = FEWEST_LEVELS[design.drive.model] if accuracy >= ROUGH else None
-    drive = Refinement(design, recipe, sequence, comm, largest, kept, levels)
+    drive = Refinement(design, recipe, comm, largest, kept, levels)
     refine = {"windows": drive.refine_windows, "mesh": drive.refine_drive}
     while relative_error(drive.found) > accuracy:
         errors = {
             "windows": _bound(drive.found.error),
             "mesh": _bound(drive.found.drive_error),
         }
-        too_large = any(
-            errors[part] > accuracy * drive.found.s1 for part in errors.keys() - refine.keys()
-        )
-        if too_large or not refine:
+        allowed = accuracy * drive.found.s1
+        if not refine or any(errors[part] > allowed for part in errors.keys() - refine.keys()):
             logger.info(
                 "no finer mesh is taken: the drive has at most %d elements, and its run fits into "
                 "the memory",
@@ -292,8 +268,8 @@ def choose_mesh(
         part = max(refine, key=lambda part: errors[part])
         if not refine[part]():
             del refine[part]
-    coarse = CoarseStresses(drive.coarse_places, drive.ratio)
-    return ChosenMesh(drive.model, drive.recipe, drive.found, relative_error(drive.found), coarse)
+    error = relative_error(drive.found)
+    return ChosenMesh(drive.model, drive.recipe, drive.found, error, drive.compared)
 
 
 def relative_error(found: RootStress) -> float:

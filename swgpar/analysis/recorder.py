@@ -32,9 +32,8 @@ from swgpar.evaluation.stiffness import loop_rows
 from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.evaluation.windows.accuracy import Accuracy
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.half_space.pair_contact import PairContact, pair_contacts
+from swgpar.half_space.pair_contact import pair_contacts
 from swgpar.input.toml_file import to_toml
-from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import SectorMesh
 from swgpar.model.drive_model import DriveModel
@@ -60,22 +59,22 @@ NodalFields = dict[str, dict[str, np.ndarray]]
 
 
 class Recorder(ABC):
-    """Rows of the history and how the mesh was chosen; how fields and rows are kept is that of the
-    two kinds.
+    """Keeps rows of the history and how the mesh was chosen; the two kinds keep fields and files.
 
     Every call is collective.
 
     Attributes
     ----------
+    stepper : whose states are kept;  model, sequence : of it
     record : beside the fields
     cycle : stresses of the sampled period, with [fatigue] or [losses]
     """
 
-    def __init__(self, model: DriveModel, sequence: LoadSequence) -> None:
-        self.model, self.comm, self.sequence = model, model.comm, sequence
-        self.record = RunRecord()
-        needed = model.design.fatigue or model.design.losses
-        self.cycle = StressCycle(model, sequence) if needed else None
+    def __init__(self, stepper: LoadStepper) -> None:
+        self.stepper, self.model, self.sequence = stepper, stepper.model, stepper.sequence
+        self.comm, self.record = self.model.comm, RunRecord()
+        needed = self.model.design.fatigue or self.model.design.losses
+        self.cycle = StressCycle(self.model, self.sequence) if needed else None
 
     def keep_choice(self, chosen: ChosenMesh, accuracy: float) -> None:
         """Keep the stress that the windows of a mesh chosen for an accuracy gave."""
@@ -86,44 +85,44 @@ class Recorder(ABC):
         )
         self.record.root_stress, self.record.coarse = chosen.root_stress, chosen.coarse
 
-    def keep(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
+    def keep(self, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.
 
         seconds : wall time of the increment;  elapsed : of the whole run, restarts included
         """
-        model = self.model
+        model, state = self.model, self.stepper.load_state
         with model.phases("stress"):
             values, body_fields = model.stresses()
         race, housing = (
             {name: values.pop(name) for name in list(values) if name.startswith(part)}
             for part in ("race_", "housing_")
         )
-        self.record.rows.append(history.plain_row({**stepper.row(), **values, "wall_s": seconds}))
+        row = {**self.stepper.row(), **values, "wall_s": seconds}
+        self.record.rows.append(history.plain_row(row))
         if model.design.ratcheting:
             self.record.tooth_rotations.append(tooth_rotation(model))
         with model.phases("stress"):
-            on_edge = self._keep_pairs(stepper.load_state)
-            self._keep_places(stepper.load_state, body_fields, on_edge)
-            self._keep_balls(stepper.load_state, race)
-            if model.design.housing is not None and stepper.load_state.is_periodic:
+            on_edge = self._keep_pairs(state)
+            self._keep_places(state, body_fields, on_edge)
+            self._keep_balls(state, race)
+            if model.design.housing is not None and state.is_periodic:
                 keep_largest(self.record.housing, housing_values(model, housing))
         with model.phases("fatigue and losses"):
             if self.cycle is not None:
-                self.cycle.keep(stepper.load_state, body_fields[FLEXIBLE_SPLINE])
+                self.cycle.keep(state, body_fields[FLEXIBLE_SPLINE])
             if model.design.losses:
                 self.record.cam_forces.append(cam_force(model))
         with model.phases("output"):
             fields = dict(body_fields)
             if model.design.output.fields:
                 spline = model.elements.bodies[FLEXIBLE_SPLINE]
-                fields[FLEXIBLE_SPLINE]["pressure"] = nodal_pressure(
-                    model.problem, stepper.load_state, spline
-                )
-            self._keep(stepper, fields, elapsed)
+                pressure = nodal_pressure(model.problem, state, spline)
+                fields[FLEXIBLE_SPLINE]["pressure"] = pressure
+            self._keep(fields, elapsed)
 
-    def _in_frame(self, stepper: LoadStepper, fields: NodalFields) -> NodalFields:
+    def _in_frame(self, fields: NodalFields) -> NodalFields:
         """The fields as they are shown: in the frame of the fixed member."""
-        return nodal_fields(self.model, stepper.load_state.angle, fields)
+        return nodal_fields(self.model, self.stepper.load_state.angle, fields)
 
     def _keep_places(self, state: LoadState, fields: NodalFields, on_edge: bool) -> None:
         """Find the places of stresses that are the largest under load so far."""
@@ -132,38 +131,30 @@ class Recorder(ABC):
                 if name not in self.record.places or place.value > self.record.places[name].value:
                     self.record.places[name] = place
             if self.record.coarse is not None and state == self.sequence.loaded:
-                self.record.stress_errors, self.record.coarse = (
-                    self.record.coarse.errors(self.record.places),
-                    None,
-                )
+                self.record.stress_errors = self.record.coarse.errors(self.record.places)
+                self.record.coarse = None
 
     def places_with_errors(self) -> dict[str, Place]:
         """The places with the errors of their stresses where they are known."""
         return with_errors(self.record.places, self.record.stress_errors, self.record.root_stress)
 
     def _keep_pairs(self, state: LoadState) -> bool:
-        """Keep the contacts of flanks under load; returns whether one of them lies on the edge of a
+        """Keep the contacts of flanks under load; returns whether one lies on the edge of a
         tooth."""
-        contacts: list[PairContact] = []
-        if state.is_periodic and not self.model.design.stiffness:
-            row = self.record.rows[-1]
-            when = {
-                "increment": len(self.record.rows),
-                "step": row["step"],
-                "wg_angle_deg": row["wg_angle_deg"],
-            }
-            contacts = pair_contacts(self.model, state)
-            self.record.pairs += [{**when, **contact.row()} for contact in contacts]
-            self.record.contact_lines += [
-                {**when, **row} for contact in contacts for row in contact.station_rows()
-            ]
+        if not state.is_periodic or self.model.design.stiffness:
+            return False
+        record, row = self.record, self.record.rows[-1]
+        when = {"increment": len(record.rows), **{n: row[n] for n in ("step", "wg_angle_deg")}}
+        contacts = pair_contacts(self.model, state)
+        for contact in contacts:
+            record.pairs.append({**when, **contact.row()})
+            record.contact_lines += [{**when, **station} for station in contact.station_rows()]
         return any(contact.edge for contact in contacts)
 
     def _keep_balls(self, state: LoadState, race: Mapping[str, float]) -> None:
         if self.model.design.bearing is not None:
-            self.record.balls += ball_rows(
-                self.model, state, len(self.record.rows), self.record.rows[-1]["step"]
-            )
+            rows = self.record.rows
+            self.record.balls += ball_rows(self.model, state, len(rows), rows[-1]["step"])
             if state.is_periodic:
                 keep_largest(self.record.race_stress, race)
             if state.stage == Stage.LOAD or self._has_largest_torque(state):
@@ -209,29 +200,26 @@ class Recorder(ABC):
         """Keep what does not change: the undeformed mesh, if the design asks for fields."""
 
     @abstractmethod
-    def _keep(self, stepper: LoadStepper, fields: NodalFields, elapsed: float) -> None:
+    def _keep(self, fields: NodalFields, elapsed: float) -> None:
         """Keep the last of `rows`, and the fields if the design asks for them."""
 
     @abstractmethod
     def finish(self, rows: list[Row], summary: DriveSummary, tables: DriveTables) -> DriveData:
-        """The result, with all rows of history.csv, the summary and what was evaluated at the
-        end."""
+        """The result. rows : all of history.csv;  summary, tables : evaluated at the end"""
 
 
 class MemoryRecorder(Recorder):
     """Keeps everything in memory: each rank the fields of the sectors that it owns."""
 
-    def __init__(self, model: DriveModel, sequence: LoadSequence) -> None:
-        super().__init__(model, sequence)
-        self._parts: FieldParts | None = None
+    _parts: FieldParts | None = None
 
     def begin(self) -> None:
         if self.model.design.output.fields:
             self._parts = FieldParts(self.comm, _body_parts(self.model))
 
-    def _keep(self, stepper: LoadStepper, fields: NodalFields, elapsed: float) -> None:
+    def _keep(self, fields: NodalFields, elapsed: float) -> None:
         if self._parts is not None:
-            self._parts.keep(len(self.record.rows), self._in_frame(stepper, fields))
+            self._parts.keep(len(self.record.rows), self._in_frame(fields))
 
     def finish(self, rows: list[Row], summary: DriveSummary, tables: DriveTables) -> DriveData:
         return DriveData(*self._shared(rows, summary, tables), self._parts, self.comm)
@@ -240,23 +228,18 @@ class MemoryRecorder(Recorder):
 class FolderRecorder(Recorder):
     """Keeps everything on disk, complete after every increment.
 
-    Parameters
-    ----------
-    model : the drive
-    sequence : its load states
-    out : results folder
-    identity : of what is computed, for restarts
+    out : results folder;  identity : of what is computed, for restarts
     """
 
-    def __init__(self, model: DriveModel, sequence: LoadSequence, out: Path, identity: str) -> None:
-        super().__init__(model, sequence)
+    def __init__(self, stepper: LoadStepper, out: Path, identity: str) -> None:
+        super().__init__(stepper)
         self.out, self.identity = out, identity
-        self._writer = FieldWriter(out, self.comm) if model.design.output.fields else None
+        self._writer = FieldWriter(out, self.comm) if self.model.design.output.fields else None
 
-    def resume(self, stepper: LoadStepper) -> tuple[tuple[LoadState, ...], float]:
-        """Bring back the state of the checkpoint; returns the states of the run, and the wall
-        seconds spent so far."""
-        saved, states = resume_run(self.out, self.identity, stepper, self.sequence, self.cycle)
+    def resume(self) -> tuple[tuple[LoadState, ...], float]:
+        """Bring back the state of the checkpoint; returns the states of the run, and its seconds
+        so far."""
+        saved, states = resume_run(self.out, self.identity, self.stepper, self.cycle)
         self.record = saved.record
         self._write_tables()
         return states, saved.wall_s
@@ -270,18 +253,18 @@ class FolderRecorder(Recorder):
         if self._writer is not None:
             self._writer.write_mesh(_body_parts(self.model))
 
-    def _keep(self, stepper: LoadStepper, fields: NodalFields, elapsed: float) -> None:
-        """Write the fields, the history and the checkpoint, in this order: the checkpoint marks all
-        as complete."""
+    def _keep(self, fields: NodalFields, elapsed: float) -> None:
+        """Write fields, history, and then the checkpoint, which marks all as complete."""
         if self._writer is not None:
             self.record.components = {
                 body: {name: a.shape[2] if a.ndim == 3 else 1 for name, a in values.items()}
                 for body, values in fields.items()
             }
-            self._writer.write_increment(len(self.record.rows), self._in_frame(stepper, fields))
+            self._writer.write_increment(len(self.record.rows), self._in_frame(fields))
         self._write_tables()
         displacement = {name: values["displacement"] for name, values in fields.items()}
-        save_run(self.out, self.identity, stepper, self.record, self.cycle, displacement, elapsed)
+        kept = self.record, self.cycle, displacement, elapsed
+        save_run(self.out, self.identity, self.stepper, *kept)
 
     def keep_turns(self, rows: list[Row]) -> None:
         super().keep_turns(rows)
@@ -301,13 +284,9 @@ class FolderRecorder(Recorder):
         """Write the index of the fields, the history and the other tables that grow with it."""
         record = self.record
         if self._writer is not None:
-            # increments computed with output.fields = false have no fields, and a restart may ask
-            # for them
-            written = [
-                (i, row["wg_angle_deg"])
-                for i, row in enumerate(record.rows, start=1)
-                if self._writer.has(i)
-            ]
+            # a restart may ask for fields where the run before did not
+            numbered = enumerate(record.rows, start=1)
+            written = [(i, row["wg_angle_deg"]) for i, row in numbered if self._writer.has(i)]
             self._writer.write_index(self.comm.bcast(written), record.components)
         shown = history_rows(self.sequence.kinematics, record.rows)
         write_from_root(self.comm, self.out / history.NAME, history.format_rows(shown))
@@ -328,9 +307,8 @@ class FolderRecorder(Recorder):
         tables.write(self.out, self.comm)
         write_from_root(self.comm, self.out / SUMMARY, summary_to_json(summary))
         folder = self.out.absolute()  # the fields are read later
-        return DriveData(
-            *self._shared(rows, summary, tables), open_fields(folder, self.comm), self.comm, folder
-        )
+        fields = open_fields(folder, self.comm)
+        return DriveData(*self._shared(rows, summary, tables), fields, self.comm, folder)
 
 
 def _body_parts(model: DriveModel) -> dict[str, BodyPart]:

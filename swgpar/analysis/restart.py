@@ -14,7 +14,6 @@ from swgpar.analysis.saved_state import SolvedState, restore_state, state_rows
 from swgpar.errors import InputError
 from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
 from swgpar.results import checkpoint, parallel_hdf5
@@ -74,12 +73,11 @@ def resume_run(
     out: Path,
     identity: str,
     stepper: LoadStepper,
-    sequence: LoadSequence,
     cycle: StressCycle | None,
 ) -> tuple[SavedRun, tuple[LoadState, ...]]:
     """Bring back the state of the checkpoint, on any number of ranks; collective.
 
-    identity, sequence : of the run that is to be continued
+    identity : of the run that is to be continued
 
     Returns what is saved, and the load states that the run consists of: without the first ones
     where they were computed on other meshes.
@@ -89,20 +87,17 @@ def resume_run(
     if saved.identity != identity:
         raise InputError(
             f"restart: {path} belongs to another design, recipe, accuracy or solver setting; "
-            f"allowed are the "
-            "same ones (--plain as before), only steps.rotation, the output, solver.linear, "
-            "keep_factor, far_teeth and "
-            "limits may differ"
+            "allowed are the same ones (--plain as before), only steps.rotation, the output, "
+            "solver.linear, keep_factor, far_teeth and limits may differ"
         )
     checkpoint.require_undamaged(path, model.comm)
-    record, last = saved.record, saved.load_state
+    record, last, sequence = saved.record, saved.load_state, stepper.sequence
     states = sequence.from_loaded if record.starts_loaded or record.accuracy else sequence.states
     if not _continues(record, last, states):
         raise InputError(
             f"restart: steps.rotation = {model.design.steps.rotation:g} does not continue {path}, "
-            f"which "
-            f"ends at {np.degrees(last.angle):g} degrees; allowed are values with this angle among "
-            f"their increments"
+            f"which ends at {np.degrees(last.angle):g} degrees; allowed are values with this angle "
+            "among their increments"
         )
     restore_state(model, path, saved.solved)
     if cycle is not None:

@@ -1,27 +1,49 @@
-"""One design from file to results: what `swgpar run` does."""
+"""The run of a drive from its design to the result: mesh, start or restart, increments with what
+is resolved at each, evaluation."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
 
 from swgpar.analysis.accuracy import require_refinable, with_accuracy
-from swgpar.analysis.drive_run import DriveRun
+from swgpar.analysis.coarse_start import start_at_load
+from swgpar.analysis.evaluate_run import evaluate_run
+from swgpar.analysis.follow_turns import follow_turns
 from swgpar.analysis.forecast import forecast, reported_memory, require_memory
 from swgpar.analysis.identity import identity
-from swgpar.analysis.mesh_refinement import choose_mesh
-from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder
+from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.mesh_refinement import (
+    choose_mesh,
+    compared_stresses,
+    drive_error,
+    least_error,
+    size_ratio,
+)
+from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
+from swgpar.analysis.saved_state import StartStates
 from swgpar.analysis.shortcuts import MESHES, with_shortcuts
-from swgpar.analysis.start_states import StartStates
+from swgpar.analysis.stiffness_error import stiffness_error
 from swgpar.checks.remarks import torque_remark
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.drive_data import DriveData
-from swgpar.errors import ConvergenceError, SwgparError, TimeLimitError
-from swgpar.evaluation.period import require_samples
+from swgpar.errors import ConvergenceError, InputError, SwgparError, TimeLimitError
+from swgpar.evaluation.period import continued, require_samples
+from swgpar.evaluation.place_errors import CoarseStresses
+from swgpar.evaluation.places import find_places
+from swgpar.evaluation.ratcheting import has_fallen
+from swgpar.evaluation.result_frame import history_rows
+from swgpar.evaluation.transmission_error import period_rows
+from swgpar.evaluation.windows.root_stress import RootStress, resolve_root_stress, with_angle
 from swgpar.load.load_sequence import LoadSequence, load_sequence
-from swgpar.log import logger
-from swgpar.meshing import load_recipe, require_sections
-from swgpar.model.drive_model import build_drive_model
+from swgpar.load.load_states import LoadState, Stage
+from swgpar.log import IncrementProgress, logger
+from swgpar.meshing import MeshRecipe, load_recipe, require_sections
+from swgpar.model.drive_model import DriveModel, build_drive_model
+from swgpar.petsc import warn_of_unused_options
 from swgpar.results.atomic import on_all
 from swgpar.results.folder import RECIPE, open_log, prepare
 from swgpar.results.lock import releasing
@@ -75,33 +97,26 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
             if resumed:
                 recipe = on_all(comm, lambda: load_recipe(folder / RECIPE))
             else:
-                chosen = choose_mesh(design, recipe, sequence, options.accuracy, comm, kept=kept)
+                chosen = choose_mesh(design, recipe, options.accuracy, comm, kept=kept)
                 recipe = chosen.recipe
         model = build_drive_model(design, recipe, comm=comm) if chosen is None else chosen.model
+        stepper = LoadStepper(model)
         recorder = (
-            MemoryRecorder(model, sequence)
-            if folder is None
-            else FolderRecorder(model, sequence, folder, what)
+            MemoryRecorder(stepper) if folder is None else FolderRecorder(stepper, folder, what)
         )
         try:
             if chosen is not None:
                 recorder.keep_choice(chosen, options.accuracy)
-            run = DriveRun(model, recipe, sequence, recorder, kept, options.on_increment, begin)
-            items = run.resume() if resumed else run.start()
-            run.go_through(items, options.terminal)
+            run = DriveRun(recorder, recipe, kept, options, begin)
+            run.go_through(run.resume() if resumed else run.start())
             result = run.finish(recipe_name)
         except SwgparError as error:
             # collective: all ranks have this error, but perhaps not one of another kind
             model.destroy()
-            if (
-                isinstance(error, (ConvergenceError, TimeLimitError))
-                and recorder.record.rows
-                and folder is not None
-            ):
-                raise type(error)(
-                    f"{error}; {len(recorder.record.rows)} increments are saved in {folder}"
-                ) from None
-            raise
+            saved = len(recorder.record.rows) if folder is not None else 0
+            if not saved or not isinstance(error, (ConvergenceError, TimeLimitError)):
+                raise
+            raise type(error)(f"{error}; {saved} increments are saved in {folder}") from None
         model.destroy()
     return result
 
@@ -121,3 +136,174 @@ def _log_remarks(sequence: LoadSequence, left_out: Sequence[str], without_window
             "the stress at the teeth is not resolved by windows: not available with %s",
             without_windows,
         )
+
+
+class DriveRun:
+    """One run on its mesh: start or restart, all increments, end.
+
+    recipe : of the model's mesh;  kept : loaded states on the meshes of the start
+    begin : time.perf_counter() at the run's start
+    """
+
+    def __init__(
+        self,
+        recorder: Recorder,
+        recipe: MeshRecipe,
+        kept: StartStates,
+        options: RunOptions,
+        begin: float,
+    ) -> None:
+        self.recorder, self.stepper, self.model = recorder, recorder.stepper, recorder.model
+        self.recipe, self.kept, self.options, self.begin = recipe, kept, options, begin
+        self.earlier_seconds, self.ended_early = 0.0, False
+        self.coarse: tuple[MeshRecipe, Mapping[str, Sequence[float]]] | None = None
+        counts = self.model.counts()
+        logger.info(
+            "%d elements, %d nodes in the whole drive; %d unknowns modelled%s; %d ranks",
+            self.model.n_elements(),
+            sum(b["nodes_whole"] for b in counts.values()),
+            sum(b["dofs"] for b in counts.values()),
+            self.model.part_remark,
+            self.model.comm.size,
+        )
+        recorder.begin()
+
+    @property
+    def seconds(self) -> float:
+        """Wall seconds of the run, restarts included."""
+        return self.earlier_seconds + time.perf_counter() - self.begin
+
+    def resume(self) -> Sequence[LoadState]:
+        """Bring back the state of the checkpoint; returns all increments of the run."""
+        assert isinstance(self.recorder, FolderRecorder)  # a run in memory leaves no checkpoint
+        states, self.earlier_seconds = self.recorder.resume()
+        record = self.recorder.record
+        logger.info("restarted after increment %d", len(record.rows))
+        if self.model.design.resolves_root_stress and not record.root_stress:
+            logger.info(
+                "the stress at the teeth is resolved only by the run that computes the loaded state"
+            )
+        return states
+
+    def start(self) -> Sequence[LoadState]:
+        """Reach the loaded state at once if the design asks for it; returns all increments."""
+        record, sequence = self.recorder.record, self.stepper.sequence
+        if record.accuracy is not None:  # the model was loaded when its mesh was chosen
+            self.stepper.resume_at(sequence.loaded)
+            return sequence.from_loaded
+        record.starts_loaded = start_at_load(
+            self.stepper, self.recipe, self._keep_coarse, self.kept
+        )
+        return sequence.from_loaded if record.starts_loaded else sequence.states
+
+    def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
+        """Keep the largest stresses of a coarser mesh, to see what the mesh changes."""
+        loaded = self.stepper.sequence.loaded
+        places = find_places(model, loaded, model.stresses()[1])
+        self.recorder.record.coarse = CoarseStresses(places, size_ratio(recipe, self.recipe))
+        if model.design.resolves_root_stress:
+            try:
+                self.coarse = recipe, compared_stresses(model, loaded)
+            except (ConvergenceError, InputError) as error:
+                logger.info("the error by the mesh of the drive is not known: %s", error)
+
+    def go_through(self, states: Sequence[LoadState]) -> None:
+        """Compute and record the increments that are left."""
+        stepper, recorder, terminal = self.stepper, self.recorder, self.options.terminal
+        record, design = recorder.record, self.model.design
+        loaded = next((state for state in reversed(states) if state.stage == Stage.LOAD), None)
+        with IncrementProgress(
+            self.model.comm, len(states), done=len(record.rows), terminal=terminal
+        ) as progress:
+            self.model.solver.monitor = lambda state, its, ratio: progress.newton(
+                state.stage.label, np.degrees(state.angle), its, ratio
+            )
+            for state in states[len(record.rows) :]:
+                if design.ratcheting is not None and has_fallen(
+                    design.ratcheting.drop, recorder.program_rows()
+                ):
+                    break
+                start = time.perf_counter()
+                # a start at once ends with the first one
+                if state != stepper.load_state and not self._advance(state):
+                    break
+                seconds = time.perf_counter() - start
+                if design.resolves_root_stress:
+                    record.root_stress = self._root_stress(state, state == loaded)
+                recorder.keep(seconds, self.seconds)
+                if len(record.rows) == 1:
+                    self.kept.remove(self.model.comm)
+                angle = float(np.degrees(state.angle))
+                progress.increment(
+                    state.stage.label, angle, stepper.iterations, stepper.residual, seconds
+                )
+                self.options.on_increment()
+                if terminal:
+                    warn_of_unused_options()
+
+    def _advance(self, state: LoadState) -> bool:
+        """Compute an increment; False where the output is rotated beyond the strength and finds no
+        equilibrium."""
+        try:
+            self.stepper.advance(state)
+            return True
+        except ConvergenceError as error:
+            rotated = self.model.design.ratcheting is not None and state.stage == Stage.PROGRAM
+            if not rotated or not self.recorder.program_rows():
+                raise
+            logger.warning("the rotation of the output ends here: %s", error)
+            self.ended_early = True
+            return False
+
+    def _root_stress(self, state: LoadState, loaded: bool) -> RootStress | None:
+        """Largest tensile stress at the teeth by windows; the one known before where a window
+        cannot be computed."""
+        known, sequence = self.recorder.record.root_stress, self.stepper.sequence
+        # of two periods the first one settles
+        further = sequence.samples and sequence.periods == 1 and state.stage == Stage.ROTATE
+        try:
+            with self.model.phases("windows"):
+                if loaded:
+                    return known or self._resolve_loaded(state)
+                if known and further:
+                    return with_angle(known, self.model, state)
+        except (ConvergenceError, InputError) as error:
+            angle = np.degrees(state.angle)
+            logger.warning(
+                "the stress at the teeth is not resolved at %.4g degrees: %s", angle, error
+            )
+        return known
+
+    def _resolve_loaded(self, state: LoadState) -> RootStress:
+        found = resolve_root_stress(self.model, state)
+        if self.coarse is None:
+            return found
+        coarse, levels = self.coarse
+        least, ratio = least_error(self.model, state), size_ratio(coarse, self.recipe)
+        return replace(found, drive_error=drive_error(levels, found, ratio, least))
+
+    def finish(self, recipe_name: str) -> DriveData:
+        """Summarise the run."""
+        recorder, model, sequence = self.recorder, self.model, self.stepper.sequence
+        design, rows, error = model.design, recorder.record.rows, None
+        if design.stiffness is not None and design.stiffness.mesh_error:
+            with model.phases("coarser mesh"):
+                error = stiffness_error(design, self.recipe, recorder.program_rows(), model.comm)
+        if design.deviations is not None:
+            follow_turns(self.recipe, recorder)
+        else:
+            recorder.keep_turns(period_rows(sequence, rows))
+        if sequence.samples and rows:
+            rows = continued(sequence, rows)
+        rows = history_rows(sequence.kinematics, rows)
+        summary, tables = evaluate_run(
+            recorder,
+            rows,
+            recipe_name,
+            self.seconds,
+            stiffness_error=error,
+            ended_early=self.ended_early,
+        )
+        if summary.rotation.jammed:
+            logger.warning("%s", summary.rotation.jammed)
+        return recorder.finish(rows, summary, tables)

@@ -1,5 +1,4 @@
-"""A solved state of a drive in a file: rows by sector, multipliers, and what is modelled in
-full."""
+"""A solved state of a drive in a file: rows by sector, multipliers, what is modelled in full."""
 
 from __future__ import annotations
 
@@ -8,12 +7,20 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from mpi4py import MPI
 
+from swgpar.analysis.identity import identity
 from swgpar.contact import friction
+from swgpar.errors import OutputError
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.vectors import read_field, write_field
+from swgpar.log import logger
+from swgpar.meshing import MeshRecipe
 from swgpar.model.drive_model import DriveModel
 from swgpar.results import parallel_hdf5
+from swgpar.results.atomic import agreed
+from swgpar.results.checkpoint import read_checkpoint, require_undamaged, write_checkpoint
+from swgpar.results.folder import START_STATES
 from swgpar.results.parallel_hdf5 import Block
 
 
@@ -22,8 +29,7 @@ class SolvedState:
     """What a state has beside its rows.
 
     multipliers : of the constraints
-    modelled_sectors : teeth and sectors that are modelled in full, as
-    `DiscreteProblem.modelled_sectors` gives them
+    modelled_sectors : as `DiscreteProblem.modelled_sectors` gives them
     """
 
     multipliers: list[float]
@@ -38,11 +44,9 @@ class SolvedState:
 def state_rows(
     model: DriveModel, displacement: Mapping[str, np.ndarray] | None = None
 ) -> dict[str, Block]:
-    """Displacements of all bodies by name, and with friction the tractions of the flanks;
-    collective.
+    """Displacements of all bodies by name, with friction the tractions of flanks too; collective.
 
-    displacement : by body, (n_sectors, n_local, 3) mm of the owned sectors; None reads those of the
-    model's x
+    displacement : by body, (n_sectors, n_local, 3) mm of the owned sectors; None takes the model's
     """
     blocks, partition = {}, model.partition
     for name, layout in partition.layouts.items():
@@ -75,3 +79,57 @@ def restore_state(model: DriveModel, path: Path, solved: SolvedState) -> None:
         every = (0, partition.layouts[FLEXIBLE_SPLINE].count)
         rows = parallel_hdf5.read_rows(path, model.comm, dict.fromkeys(friction.ROWS, every))
         problem.resume(friction.from_rows(rows))
+
+
+class StartStates:
+    """Keeps the loaded states on the meshes of a start, until the run has a checkpoint.
+
+    A run that starts on coarser meshes, or chooses its mesh, has nothing in its checkpoint for some
+    time. Every mesh that has reached the load leaves a file meanwhile. A restart goes the same way
+    again and takes these states over.
+
+    folder : results folder; None keeps nothing
+    """
+
+    def __init__(self, folder: Path | None) -> None:
+        self.folder = folder
+
+    def _path(self, model: DriveModel, recipe: MeshRecipe) -> Path | None:
+        """File of the model's loaded state on the mesh of this recipe; None where none is kept."""
+        # a state with friction depends on the path to it
+        if self.folder is None or model.design.contact.friction:
+            return None
+        return self.folder / START_STATES.replace("*", identity(model.design, recipe, None)[:12])
+
+    def save(self, model: DriveModel, recipe: MeshRecipe) -> None:
+        """Write the model's present state; collective. Raises OutputError."""
+        if (path := self._path(model, recipe)) is not None:
+            write_checkpoint(path, model.comm, state_rows(model), SolvedState.of(model))
+
+    def restore(self, model: DriveModel, recipe: MeshRecipe) -> bool:
+        """Set the model's x to the state on this mesh; False where there is none. Collective."""
+        path = self._path(model, recipe)
+        if path is None or not model.comm.bcast(path.exists() if model.comm.rank == 0 else None):
+            return False
+        try:
+            require_undamaged(path, model.comm)
+            restore_state(model, path, read_checkpoint(path, model.comm, SolvedState))
+        except OutputError as error:
+            logger.info("a loaded state is computed again: %s", error)
+            return False
+        logger.info("the loaded state on a mesh of %d elements is taken over", model.n_elements())
+        return True
+
+    def found(self, comm: MPI.Comm) -> bool:
+        """Whether there are files, of this design or of another; collective."""
+        here = comm.rank == 0 and self.folder is not None and any(self.folder.glob(START_STATES))
+        return bool(comm.bcast(here))
+
+    def remove(self, comm: MPI.Comm) -> None:
+        """Remove the files: the checkpoint has all that a restart needs. Collective."""
+        if self.folder is None:
+            return
+        with agreed(comm, self.folder):
+            if comm.rank == 0:
+                for path in self.folder.glob(START_STATES):
+                    path.unlink()

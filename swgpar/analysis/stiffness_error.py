@@ -16,7 +16,6 @@ from swgpar.errors import ConvergenceError, InputError
 from swgpar.evaluation.program_results import PointRow, point_rows
 from swgpar.evaluation.stiffness import NAMES, Stiffness, by_position
 from swgpar.load.load_program import stiffness_program
-from swgpar.load.load_sequence import load_sequence
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import RATIO, resized
@@ -59,10 +58,10 @@ def _first_position(design: DriveDesign) -> DriveDesign:
 
 def _stiffness_on(design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> Stiffness:
     """The stiffness at the only position of a design, on another mesh."""
-    sequence = load_sequence(design)
-    model = solve_to_load(design, recipe, sequence, comm)
+    model = solve_to_load(design, recipe, comm)
     try:
         stepper = LoadStepper(model)
+        sequence = stepper.sequence
         stepper.resume_at(sequence.loaded)
         rows = [stepper.row()]
         for state in sequence.from_loaded[1:]:

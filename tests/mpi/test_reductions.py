@@ -50,7 +50,7 @@ def rotated(
     if design.steps.start_levels or design.steps.bent_start:
         recipes = levels(design, mesh)
         assert len(recipes) == design.steps.start_levels
-        start_loaded(stepper, recipes, sequence)
+        start_loaded(stepper, recipes)
         items = sequence.from_loaded[1:]
     for item in items:
         stepper.advance(item)
@@ -302,7 +302,7 @@ def test_a_start_on_a_coarser_mesh_takes_over_what_is_inside() -> None:
         ]
         design, mesh = load_design(DESIGN, overrides), load_recipe("plane_coarse")
         stepper = load_stepper(design, recipe=mesh)
-        start_loaded(stepper, levels(design, mesh), load_sequence(design))
+        start_loaded(stepper, levels(design, mesh))
         iterations.append(stepper.iterations)
     print(iterations)
     assert iterations[1] <= iterations[0] + 1
@@ -341,8 +341,7 @@ def test_a_mesh_is_chosen_alike_on_any_number_of_ranks() -> None:
     design = load_design(DESIGN, ["steps.rotation=3", "solver.rtol=1e-9"])
     found = []
     for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
-        sequence = load_sequence(design)
-        chosen = choose_mesh(design, load_recipe(RECIPE), sequence, 0.2, comm)
+        chosen = choose_mesh(design, load_recipe(RECIPE), 0.2, comm)
         # a coarser mesh than this one would not find the contacts: it is compared with a finer one
         assert chosen.error <= 0.2 and chosen.recipe.flexible_spline.flank == 3
         found.append((chosen, chosen.model.stresses()[0]))

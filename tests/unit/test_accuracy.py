@@ -46,11 +46,9 @@ def chosen(
     """The small plane drive on the mesh for an accuracy. times : elements in every direction of the
     first mesh"""
     design = with_accuracy(load_design(DESIGN, [*PLANE, *LOADED, *overrides]), accuracy)
-    sequence = load_sequence(design)
     return choose_mesh(
         design,
         resized(load_recipe(RECIPE), times),
-        sequence,
         accuracy,
         MPI.COMM_SELF,
         largest=largest,
@@ -140,9 +138,8 @@ def test_contacts_on_edges_leave_more_of_an_error() -> None:
     recipe = load_recipe("plane_coarse")
     for values, least in ((profiles, LEAST_WITH_EDGES), ({}, LEAST["plane"])):
         design = with_shortcuts(load_design(PLANE_DRIVE, values), recipe, levels=False).design
-        sequence = load_sequence(design)
-        model = solve_to_load(design, recipe, sequence, MPI.COMM_SELF)
-        assert least_error(model, sequence.loaded) == least
+        model = solve_to_load(design, recipe, MPI.COMM_SELF)
+        assert least_error(model, load_sequence(design).loaded) == least
 
 
 def test_the_error_holds() -> None:
@@ -151,9 +148,9 @@ def test_the_error_holds() -> None:
     found = chosen(0.2, times=2.0)
     error, s1, design = found.root_stress.total_error, found.root_stress.s1, found.model.design
     found.model.destroy()
-    sequence = load_sequence(design)
-    finer = solve_to_load(design, resized(found.recipe, 2.0), sequence, MPI.COMM_SELF)
-    reference = resolve_root_stress(finer, sequence.loaded, LEVELS["plane"] + 1).s1
+    finer = solve_to_load(design, resized(found.recipe, 2.0), MPI.COMM_SELF)
+    loaded = load_sequence(design).loaded
+    reference = resolve_root_stress(finer, loaded, LEVELS["plane"] + 1).s1
     finer.destroy()
     true = abs(s1 - reference)
     print(f"s1 {s1:.2f} for {reference:.2f} MPa: error {error:.2f} for {true:.2f} MPa")
@@ -176,7 +173,7 @@ def test_with_friction_every_mesh_is_loaded_step_by_step() -> None:
     """The state is the one that a run has on this mesh, which depends on the path to it."""
     found = chosen(0.2, "contact.friction=0.1")
     design = found.model.design
-    alone = solve_to_load(design, found.recipe, load_sequence(design), MPI.COMM_SELF)
+    alone = solve_to_load(design, found.recipe, MPI.COMM_SELF)
     assert found.error <= 0.2
     assert found.model.stresses()[0] == pytest.approx(alone.stresses()[0], rel=1e-9)
     for model in (found.model, alone):

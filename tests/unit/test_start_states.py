@@ -11,9 +11,8 @@ from support.messages import Messages
 from support.paths import DESIGN
 from support.small_drive import PLANE
 from swgpar.analysis.coarse_start import solve_to_load
-from swgpar.analysis.start_states import StartStates
+from swgpar.analysis.saved_state import StartStates
 from swgpar.checks.design_file import load_design
-from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import load_recipe
 from swgpar.results.folder import START_STATES
 
@@ -25,12 +24,12 @@ def test_a_loaded_state_is_taken_over(tmp_path: Path) -> None:
     # changes nothing
     values = [*PLANE, "steps.rotation=0", "steps.bent_start=true", "solver.keep_factor=false"]
     design = load_design(DESIGN, values)
-    recipe, sequence, comm = load_recipe("plane_coarse"), load_sequence(design), MPI.COMM_SELF
+    recipe, comm = load_recipe("plane_coarse"), MPI.COMM_SELF
     kept = StartStates(tmp_path)
 
     def solve() -> tuple[np.ndarray, str]:
         with Messages() as messages:
-            model = solve_to_load(design, recipe, sequence, comm, kept=kept)
+            model = solve_to_load(design, recipe, comm, kept=kept)
         x = model.problem.x.array_r.copy()
         model.destroy()
         return x, "\n".join(messages.texts)
