@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
@@ -31,6 +31,9 @@ PIECES = 32
 SAME = 1e-7
 """mm, distance below which the ends of edges are one point."""
 
+
+Step = tuple[tuple[float, float], tuple[float, float] | None]
+"""Next corner of an outline, and the center of the arc to it."""
 
 Solid = GearName | Literal["wave_generator", "housing"]
 """Name of a solid, and of its file."""
@@ -83,7 +86,7 @@ def _build(gmsh: ModuleType, design: DriveDesign, name: Solid) -> None:
         radii = (design.geometry.outer_radius, inner)
         _extrude(gmsh, [_circle(gmsh, radius, back) for radius in radii], width)
         return
-    teeth = _loop(gmsh, gear_outline(design, name), back)
+    teeth = _loop(gmsh, gear_outline(design, name), lambda xy: np.append(xy, back))
     if name != "flexible_spline":
         outer = _circle(gmsh, design.geometry.gears[name].outer_radius, back)
         _extrude(gmsh, [outer, teeth], width)
@@ -127,90 +130,68 @@ def closed_curve(gmsh: ModuleType, points: np.ndarray, normals: np.ndarray, z: f
     ]
 
 
-def _loop(gmsh: ModuleType, edges: Sequence[Edge], z: float) -> int:
-    """A closed curve of edges, each of which begins where the one before ends."""
+def _loop(gmsh: ModuleType, edges: Sequence[Edge], place: Callable[[Floats], Floats]) -> int:
+    """A closed curve of edges, each of which begins where the one before ends. An arc whose ends
+    have different distances from its center is that of an ellipse with axes along the coordinates.
+
+    place : from the plane of the edges into space
+    """
     occ, curves = gmsh.model.occ, []
-    starts = [occ.addPoint(*edge.points[0], z) for edge in edges]
+
+    def point(at: Floats) -> int:
+        return occ.addPoint(*place(at))
+
+    starts = [point(edge.points[0]) for edge in edges]
     for edge, start, end in zip(edges, starts, [*starts[1:], starts[0]], strict=True):
-        if edge.center is not None:
-            curves.append(occ.addCircleArc(start, occ.addPoint(*edge.center, z), end))
-        elif len(edge.points) == 2:
+        if edge.center is None and len(edge.points) == 2:
             curves.append(occ.addLine(start, end))
+        elif edge.center is None:
+            curves.append(occ.addSpline([start, *map(point, edge.points[1:-1]), end]))
         else:
-            inside = [occ.addPoint(*point, z) for point in edge.points[1:-1]]
-            curves.append(occ.addSpline([start, *inside, end]))
+            arms, middle = np.abs(edge.points[[0, -1]] - edge.center), point(edge.center)
+            if np.ptp(np.hypot(*arms.T)) < SAME:
+                curves.append(occ.addCircleArc(start, middle, end))
+            else:
+                along = np.eye(2)[arms.max(axis=0).argmax()]
+                major = point(edge.center + along)
+                curves.append(occ.addEllipseArc(start, middle, major, end))
     return occ.addCurveLoop(curves)
-
-
-class _Meridian:
-    """Curves of a section in the plane of r and z, one after the other; `at` is the tag of the last
-    point."""
-
-    def __init__(self, gmsh: ModuleType, r: float, z: float) -> None:
-        self.occ, self.place = gmsh.model.occ, (r, z)
-        self.curves: list[int] = []
-        self.first = self.at = self.occ.addPoint(r, 0.0, z)
-
-    def _end(self, r: float, z: float) -> int:
-        self.place = r, z
-        return self.occ.addPoint(r, 0.0, z)
-
-    def line(self, r: float, z: float) -> None:
-        """A line to a point, unless it is the present one."""
-        if np.hypot(r - self.place[0], z - self.place[1]) > SAME:
-            start, self.at = self.at, self._end(r, z)
-            self.curves.append(self.occ.addLine(start, self.at))
-
-    def arc(self, r: float, z: float, center: tuple[float, float]) -> None:
-        """The shorter arc to a point, or that of an ellipse with axes along r and z; none without a
-        size."""
-        arms = np.abs(np.subtract([self.place, (r, z)], center))
-        sizes = arms.max(axis=0)
-        if sizes.min() < SAME:  # a fillet without one of its sizes is a corner
-            self.line(*center)
-            self.line(r, z)
-            return
-        middle, start = self.occ.addPoint(center[0], 0.0, center[1]), self.at
-        self.at = self._end(r, z)
-        if np.ptp(np.hypot(*arms.T)) < SAME:
-            self.curves.append(self.occ.addCircleArc(start, middle, self.at))
-            return
-        along = (1.0, 0.0) if sizes[0] > sizes[1] else (0.0, 1.0)
-        major = self.occ.addPoint(center[0] + along[0], 0.0, center[1] + along[1])
-        self.curves.append(self.occ.addEllipseArc(start, middle, major, self.at))
-
-    def surface(self) -> int:
-        """The closed section."""
-        self.curves.append(self.occ.addLine(self.at, self.first))
-        return self.occ.addPlaneSurface([self.occ.addCurveLoop(self.curves)])
 
 
 def _wall(gmsh: ModuleType, design: DriveDesign) -> tuple[int, int]:
     """The wall of the cup behind the teeth: its section turned about the axis."""
-    occ, wall, fillet = gmsh.model.occ, design.cup_sizes.wall, design.cup.back_fillet
-    r_center, z_center = wall.center
-    r_first = wall.outer.points[0, 1]
-    section = _Meridian(gmsh, wall.inner.points[0, 1], wall.back)
-    section.line(r_first + fillet, wall.back)
+    occ = gmsh.model.occ
+    section = _loop(gmsh, _wall_section(design), lambda rz: np.insert(rz, 1, 0.0))
+    surface = occ.addPlaneSurface([section])
+    return _solid(occ.revolve([(2, surface)], 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 2.0 * np.pi))
+
+
+def _wall_section(design: DriveDesign) -> list[Edge]:
+    """The closed section in the plane of r and z, from the inner surface below the teeth."""
+    wall, fillet = design.cup_sizes.wall, design.cup.back_fillet
+    center, first, back = wall.center, wall.outer.points[0, 1], wall.back
+    start = (wall.inner.points[0, 1], back)
+    # ends of the edges with the centers of arcs; those of the lines of the wall are (s, r)
+    path: list[Step] = [((first + fillet, back), None)]
     if fillet:
-        section.arc(r_first, wall.back + fillet, (r_first + fillet, wall.back + fillet))
-    for _, end, center in wall.outer.pieces():
-        _continue(section, wall.back, end, center)
-    section.arc(r_center, wall.faces[1], (r_center, z_center))
-    for z in wall.faces[::-1]:
-        section.line(wall.edge, z)
-    section.line(r_center, wall.faces[0])
-    section.arc(wall.inner.points[-1, 1], z_center, (r_center, z_center))
-    for end, _, center in wall.inner.pieces()[:0:-1]:
-        _continue(section, wall.back, end, center)
-    solid = occ.revolve([(2, section.surface())], 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 2.0 * np.pi)
-    return _solid(solid)
+        path.append(((first, back + fillet), (first + fillet, back + fillet)))
+    path += [_from_back(back, end, middle) for _, end, middle in wall.outer.pieces()]
+    path.append(((center[0], wall.faces[1]), center))
+    path += [((wall.edge, z), None) for z in wall.faces[::-1]]
+    path += [((center[0], wall.faces[0]), None), ((wall.inner.points[-1, 1], center[1]), center)]
+    path += [_from_back(back, end, middle) for end, _, middle in wall.inner.pieces()[:0:-1]]
+    edges, place = [], start
+    for end, middle in [*path, (start, None)]:
+        if middle is not None and np.abs(np.subtract([place, end], middle)).max(0).min() < SAME:
+            # a fillet without one of its sizes is a corner
+            edges.append(Edge(np.array([place, middle])))
+            place, middle = middle, None
+        if middle is not None or np.hypot(*np.subtract(place, end)) > SAME:
+            edges.append(Edge(np.array([place, end]), middle and np.array(middle)))
+            place = end
+    return edges
 
 
-def _continue(section: _Meridian, back: float, end: Floats, center: Floats | None) -> None:
-    """A piece of a wall's line to a distance from the back of the teeth and a radius."""
-    distance, r = end
-    if center is None:
-        section.line(r, back + distance)
-    else:
-        section.arc(r, back + distance, (center[1], back + center[0]))
+def _from_back(back: float, end: Floats, middle: Floats | None) -> Step:
+    """A distance from the back of the teeth and a radius as r and z, also those of a center."""
+    return (end[1], back + end[0]), middle if middle is None else (middle[1], back + middle[0])
