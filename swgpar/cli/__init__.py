@@ -61,8 +61,8 @@ def _main(arguments: Sequence[str] | None) -> int:
         alone = getattr(error, "alone", False) and MPI.COMM_WORLD.size > 1
         if MPI.COMM_WORLD.rank == 0 or alone:
             _print_error(error)
-        if alone:  # the other ranks wait for this one
-            MPI.COMM_WORLD.Abort(error.exit_code)
+        if alone:
+            _abort(error.exit_code)
         return error.exit_code
     except BrokenPipeError:  # the reader of our output has gone
         sys.stderr.close()
@@ -70,15 +70,18 @@ def _main(arguments: Sequence[str] | None) -> int:
     except MemoryError:
         _print_error("not enough memory: take a coarser mesh, or more memory")
         if command in SOLVING:
-            from mpi4py import MPI
-
-            MPI.COMM_WORLD.Abort(OutOfMemoryError.exit_code)
+            _abort(OutOfMemoryError.exit_code)
         return OutOfMemoryError.exit_code
     except Exception:
         if command not in SOLVING:
             raise
         traceback.print_exc()
-        from mpi4py import MPI
-
-        MPI.COMM_WORLD.Abort(1)
+        _abort(1)
     return 0
+
+
+def _abort(code: int) -> None:
+    """End the other ranks, which wait for this one."""
+    from mpi4py import MPI
+
+    MPI.COMM_WORLD.Abort(code)

@@ -56,32 +56,19 @@ class JobModel:
     Attributes
     ----------
     meshes : one sector of the flexible spline and of the ring gear, as solids
-    drive : both bodies as one mesh, the spline's nodes and elements first
+    drive : both bodies as one mesh, the spline's nodes and elements first;  points : (n, 3) mm
     """
 
     def __init__(self, design: DriveDesign, recipe: MeshRecipe) -> None:
         self.design, self.plane = design, design.drive.model == "plane"
         self.flat = build_sector_meshes(design.geometry, recipe)
         self.meshes = {name: replace(mesh, lower_nodes=None) for name, mesh in self.flat.items()}
+        self.spline, self.ring = self.meshes["flexible_spline"], self.meshes["ring_gear"]
         self.drive: meshio.Mesh = whole_drive(self.meshes)
+        self.points: Floats = self.drive.points
         self.n_spline = len(whole_body(self.spline)[0])
-
-    @property
-    def spline(self) -> SectorMesh:
-        return self.meshes["flexible_spline"]
-
-    @property
-    def ring(self) -> SectorMesh:
-        return self.meshes["ring_gear"]
-
-    @property
-    def points(self) -> Floats:
-        """(n, 3) mm, of all nodes of the gears."""
-        return self.drive.points
-
-    @property
-    def n_elements(self) -> int:
-        return sum(len(mesh.elements) * mesh.n_sectors for mesh in self.meshes.values())
+        sizes = [len(mesh.elements) * mesh.n_sectors for mesh in self.meshes.values()]
+        self.n_elements = sum(sizes)
 
     def numbers(self, mesh: SectorMesh, nodes: Ints) -> Ints:
         """Numbers (n_sectors, n), from 0, of nodes of a sector."""

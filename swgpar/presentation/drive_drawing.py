@@ -26,32 +26,21 @@ SIZE = 560.0
 
 FLANK_POINTS = 12
 
-FILLS = {
-    "housing": "#e3e3da",
-    "ring_gear": "#c9d6e6",
-    "flexible_spline": "#f0c987",
-    "wave_generator": "#d9d9d9",
-}
-
-
 Pixels = tuple[float, float]
 
 
 class Outline(NamedTuple):
-    """Closed curves as the path of SVG, filled between them."""
+    """Closed curves as the path of SVG, filled between them in the colour of the body."""
 
     path: str
-    fill: str
-    name: str
+    body: str
 
 
 class Line(NamedTuple):
-    """From x1, y1 to x2, y2 in pixels. style : class of the style sheet"""
+    """A line in pixels. style : class of the style sheet"""
 
-    x1: float
-    y1: float
-    x2: float
-    y2: float
+    start: Pixels
+    end: Pixels
     style: str = "dim"
 
 
@@ -83,34 +72,26 @@ class Sheet:
         """Pixels of a point in mm."""
         return self.left + self.scale * x, self.top - self.scale * y
 
-    def outline(self, points: Sequence[np.ndarray], name: str) -> None:
+    def outline(self, points: Sequence[np.ndarray], body: str) -> None:
         """Closed curves of a body, each (n, 2) mm, filled between them."""
         path = " ".join(
             "M" + "L".join("{:.2f} {:.2f}".format(*self.at(*p)) for p in curve) + "Z"
             for curve in points
         )
-        self.outlines.append(Outline(path, FILLS[name], name.replace("_", " ")))
-
-    def line(self, start: Pixels, end: Pixels, style: str = "dim") -> None:
-        """A line between pixels."""
-        self.lines.append(Line(*start, *end, style))
+        self.outlines.append(Outline(path, body))
 
     def axis(self, start: Pixels, end: Pixels) -> None:
         """A line of an axis between points in mm."""
-        self.line(self.at(*start), self.at(*end), "axis")
-
-    def text(self, x: float, y: float, text: str, anchor: str = "middle") -> None:
-        """A text at pixels."""
-        self.texts.append(Text(x, y, text, anchor))
+        self.lines.append(Line(self.at(*start), self.at(*end), "axis"))
 
     def across(self, x1: float, x2: float, y_from: float, y: float, text: str) -> None:
         """A horizontal dimension from x1 to x2 mm at the height y (pixels), with lines from y_from
         mm."""
         (a, start), (b, _) = self.at(x1, y_from), self.at(x2, y_from)
         for x in (a, b):
-            self.line((x, start), (x, y + (4 if y > start else -4)), "thin")
-        self.line((a, y), (b, y))
-        self.text(0.5 * (a + b), y - 4, text)
+            self.lines.append(Line((x, start), (x, y + (4 if y > start else -4)), "thin"))
+        self.lines.append(Line((a, y), (b, y)))
+        self.texts.append(Text(0.5 * (a + b), y - 4, text))
 
     def upright(
         self, y1: float, y2: float, x_from: float, x: float, text: str, anchor: str = "start"
@@ -118,9 +99,10 @@ class Sheet:
         """A vertical dimension from y1 to y2 mm at x (pixels), with lines from x_from mm."""
         (start, a), (_, b) = self.at(x_from, y1), self.at(x_from, y2)
         for y in (a, b):
-            self.line((start, y), (x + (4 if x > start else -4), y), "thin")
-        self.line((x, a), (x, b))
-        self.text(x + (6 if anchor == "start" else -6), 0.5 * (a + b) + 4, text, anchor)
+            self.lines.append(Line((start, y), (x + (4 if x > start else -4), y), "thin"))
+        self.lines.append(Line((x, a), (x, b)))
+        x += 6 if anchor == "start" else -6
+        self.texts.append(Text(x, 0.5 * (a + b) + 4, text, anchor))
 
 
 def draw_drive(design: DriveDesign) -> list[Sheet]:
@@ -276,7 +258,8 @@ def _meridian(design: DriveDesign) -> Sheet:
         _draw_attachment(sheet, design)
     lowest = min(radius for _, radius, _, _ in design.cup_sizes.points)
     x, y = sheet.at(back + 0.5 * cup.length, lowest)
-    sheet.text(x, y + 18.0, f"wall {_thicknesses(design)}, fillet r {cup.fillet_radius:g}")
+    wall_text = f"wall {_thicknesses(design)}, fillet r {cup.fillet_radius:g}"
+    sheet.texts.append(Text(x, y + 18.0, wall_text))
     sheet.height = sheet.at(0.0, 0.0)[1] + 20.0
     micro = design.micro_geometry
     sheet.caption = (
@@ -309,6 +292,6 @@ def _draw_attachment(sheet: Sheet, design: DriveDesign) -> None:
         return
     radius = 0.5 * cup.bolt_circle
     (x1, y), (x2, _) = sheet.at(near, radius), sheet.at(far, radius)
-    sheet.line((x1 - 12.0, y), (x2 + 12.0, y), "axis")
+    sheet.lines.append(Line((x1 - 12.0, y), (x2 + 12.0, y), "axis"))
     text = f"{cup.bolts} bolts ⌀ {cup.washer_diameter:g}, circle ⌀ {cup.bolt_circle:g}"
     sheet.upright(0.0, radius, near, x, text, "end")
