@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
@@ -78,7 +79,11 @@ class DriveFigures(FigureSet):
     def stress(self) -> Figure:
         """Largest stresses of both bodies (MPa) against the angle of the wave generator, under
         load."""
-        figure, (axes,) = self._panels(1)
+        figure = self._over_angle(self._draw_stress)
+        figure.legend(loc="outside lower center", ncols=2, fontsize=8)
+        return figure
+
+    def _draw_stress(self, axes: Axes) -> None:
         for name in STRESSES:
             self._draw(axes, name, COLUMNS[name].label)
         root = self._result.summary.root_stress
@@ -88,29 +93,20 @@ class DriveFigures(FigureSet):
         axes.set_title("largest stresses (nodal averages)" + self._over_period())
         axes.set_ylabel("stress (MPa)")
         axes.set_ylim(bottom=0.0)
-        figure.legend(loc="outside lower center", ncols=2, fontsize=8)
-        return figure
 
     def torque(self) -> Figure:
         """Input torque (N·mm) against the angle of the wave generator, beside that of the energy
         balance."""
-        figure, (axes,) = self._panels(1)
-        self._draw_torque(axes)
-        return figure
+        return self._over_angle(self._draw_torque)
 
     def transmission_error(self) -> Figure:
         """Angle of the output less its kinematic value (arc seconds) against the angle of the wave
         generator."""
-        figure, (axes,) = self._panels(1)
-        self._draw_transmission_error(axes)
-        return figure
+        return self._over_angle(self._draw_transmission_error)
 
     def torque_and_transmission_error(self) -> Figure:
         """Input torque and transmission error in one figure."""
-        figure, (upper, lower) = self._panels(2)
-        self._draw_torque(upper)
-        self._draw_transmission_error(lower)
-        return figure
+        return self._over_angle(self._draw_torque, self._draw_transmission_error)
 
     def transmission_error_spectrum(self) -> Figure:
         """Transmission error (arc seconds) over the angle of the input, and its orders of the
@@ -214,11 +210,14 @@ class DriveFigures(FigureSet):
         fixed = self._kinematics.wave_generator_is_fixed
         return ANGLE_AGAINST_RING if fixed else ANGLE
 
-    def _panels(self, count: int) -> tuple[Figure, list[Axes]]:
-        """A figure with panels above one another, over the angle of the wave generator."""
-        figure, found = panels(count, 7.0, 4.2 if count == 1 else 3.0 * count, shared=True)
-        found[-1].set_xlabel(self._angle)
-        return figure, found
+    def _over_angle(self, *draw: Callable[[Axes], None]) -> Figure:
+        """Panels above one another, over the angle of the wave generator."""
+        count = len(draw)
+        figure, rows = panels(count, 7.0, 4.2 if count == 1 else 3.0 * count, shared=True)
+        for axes, draw_row in zip(rows, draw):
+            draw_row(axes)
+        rows[-1].set_xlabel(self._angle)
+        return figure
 
     def _over_period(self) -> str:
         return ", over one period" if self._result.summary.design.steps.samples else ""
@@ -262,10 +261,8 @@ class DriveFigures(FigureSet):
         """The deformed drive, coloured by von Mises stress: seen from its open end, a plane model
         along its axis.
 
-        Parameters
-        ----------
-        increment : among those with fields, as in `DriveData.field`
-        magnification : of the displacements; above 1 bodies may seem to cross
+        increment : as in `DriveData.field`;  magnification : of the displacements; above 1 bodies
+        may seem to cross
         """
         grids, when = self._grids(increment), self._when(increment)
         return draw_deformed(grids, magnification, plane=self._result.is_plane, title=when)

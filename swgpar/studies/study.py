@@ -99,7 +99,7 @@ class _Book:
         self.study, self.jobs, self.out = study, jobs, out
         self.next_writing = 0.0
         self.outcomes: dict[int, Outcome] = {}
-        self.progress = StudyProgress(jobs) if terminal else None
+        self.progress = StudyProgress(jobs, terminal)
         watch.saved("cases", 0, len(jobs))
 
     def receive(self, message: tuple[int, Outcome | None]) -> None:
@@ -108,8 +108,7 @@ class _Book:
         if outcome is not None:
             self.outcomes[number] = outcome
             note_ended("cases", len(self.outcomes), len(self.jobs))
-        if self.progress is not None:
-            self.progress.receive(number, outcome)
+        self.progress.receive(number, outcome)
         begin, missing = time.perf_counter(), len(self.jobs) - len(self.outcomes)
         if outcome is None or self.out is None or begin < self.next_writing or not missing:
             return
@@ -202,7 +201,7 @@ def study(
     try:
         do_runs(comm, file.section.parallel, len(jobs), run, book.receive if book else None)
     finally:
-        if book is not None and book.progress is not None:
+        if book:
             book.progress.stop()
     results = comm.bcast(book.results() if book else None)
     if folder is not None:

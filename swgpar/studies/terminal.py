@@ -23,15 +23,15 @@ class StudyProgress:
 
     Parameters
     ----------
-    jobs : all jobs of the study
+    jobs : all jobs of the study;  terminal : whether something is shown
     """
 
-    def __init__(self, jobs: Sequence[Job]) -> None:
-        self._jobs = jobs
+    def __init__(self, jobs: Sequence[Job], terminal: bool) -> None:
+        self._jobs, self._shown = jobs, terminal
         self._done = [0] * len(jobs)
         self._finished = 0
         self._width = max(len(job.title) for job in jobs)
-        self._bar = progress_bar() if console.is_terminal else None
+        self._bar = progress_bar() if terminal and console.is_terminal else None
         if self._bar:
             self._task = self._bar.add_task("increments", total=sum(job.increments for job in jobs))
             self._bar.start()
@@ -44,7 +44,8 @@ class StudyProgress:
         else:
             self._done[index] = job.increments
             self._finished += 1
-            self._print(job, outcome)
+            if self._shown:
+                self._print(job, outcome)
         if self._bar:
             self._bar.update(self._task, completed=sum(self._done))
 
