@@ -46,10 +46,7 @@ CAM_OVERHANG = 0.1
 def write_calculix(design: DriveDesign, folder: Path, recipe: MeshRecipe) -> list[Path]:
     """Write the job and its mesh; `ccx -i drive` in the folder runs it.
 
-    Raises
-    ------
-    InputError
-        The design has what the job does not carry.
+    Raises InputError where the design has what the job does not carry.
     """
     _check(design)
     model = JobModel(design, recipe)

@@ -53,8 +53,6 @@ class Surface:
 class JobModel:
     """The whole drive of a design on the mesh of a recipe.
 
-    Attributes
-    ----------
     meshes : one sector of the flexible spline and of the ring gear, as solids
     drive : both bodies as one mesh, the spline's nodes and elements first;  points : (n, 3) mm
     """

@@ -49,11 +49,8 @@ def export_files(
 
     recipe : mesh of the formats that have one;  ripple : result over a period, for the format fmu
 
-    Raises
-    ------
-    InputError
-        A format that the source does not have, one whose package or mesh is missing, or a mesh that
-        no format has.
+    Raises InputError for a format that the source does not have, one whose package or mesh is
+    missing, or a mesh that no format has.
     """
     writers: dict[str, Callable[..., list[Path]]] = {**OF_RESULT}
     noun = "a result"

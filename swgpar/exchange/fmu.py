@@ -96,12 +96,7 @@ def write_fmu(result: DriveData, folder: Path, periodic: DriveData | None = None
 
     result : with [stiffness];  periodic : see `spring_model`
 
-    Raises
-    ------
-    InputError
-        See `spring_model`.
-    OutputError
-        The C compiler fails.
+    Raises InputError as `spring_model`, OutputError where the C compiler fails.
     """
     model = spring_model(result, periodic)
     source = files("swgpar.exchange").joinpath(f"{NAME}.c").read_text(encoding="utf-8")

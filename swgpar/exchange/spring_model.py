@@ -28,8 +28,6 @@ class SpringModel:
 
     Between knots the curves are cubic polynomials. A knot is a row: argument, value, derivative.
 
-    Attributes
-    ----------
     ratio : speed of the wave generator over that of the output, with its sign
     spring : (n, 3) wind-up rad, torque N·m on the output that holds it, N·m/rad; beyond the ends
     straight
@@ -61,10 +59,8 @@ def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
     periodic : with steps.samples or [deviations], for the kinematic error; with [losses] also for
         the loss torque; None for neither
 
-    Raises
-    ------
-    InputError
-        A result has not what is needed, or both are of drives with different ratios.
+    Raises InputError where a result has not what is needed, or both are of drives with different
+    ratios.
     """
     summary = result.summary
     if not (result.program and summary.stiffness):

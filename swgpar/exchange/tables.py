@@ -54,10 +54,7 @@ def write_look_up(result: DriveData, folder: Path) -> list[Path]:
     all positions. `ripple.csv` has the kinematic error (rad) of the output over the angle of the
     wave generator (rad); the table covers whole periods.
 
-    Raises
-    ------
-    InputError
-        The run has neither a stiffness loop nor a transmission error.
+    Raises InputError where the run has neither a stiffness loop nor a transmission error.
     """
     tables = {}
     if result.program and result.summary.stiffness:

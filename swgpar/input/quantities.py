@@ -42,16 +42,9 @@ class Section(BaseModel):
 def quantity(default: Any = ..., *, unit: str = "", text: str, **limits: Any) -> Any:
     """Declare a field of a `Section` with its meaning, its unit and its allowed range.
 
-    Parameters
-    ----------
-    default : Any
-        Value when the key is absent; without it the key is required.
-    unit : str
-        Unit of the value in the file; empty for a pure number.
-    text : str
-        Meaning of the field, without the unit.
-    **limits
-        Any of ``gt``, ``ge``, ``lt``, ``le``.
+    default : value when the key is absent; without it the key is required
+    unit : of the value in the file; empty for a pure number
+    text : meaning of the field, without the unit;  limits : any of ``gt``, ``ge``, ``lt``, ``le``
     """
     description = f"{text} ({unit})" if unit else text
     return Field(default, description=description, json_schema_extra={"unit": unit}, **limits)

@@ -94,11 +94,7 @@ def distribution(variable: Variable) -> optuna.distributions.BaseDistribution:
 class Search:
     """One search in a storage, on all ranks of a communicator; collective unless said otherwise.
 
-    Parameters
-    ----------
-    problem : Problem
-    storage : of this rank
-    name : of the search in the storage
+    storage : of this rank;  name : of the search in the storage
     first : designs that are tried first, when the search is new
     own : whether nobody else uses the storage, so that evaluations without an end belong to a call
     that was interrupted

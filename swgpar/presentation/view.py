@@ -43,10 +43,7 @@ def view_plotter(result: DriveData, *, off_screen: bool = False) -> pyvista.Plot
     Sliders choose the increment and the magnification of displacements. The keys 1, 2 and 3 colour
     by von Mises stress, s1 and s3; f and r hide the flexible spline and the ring gear.
 
-    Raises
-    ------
-    InputError
-        The run kept no fields.
+    Raises InputError where the run kept no fields.
     """
     import pyvista
 

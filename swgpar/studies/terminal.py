@@ -21,8 +21,6 @@ COLUMNS = 5
 class StudyProgress:
     """Lines and bar of rank 0; counts increments.
 
-    Parameters
-    ----------
     jobs : all jobs of the study;  terminal : whether something is shown
     """
 
