@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import swgpar
-from swgpar.geometry.profiles.mesh_gap import smallest_gaps
+from swgpar.geometry.profiles.mesh_gap import OutlinePair, outline
 
 DRIVERS = Path(__file__).parents[2] / "drivers"
 arcs = swgpar.load_design(
@@ -46,8 +46,8 @@ axes.legend(loc="lower right")
 angle = np.linspace(-8.0, 8.0, 161)
 figure, axes = plt.subplots(figsize=(7.0, 3.8), layout="constrained")
 for name, design in designs.items():
-    pair = design.profile("flexible_spline"), design.profile("ring_gear")
-    gap = smallest_gaps(*pair, design.tooth_motion(), np.radians(angle))
+    gears = (outline(design.profile(gear)) for gear in ("flexible_spline", "ring_gear"))
+    gap = OutlinePair(*gears, design.tooth_motion()).facing_gaps(np.radians(angle))
     axes.plot(angle, 1000.0 * gap, label=name)
 axes.set(xlabel="tooth, from the major axis (degrees)", ylabel="distance of the flanks (µm)")
 axes.set_ylim(-2.0, 20.0)

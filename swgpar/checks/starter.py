@@ -154,8 +154,7 @@ def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
             refusal = refusal or error
             continue
         built = True
-        # few angles suffice: a tenth of the clearance is what they change
-        if design.rigid_teeth().clearance(91) > LEAST_CLEARANCE * design.drive.module:
+        if design.rigid_teeth().clearance() > LEAST_CLEARANCE * design.drive.module:
             return (design, table) if design.dynamic_spline is None else _thin_teeth(table)
     if refusal is not None and not built:
         raise refusal
@@ -173,7 +172,7 @@ def _thin_teeth(table: dict[str, Any]) -> tuple[DriveDesign, dict[str, Any]]:
         thinner = with_value(table, "dynamic_spline.c_P", _rounded(c_P))
         design = make_drive(thinner)
         if (
-            design.rigid_teeth("dynamic_spline").clearance(91)
+            design.rigid_teeth("dynamic_spline").clearance()
             > LEAST_DYNAMIC_CLEARANCE * design.drive.module
         ):
             return design, thinner

@@ -127,7 +127,7 @@ def _penetration(allowed: float, history: Mapping[str, np.ndarray]) -> Check:
 
 
 def _clearance(meshes: Sequence[RigidTeeth], tolerance: float) -> Check:
-    clearance = min(teeth.clearance(181) for teeth in meshes)
+    clearance = min(teeth.clearance() for teeth in meshes)
     text = (
         f"smallest distance of the undeformed flanks {1000 * clearance:.3g} µm; good from "
         f"{-1000 * tolerance:.2g} µm: the contact takes up an overlap of that size"

@@ -28,7 +28,7 @@ from swgpar.geometry.arrays import Floats
 from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints
 from swgpar.geometry.profiles.flank import FlankSegment, Segment, ToothProfile
 from swgpar.geometry.profiles.keys import Conjugate
-from swgpar.geometry.profiles.mesh_gap import smallest_gaps
+from swgpar.geometry.profiles.mesh_gap import OutlinePair, outline
 from swgpar.geometry.profiles.teeth import Teeth
 from swgpar.geometry.profiles.tooth_motion import Pose, ToothMotion
 
@@ -426,17 +426,13 @@ def conjugate(
         maker.undercut()
     segments = maker.build(max(low, float(known[0])), float(known[-1]))
     profile = ToothProfile(tuple(segments), teeth.external, tip, root, teeth.n_teeth)
-    reach = REACH / motion.line.lobes
-    psi = np.linspace(-reach, reach, 321)
-    pair = (profile, given) if teeth.external else (given, profile)
-    gaps = smallest_gaps(*pair, motion, psi, exact_below=0.02 * teeth.module)
-    deepest = int(np.argmin(gaps))
-    if gaps[deepest] < -DEEPEST * teeth.module:
+    external, internal = (profile, given) if teeth.external else (given, profile)
+    deepest = OutlinePair(outline(external), outline(internal), motion).nearest_place()
+    if deepest.distance < -DEEPEST * teeth.module:
         raise InputError(
-            f"{name}: at {np.degrees(psi[deepest]):.1f} degrees from the major axis the flanks "
-            f"overlap by "
-            f"{-gaps[deepest]:.3g} mm: allowed are lower teeth, larger pressure angles and other "
-            f"profiles of the "
-            "other gear, whose other parts stay clear of the envelope"
+            f"{name}: at {np.degrees(deepest.psi):.1f} degrees from the major axis the teeth "
+            f"overlap by {-deepest.distance:.3g} mm: allowed are lower teeth, larger pressure "
+            "angles and other profiles of the other gear, whose other parts stay clear of the "
+            "envelope"
         )
     return profile

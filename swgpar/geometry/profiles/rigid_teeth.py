@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from swgpar.geometry.profiles.flank import ToothProfile
-from swgpar.geometry.profiles.mesh_gap import smallest_gaps
+from swgpar.geometry.profiles.mesh_gap import NearestPlace, OutlinePair, outline
 from swgpar.geometry.profiles.tooth_motion import ToothMotion
-
-WIDEST = np.radians(120.0)
-"""Angle from the tip of a lobe, to both sides, in which teeth can touch, times the number of
-lobes."""
 
 STEP = 1e-5
 """Rotation (rad) from which the rotation that closes a gap is extrapolated."""
@@ -21,13 +18,17 @@ NEAR = 1e-3
 """Gap (mm) below which a pair of flanks counts as in contact: what loads of rated size close."""
 
 
+EXACT = 0.02
+"""Gap over the module below which a pair is looked at closely: the first to touch is one of
+these."""
+
+
 @dataclass(frozen=True)
 class RigidMesh:
     """Contact of rigid teeth.
 
     transmission_error : arc seconds, peak to peak of the output's rotation at which the first pair
-    touches; inf where
-        the teeth do not reach each other, or overlap at every rotation
+    touches; inf where the teeth do not reach each other, or overlap at every rotation
     teeth_share : share of the flexible spline's teeth whose gap is below `NEAR` then, mean over a
     pitch
     """
@@ -51,69 +52,74 @@ class RigidTeeth:
     teeth: int
     module: float
 
-    def clearance(self, n_angles: int = 721) -> float:
-        """Smallest distance (mm; negative is interference) between the flanks.
+    @cached_property
+    def _pair(self) -> OutlinePair:
+        return OutlinePair(outline(self.spline), outline(self.ring), self.motion)
 
-        n_angles : angles of the tooth within half of a lobe
+    def nearest_place(self) -> NearestPlace:
+        """Where teeth come nearest to each other, or overlap most, between the minor axes.
+
+        Both flanks, top lands and roots of a tooth meet those of all slots that it passes.
         """
-        widest = 0.5 * np.pi / self.lobes
-        psi = np.linspace(-widest, widest, n_angles)
-        # the other flank of a tooth moves like this one on the mirror image of the cam
-        sides = {self.motion, self.motion.mirror_image()}
-        return min(float(smallest_gaps(self.spline, self.ring, side, psi).min()) for side in sides)
+        # the other half of a tooth moves like this one on the mirror image of the cam
+        image = self.motion.mirror_image()
+        nearest = self._pair.nearest_place()
+        if image != self.motion:
+            other = replace(self._pair, motion=image).nearest_place()
+            if other.distance < nearest.distance:
+                nearest = replace(other, psi=-other.psi)
+        return nearest
 
-    def mesh(self, phases: int = 8, n_points: int = 300) -> RigidMesh:
+    def clearance(self) -> float:
+        """Smallest distance (mm; negative is interference) between the teeth."""
+        return self.nearest_place().distance
+
+    def mesh(self, phases: int = 8) -> RigidMesh:
         """Contact over one pitch.
 
         In every phase the flexible spline's material is rotated until the first pair of one side
         touches.
 
-        phases : positions of the cam within a pitch of the flexible spline;  n_points : points on a
-        flank
+        phases : positions of the cam within a pitch of the flexible spline
         """
-        touching, gaps = self._touching(phases, n_points)
+        touching, gaps = self._touching(phases)
         if not np.isfinite(touching).all():
             return RigidMesh(np.inf, 0.0)
         share = np.count_nonzero(gaps < NEAR) / phases * self.lobes / self.teeth
         return RigidMesh(float(np.degrees(np.ptp(touching))) * 3600.0, share)
 
-    def touching_rotation(self, n_points: int = 300) -> float:
+    def touching_rotation(self) -> float:
         """Rotation (rad) of the spline's material at which the first pair of one side touches, cam
         at angle zero.
 
-        -inf where the teeth do not reach each other, or overlap at every rotation. n_points :
-        points on a flank
+        -inf where the teeth do not reach each other, or overlap at every rotation.
         """
-        touching, _ = self._touching(1, n_points)
+        touching, _ = self._touching(1)
         return float(touching.item())
 
-    def _touching(self, phases: int, n_points: int) -> tuple[np.ndarray, np.ndarray]:
+    def _touching(self, phases: int) -> tuple[np.ndarray, np.ndarray]:
         """Rotations (phases, 1) rad at which the first pair touches, and the gaps (phases, n) mm of
         all teeth then.
 
         -inf where the teeth do not reach each other, or overlap at every rotation.
         """
         pitch = 2.0 * np.pi / self.teeth
-        reach = int(WIDEST / self.lobes / pitch)
+        reach = self.teeth // (2 * self.lobes)
         psi = pitch * (np.arange(-reach, reach + 1) + np.arange(phases)[:, None] / phases)
 
         def gaps(rotation: np.ndarray) -> np.ndarray:
-            flat, exact = np.broadcast_to(rotation, psi.shape).ravel(), 0.02 * self.module
-            smallest = smallest_gaps(
-                self.spline, self.ring, self.motion, psi.ravel(), n_points, flat, exact
+            turned = np.broadcast_to(rotation, psi.shape).ravel()
+            return self._pair.facing_gaps(psi.ravel(), turned, EXACT * self.module).reshape(
+                psi.shape
             )
-            return smallest.reshape(psi.shape)
 
         touching = np.zeros((phases, 1))
-        for _ in range(
-            2
-        ):  # the second time from where the first pair touches, so that the extrapolation is short
+        # the second time from where the first pair touches, so that the extrapolation is short
+        for _ in range(2):
             before, after = gaps(touching), gaps(touching - STEP)
-            with np.errstate(invalid="ignore"):
+            with np.errstate(divide="ignore", invalid="ignore"):
                 closing = touching - STEP * before / (before - after)
-            touching = np.where(np.isfinite(before) & (after < before), closing, -np.inf).max(
-                axis=1, keepdims=True
-            )
+            touching = np.where(after < before, closing, -np.inf).max(axis=1, keepdims=True)
             if not (np.abs(touching) < 0.5 * pitch).all():
                 return np.full_like(touching, -np.inf), before
         smallest = gaps(touching)

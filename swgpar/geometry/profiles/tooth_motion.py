@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from swgpar.geometry.arrays import Floats
 from swgpar.geometry.neutral_line import NeutralLine
@@ -43,6 +44,29 @@ class Pose:
             -self.angle,
             -a1,
             -a2,
+        )
+
+    def taken(self, index: NDArray[np.intp]) -> Pose:
+        """The positions `index` of these."""
+        return Pose(
+            self.c[index],
+            self.c1[index],
+            self.c2[index],
+            self.angle[index],
+            self.angle1[index],
+            self.angle2[index],
+        )
+
+    def turned(self, angle: Floats) -> Pose:
+        """These positions turned about the axis by `angle` (n,) rad, which does not depend on
+        psi."""
+        turn = np.exp(1j * angle)
+        return replace(
+            self,
+            c=turn * self.c,
+            c1=turn * self.c1,
+            c2=turn * self.c2,
+            angle=self.angle + angle,
         )
 
     def moved(self, points: np.ndarray) -> np.ndarray:
