@@ -22,6 +22,7 @@ from swgpar.evaluation.numerics import evaluate_numerics
 from swgpar.evaluation.places import LargestStresses
 from swgpar.evaluation.program_results import stage_ends
 from swgpar.evaluation.ratcheting import evaluate_ratcheting
+from swgpar.evaluation.rigid_clearance import rigid_clearance
 from swgpar.evaluation.rotation import evaluate_rotation, sampled_rows
 from swgpar.evaluation.step_values import step_values
 from swgpar.evaluation.stiffness import torsional_stiffness
@@ -79,7 +80,14 @@ def evaluate_run(
         peak_memory_MB_per_rank=tuple(round(value, 1) for value in memory),
         ratio=design.kinematics.input_ratio,
         design=design,
-        rotation=evaluate_rotation(sequence, rows, record.root_stress, places),
+        rotation=evaluate_rotation(
+            sequence,
+            rows,
+            record.pairs,
+            record.root_stress,
+            places,
+            friction=design.contact.friction > 0.0,
+        ),
         stresses=LargestStresses.of(places),
         steps=step_values(shown),
         numerics=evaluate_numerics(
@@ -110,6 +118,7 @@ def evaluate_run(
         fatigue=None if fatigue is None else fatigue.found,
         losses=losses,
         bearing=_bearing(recorder),
+        clearance=rigid_clearance(design),
         housing=HousingStresses(**record.housing) if record.housing else None,
     )
     tables = DriveTables(losses=losses_table)

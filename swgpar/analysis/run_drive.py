@@ -27,7 +27,7 @@ from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.saved_state import StartStates
 from swgpar.analysis.shortcuts import MESHES, with_shortcuts
 from swgpar.analysis.stiffness_error import stiffness_error
-from swgpar.checks.remarks import torque_remark
+from swgpar.checks.remarks import remarks
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.drive_data import DriveData
 from swgpar.errors import ConvergenceError, InputError, SwgparError, TimeLimitError
@@ -83,7 +83,8 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
     require_memory(needs, design.solver.memory_limit, comm)
     resumed = folder is not None and prepare(folder, comm, options.restart, options.overwrite)
     open_log(folder, comm)
-    _log_remarks(sequence, left_out, design.without_windows if design.output.root_stress else "")
+    without_windows = design.without_windows if design.output.root_stress else ""
+    _log_remarks(remarks(design), sequence, left_out, without_windows)
     with reported_memory(needs), limited(design.solver.time_limit):
         kept = StartStates(folder)
         if not options.restart:
@@ -121,13 +122,15 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
     return result
 
 
-def _log_remarks(sequence: LoadSequence, left_out: Sequence[str], without_windows: str) -> None:
+def _log_remarks(
+    remarks: Sequence[str], sequence: LoadSequence, left_out: Sequence[str], without_windows: str
+) -> None:
     """Say what the run leaves out, and what of the design may not be meant.
 
+    remarks : about the design
     without_windows : what keeps windows from resolving a stress that is asked for
     """
-    remark = torque_remark(sequence.torque, sequence.negligible_torque)
-    if remark is not None:
+    for remark in remarks:
         logger.warning("%s", remark)
     if left_out:
         logger.info("left out: %s; --plain computes all of it", ", ".join(left_out))
@@ -304,6 +307,6 @@ class DriveRun:
             stiffness_error=error,
             ended_early=self.ended_early,
         )
-        if summary.rotation.jammed:
-            logger.warning("%s", summary.rotation.jammed)
+        for remark in filter(None, (summary.rotation.jammed, summary.rotation.energy)):
+            logger.warning("%s", remark)
         return recorder.finish(rows, summary, tables)

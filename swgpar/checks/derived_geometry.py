@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from swgpar.checks.clearance import WORDS, Clearance, clearances
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.cams import Cam, pin_travel, taut_length
 from swgpar.geometry.profiles.rigid_teeth import RigidMesh
@@ -21,7 +22,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
     """Quantities that follow from a design: names with units, and values. `swgpar check` prints
     them."""
     spline, ring = design.profile("flexible_spline"), design.profile("ring_gear")
-    cam, half = design.cam(), 0.5 * design.deflection
+    cam, half, every = design.cam(), 0.5 * design.deflection, clearances(design)
     driving = "ring gear" if design.kinematics.wave_generator_is_fixed else "wave generator"
     return {
         f"ratio ({driving} / output)": design.kinematics.input_ratio,
@@ -50,10 +51,23 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         - spline.r_root_circle
         - half,
         "tips at the minor axis (mm)": ring.r_tip_circle - spline.r_tip_circle + half,
-        "smallest flank clearance, kinematic (mm)": design.rigid_teeth().clearance(),
+        **_clearance(every[0]),
         **_dynamic_spline(design),
+        **_clearance(*every[1:]),
         **_rigid_contact(design.rigid_teeth().mesh()),
     }
+
+
+def _clearance(*every: Clearance) -> dict[str, float]:
+    """Smallest clearances and where they are."""
+    values = {}
+    for clearance in every:
+        name = WORDS[clearance.ring]
+        values[name] = clearance.nearest.distance
+        values[f"angle from the lobe of the {name.replace(' (mm)', ' (deg)')}"] = abs(
+            clearance.angle_deg
+        )
+    return values
 
 
 def _rigid_contact(rigid: RigidMesh) -> dict[str, float]:
@@ -101,5 +115,4 @@ def _dynamic_spline(design: DriveDesign) -> dict[str, float]:
         "tip of dynamic spline to root of spline (mm)": second.r_tip_circle
         - spline.r_root_circle
         - half,
-        "clearance in the dynamic spline (mm)": design.rigid_teeth("dynamic_spline").clearance(),
     }

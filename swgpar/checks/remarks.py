@@ -3,21 +3,9 @@ to be resolved."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
+from swgpar.checks.clearance import clearances
 from swgpar.design.drive_design import DriveDesign
 from swgpar.load.negligible_torque import negligible_torque
-
-CLEARANCES = (
-    "tip of spline to root of ring, major axis (mm)",
-    "tip of ring to root of spline, major axis (mm)",
-    "tips at the minor axis (mm)",
-    "smallest flank clearance, kinematic (mm)",
-    "tip of spline to root of dynamic spline (mm)",
-    "tip of dynamic spline to root of spline (mm)",
-    "clearance in the dynamic spline (mm)",
-)
-"""Names of `derived_geometry` whose values are negative where teeth overlap."""
 
 
 def torque_remark(torque: float, negligible: float) -> str | None:
@@ -31,16 +19,9 @@ def torque_remark(torque: float, negligible: float) -> str | None:
     )
 
 
-def remarks(design: DriveDesign, derived: Mapping[str, float]) -> list[str]:
-    """Sentences about what is allowed and may not be meant. derived : of `derived_geometry`"""
-    allowed = design.contact.penetration_tolerance * design.drive.module
-    overlaps = [
-        f"interference: {name} = {derived[name]:.3g}: teeth overlap before they are loaded, and "
-        f"the drive may jam"
-        for name in CLEARANCES
-        if derived.get(name, 0.0) < -allowed
-    ]
+def remarks(design: DriveDesign) -> list[str]:
+    """Sentences about what is allowed and may not be meant."""
     return [
-        *overlaps,
+        *filter(None, (clearance.remark for clearance in clearances(design))),
         *filter(None, [torque_remark(design.load.torque, negligible_torque(design))]),
     ]

@@ -107,7 +107,7 @@ def _check(arguments: argparse.Namespace) -> None:
     design = _design(arguments)
     values = on_all(MPI.COMM_WORLD, lambda: api.check(design, mesh=arguments.mesh))
     _print(f"{name:40s} {value:.6g}" for name, value in values.items())
-    _print(f"warning: {text}" for text in system_of(design).remarks(design, values))
+    _print(f"warning: {text}" for text in system_of(design).remarks(design))
 
 
 def _report(arguments: argparse.Namespace) -> None:

@@ -28,7 +28,9 @@ def from_first_format(
     found = dict(content)
     computed = rows[: content["increments"]]
     found["design"] = _with_materials(content["design"])
-    found["rotation"] = {field.name: content[field.name] for field in fields(Rotation)}
+    found["rotation"] = {
+        field.name: content[field.name] for field in fields(Rotation) if field.name in content
+    }
     found["stresses"] = {name: content[name] for name in ("places", "regions")}
     found["steps"] = asdict(step_values(rows))
     found["numerics"] = asdict(evaluate_numerics(computed, content["condensed_MPa"]))

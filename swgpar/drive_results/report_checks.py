@@ -8,24 +8,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from swgpar.checks.clearance import Clearance, clearances
 from swgpar.drive_results.summary import BodySizes, DriveSummary
+from swgpar.evaluation.jamming import ENERGY
 from swgpar.evaluation.largest_contact import LargestContact
 from swgpar.evaluation.numerics import BALANCE, Numerics
 from swgpar.evaluation.places import APART, LargestStresses
 from swgpar.evaluation.rotation import Rotation
 from swgpar.evaluation.windows.accuracy import Accuracy
 from swgpar.evaluation.windows.root_stress import RootStress
-from swgpar.geometry.profiles.rigid_teeth import RigidTeeth
 from swgpar.load.negligible_torque import negligible_torque
 from swgpar.results.history import loaded_increments
-
-ENERGY = 0.05
-"""Largest difference between the mean input torque of a drive without friction and T / ratio,
-relative.
-
-The coupling of the plane model takes up to 2 % of it (docs/theory/drive.md); the rest is the
-sampling.
-"""
 
 RESOLUTION = 0.05
 """Largest error of the stress at the teeth, relative."""
@@ -52,7 +45,6 @@ def checks(summary: DriveSummary, history: Mapping[str, np.ndarray]) -> list[Che
     loaded = 1000.0 * summary.design.load.torque > negligible_torque(summary.design)
     period = 0.999999 * np.degrees(summary.design.kinematics.period_angle)
     covered = steps.samples > 0 or steps.rotation >= period
-    teeth = [summary.design.rigid_teeth(ring) for ring in summary.design.gears[1:]]
     tolerance = contact.penetration_tolerance * module
     return [
         _balance(summary.numerics),
@@ -62,7 +54,7 @@ def checks(summary: DriveSummary, history: Mapping[str, np.ndarray]) -> list[Che
             contact.friction > 0.0,
         ),
         _penetration(tolerance, history),
-        _clearance(teeth, tolerance),
+        _clearance(clearances(summary.design)),
         _edge(summary.contact),
         _resolution(summary.root_stress, summary.accuracy),
         _meshed(summary.stresses),
@@ -89,8 +81,8 @@ def _energy(rotation: Rotation, judged: bool, friction: bool) -> Check:
     """judged : whether there is a load, and the rotation covers a period, after which the drive is
     in the same state"""
     name, expected = "energy", rotation.wg_torque_expected_Nmm
-    if rotation.jammed:
-        return Check(name, False, rotation.jammed)
+    if departure := rotation.jammed or rotation.energy:
+        return Check(name, False, departure)
     mean = rotation.means.get("wg_torque_Nmm")
     if mean is None or not judged:
         return Check(
@@ -126,13 +118,14 @@ def _penetration(allowed: float, history: Mapping[str, np.ndarray]) -> Check:
     return Check("penetration", most <= allowed, text)
 
 
-def _clearance(meshes: Sequence[RigidTeeth], tolerance: float) -> Check:
-    clearance = min(teeth.clearance() for teeth in meshes)
+def _clearance(every: Sequence[Clearance]) -> Check:
+    least = min(every, key=lambda clearance: clearance.nearest.distance)
     text = (
-        f"smallest distance of the undeformed flanks {1000 * clearance:.3g} µm; good from "
-        f"{-1000 * tolerance:.2g} µm: the contact takes up an overlap of that size"
+        f"smallest distance of the undeformed teeth {1000 * least.nearest.distance:.3g} µm, "
+        f"{least.place}; good from {1000 * least.allowed:.2g} µm: the contact takes up an overlap "
+        "of that size"
     )
-    return Check("clearance of the flanks", clearance >= -tolerance, text)
+    return Check("clearance of the flanks", not least.overlaps, text)
 
 
 def _edge(contact: LargestContact | None) -> Check:

@@ -18,6 +18,7 @@ from swgpar.evaluation.numerics import Numerics
 from swgpar.evaluation.places import LargestStresses
 from swgpar.evaluation.program_results import ProgramStages
 from swgpar.evaluation.ratcheting import RatchetingTorque
+from swgpar.evaluation.rigid_clearance import RigidClearance
 from swgpar.evaluation.rotation import Rotation
 from swgpar.evaluation.step_values import StepValues
 from swgpar.evaluation.stiffness import TorsionalStiffness
@@ -41,6 +42,7 @@ ANSWER_GROUPS: dict[str, type[AnswerGroup]] = {
     "housing": HousingStresses,
     "stresses": LargestStresses,
     "steps": StepValues,
+    "clearance": RigidClearance,
     "numerics": Numerics,
 }
 """Field of `DriveSummary` -> evaluation, in the order in which answers are shown."""
@@ -114,6 +116,7 @@ class DriveSummary(Mapping[str, Answer]):
     fatigue: SafetyAndLife | None = None
     losses: DriveLosses | None = None
     bearing: BallLoads | None = None
+    clearance: RigidClearance | None = None
     housing: HousingStresses | None = None
 
     def groups(self) -> list[AnswerGroup]:

@@ -17,7 +17,7 @@ from swgpar.evaluation.answers import (
     part_answers,
     with_error,
 )
-from swgpar.evaluation.jamming import jamming_remark
+from swgpar.evaluation.jamming import energy_remark, jamming_remark
 from swgpar.evaluation.numerics import torque_left
 from swgpar.evaluation.period import of_period, sampling_error
 from swgpar.evaluation.places import STRESSES, Place
@@ -58,6 +58,7 @@ class Rotation(AnswerGroup):
     sampling_error : change of the means with half as many angles, with `steps.samples`
     newton_iterations_mean : of an increment
     jammed : a sentence where the mean input torque is far from that of the energy balance
+    energy : the same where it departs by more than its error
     """
 
     means: Mapping[str, float] = part_answers(*_by_column("mean", "means", "mean", detail=False))
@@ -83,6 +84,7 @@ class Rotation(AnswerGroup):
     sampling_error: Mapping[str, float] | None
     newton_iterations_mean: float | None
     jammed: str | None
+    energy: str | None = None
 
     TITLE = "over the rotation"
 
@@ -119,8 +121,7 @@ class Rotation(AnswerGroup):
         }
 
     def remarks(self) -> Iterator[str]:
-        if self.jammed:
-            yield self.jammed
+        yield from filter(None, (self.jammed, self.energy))
         if self.sampling_error:
             changes = ", ".join(
                 f"{name} {self.sampling_error[name]:.2f}" for name in GEAR_STRESSES[:3]
@@ -131,11 +132,15 @@ class Rotation(AnswerGroup):
 def evaluate_rotation(
     sequence: LoadSequence,
     rows: Sequence[Row],
+    pairs: Sequence[Row],
     root_stress: RootStress | None,
     places: Mapping[str, Place],
+    *,
+    friction: bool,
 ) -> Rotation:
     """From the history `rows` of the computed increments.
 
+    pairs : rows of pairs.csv;  friction : whether flanks have friction
     root_stress, places : by which the errors of the means are known
     """
     kinematics, rotation = sequence.kinematics, rotation_rows(sequence, rows)
@@ -157,6 +162,10 @@ def evaluate_rotation(
         torque = column(sampled, "tooth_torque_Nmm" if driven else INPUT_TORQUE)
         change = half[INPUT_TORQUE] if half else 0.0
         ripple = known_quotient(float(np.ptp(torque)), abs(float(torque.mean())), left + change)
+    jammed, energy = jamming_remark(sequence, sampled, means, left), None
+    if not jammed:
+        left += half[INPUT_TORQUE] if half else 0.0
+        energy = energy_remark(sequence, sampled, means, left, pairs, friction=friction)
     return Rotation(
         means=means,
         maxima=maxima,
@@ -169,7 +178,8 @@ def evaluate_rotation(
         else None,
         input=driven,
         wg_torque_expected_Nmm=kinematics.wave_generator_torque(sequence.torque),
-        jammed=jamming_remark(sequence, sampled, means, left),
+        jammed=jammed,
+        energy=energy,
     )
 
 

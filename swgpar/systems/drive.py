@@ -41,8 +41,8 @@ class Drives(System[DriveDesign, DriveResult]):
     def check(self, design: DriveDesign) -> dict[str, float]:
         return derived_geometry(design)
 
-    def remarks(self, design: DriveDesign, derived: dict[str, float]) -> list[str]:
-        return remarks(design, derived)
+    def remarks(self, design: DriveDesign) -> list[str]:
+        return remarks(design)
 
     def run(self, design: DriveDesign, options: RunOptions) -> DriveResult:
         return DriveResult.of(run_drive(design, options))

@@ -88,8 +88,8 @@ class System(ABC, Generic[D, R]):
     def check(self, design: D) -> dict[str, float]:
         """What follows from a design at once; the names have units."""
 
-    def remarks(self, design: D, derived: dict[str, float]) -> list[str]:
-        """Sentences about what is allowed and may not be meant. derived : of `check`"""
+    def remarks(self, design: D) -> list[str]:
+        """Sentences about what is allowed and may not be meant."""
         return []
 
     @abstractmethod

@@ -380,7 +380,7 @@ def _not_finite(values: Mapping[str, float]) -> str:
 def _use_design(folder: Path) -> str:
     design = swgpar.load_design(folder / "input.toml")
     derived = swgpar.check(design)
-    system_of(design).remarks(design, derived)
+    system_of(design).remarks(design)
     fault = _not_finite(derived)
     return fault or (
         _use_mesh(design, load_recipe(RECIPE)) if isinstance(design, DriveDesign) else ""

@@ -63,10 +63,7 @@ def test_rigid_teeth_transmit_without_error(gear: str) -> None:
 
 def test_the_quadruple_arc_has_a_transmission_error() -> None:
     """The same measure sees the error of teeth that are not conjugate."""
-    assert (
-        swgpar.load_design(PLANE).rigid_teeth().mesh(phases=5).transmission_error
-        > 0.3
-    )
+    assert swgpar.load_design(PLANE).rigid_teeth().mesh(phases=5).transmission_error > 0.3
 
 
 def test_teeth_that_overlap_at_every_rotation_have_no_transmission_error() -> None:

@@ -10,10 +10,12 @@ import swgpar
 from support.commands import execute
 from support.commands import swgpar as command
 from support.messages import Messages
-from support.paths import DESIGN, RECIPE
+from support.paths import DATA, DESIGN, RECIPE
 from support.small_drive import PLANE
+from swgpar.analysis import run_drive
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.jamming import jamming_remark
+from swgpar.evaluation.jamming import energy_remark, jamming_remark
+from swgpar.evaluation.rigid_clearance import rigid_clearance
 from swgpar.load.load_sequence import load_sequence
 from swgpar.load.negligible_torque import RING_FLEXIBILITY, negligible_torque
 
@@ -32,6 +34,59 @@ def test_check_names_interference() -> None:
         and "interference: smallest flank clearance, kinematic (mm) = -0.0" in warning
     )
     assert "warning" not in execute(command("check", DESIGN), timeout=120.0).stdout
+
+
+def test_check_looks_between_the_minor_axes() -> None:
+    """Tip over tip at 62 degrees from the lobe, 17 degrees beyond half of the way."""
+    clearance = rigid_clearance(swgpar.load_design(DATA / "tip_clash.toml"))
+    assert clearance.ring_gear == pytest.approx(-0.0645, abs=1e-4)
+    (sentence,) = clearance.interference
+    assert "62.0° from the tip of a lobe, tip of the flexible spline to flank" in sentence
+    (answer,) = clearance.answers()
+    assert answer.value == clearance.ring_gear and answer.place in sentence
+    assert not rigid_clearance(swgpar.load_design(DESIGN)).interference
+
+
+def test_a_run_says_it_before_it_computes(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Begun(Exception):
+        pass
+
+    def begin(*_: object, **__: object) -> None:
+        raise Begun
+
+    monkeypatch.setattr(run_drive, "build_drive_model", begin)
+    with Messages() as messages, pytest.raises(Begun):
+        swgpar.run(design("ring_gear.c_P=1.04", *PERIOD), RECIPE, plain=True)
+    assert sum("interference: smallest flank clearance" in text for text in messages.texts) == 1
+
+
+def test_a_departure_from_the_energy_balance_has_its_pair() -> None:
+    good = design(*PERIOD)
+    rows = [
+        {"wg_angle_deg": angle, "wg_torque_Nmm": torque}
+        for angle, torque in ((3.0, 9.0), (6.0, 5.0), (9.0, 13.0))
+    ]
+    columns = "wg_angle_deg", "tooth", "ring_tooth", "angle_deg", "force_N", "torque_Nmm"
+    pairs = [
+        dict(zip(columns, values))
+        for values in (
+            (6.0, 5, 6, 66.0, 7.0, 40.0),
+            (6.0, 1, 1, 8.0, 9.0, -90.0),
+            (9.0, 2, 2, 8.0, 9.0, 90.0),
+            (9.0, 3, 3, 12.0, 5.0, -30.0),
+        )
+    ]
+
+    def remark(mean: float, left: float = 0.0, *, friction: bool = False) -> str | None:
+        sequence, torque = load_sequence(good), {"wg_torque_Nmm": mean}
+        return energy_remark(sequence, rows, torque, left, pairs, friction=friction)
+
+    low, high = remark(9.0), remark(12.0)
+    assert "by 10 %, more than its error of 5 %: most at 6° of the wave generator, where" in low
+    assert "where tooth 5 of the flexible spline pushes on tooth 6 of the ring gear with 7 N" in low
+    assert "most at 9° of the wave generator, where tooth 3 " in high
+    assert remark(9.0, left=0.6) is None and remark(9.6) is None
+    assert remark(12.0, friction=True) is None and remark(9.0, friction=True)
 
 
 def test_a_jammed_drive_is_named() -> None:

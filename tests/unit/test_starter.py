@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import swgpar
-from swgpar.checks.derived_geometry import derived_geometry
 from swgpar.checks.remarks import remarks
 from swgpar.checks.starter import (
     LARGEST_RATIO,
@@ -39,7 +38,7 @@ def test_a_starter_design_clears_and_can_be_meshed(ratio: float, profile: Profil
 
 def test_a_starter_design_needs_no_remarks() -> None:
     design = swgpar.new(ratio=100.0, diameter=50.8, torque=52.0)
-    assert remarks(design, derived_geometry(design)) == []
+    assert remarks(design) == []
 
 
 NO_ROOM = {(15.0, "four_roller"), (320.0, "parabolic")}

@@ -1,0 +1,66 @@
+"""Clearance of the rigid teeth between the minor axes, for each ring gear."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GearName
+from swgpar.geometry.profiles.mesh_gap import NearestPlace
+
+WORDS = {
+    "ring_gear": "smallest flank clearance, kinematic (mm)",
+    "dynamic_spline": "clearance in the dynamic spline (mm)",
+}
+"""Names of the clearances in `derived_geometry`."""
+
+
+@dataclass(frozen=True)
+class Clearance:
+    """Smallest distance of the undeformed teeth from those of the gear `ring`.
+
+    allowed : mm, the overlap that the contact takes up, below 0
+    """
+
+    ring: GearName
+    nearest: NearestPlace
+    allowed: float
+
+    @property
+    def overlaps(self) -> bool:
+        """Whether teeth overlap by more than the contact takes up."""
+        return self.nearest.distance < self.allowed
+
+    @property
+    def angle_deg(self) -> float:
+        """Angle of the tooth from the tip of the lobe, degrees."""
+        return float(np.degrees(self.nearest.psi))
+
+    @property
+    def place(self) -> str:
+        """Where it is."""
+        return (
+            f"{abs(self.angle_deg):.1f}° from the tip of a lobe, {self.nearest.spline} of the "
+            f"flexible spline to {self.nearest.ring} of the {self.ring.replace('_', ' ')}"
+        )
+
+    @property
+    def remark(self) -> str:
+        """A sentence where teeth overlap, else an empty one."""
+        if not self.overlaps:
+            return ""
+        return (
+            f"interference: {WORDS[self.ring]} = {self.nearest.distance:.3g}, {self.place}: teeth "
+            "overlap before they are loaded, and the drive may jam"
+        )
+
+
+def clearances(design: DriveDesign) -> list[Clearance]:
+    """Of all ring gears of a drive."""
+    least = -design.contact.penetration_tolerance * design.drive.module
+    return [
+        Clearance(ring, design.rigid_teeth(ring).nearest_place(), least)
+        for ring in design.gears[1:]
+    ]

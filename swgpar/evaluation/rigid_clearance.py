@@ -1,0 +1,52 @@
+"""Clearance of the undeformed teeth: what is known of interference before a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from swgpar.checks.clearance import clearances
+from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind, answer, evaluation
+
+
+@evaluation
+class RigidClearance(AnswerGroup):
+    """Smallest distances of the undeformed teeth between the minor axes, below 0 where they
+    overlap.
+
+    places : by gear;  interference : a sentence for each gear whose teeth overlap
+    """
+
+    ring_gear: float = answer("clearance.ring_gear", "smallest clearance of the rigid teeth", "mm")
+    dynamic_spline: float | None = answer(
+        "clearance.dynamic_spline", "smallest clearance in the dynamic spline", "mm", default=None
+    )
+    places: dict[str, str]
+    interference: tuple[str, ...]
+
+    TITLE = "clearance of the undeformed teeth"
+
+    @classmethod
+    def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
+        rings = design.gears[1:]
+        return tuple(kind for kind in super().kinds(design) if kind.path in rings)
+
+    def answers(self) -> Iterator[Answer]:
+        for one in super().answers():
+            yield replace(one, place=self.places[one.name.partition(".")[2]])
+
+    def remarks(self) -> Iterator[str]:
+        return iter(self.interference)
+
+
+def rigid_clearance(design: DriveDesign) -> RigidClearance:
+    """Of all ring gears of a drive."""
+    every = {clearance.ring: clearance for clearance in clearances(design)}
+    distances = {ring: clearance.nearest.distance for ring, clearance in every.items()}
+    return RigidClearance(
+        ring_gear=distances["ring_gear"],
+        dynamic_spline=distances.get("dynamic_spline"),
+        places={ring: clearance.place for ring, clearance in every.items()},
+        interference=tuple(filter(None, (clearance.remark for clearance in every.values()))),
+    )
