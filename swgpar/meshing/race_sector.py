@@ -78,7 +78,7 @@ def annular_sector(
     rows = number.reshape(len(number), -1)
     grid = number[0]
     # counter-clockwise seen from +z: angles run counter-clockwise, radii outward
-    hexes = sweep_quads(grid_quads(grid), rows)
+    hexes = sweep_quads(np.roll(grid_quads(grid), 1, axis=1), rows)
     surface = number[:1] if plane else number
     return SectorMesh(
         body=body,
