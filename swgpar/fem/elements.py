@@ -104,10 +104,7 @@ class BodyElements:
         counted = self.preceding.copy()
         counted[self.owned] = True
         owned = partition.owns(self.number) & counted[:, None]
-        self._touching = [
-            owned[:, nodes].any(axis=2) if len(sectors) else np.zeros((0, len(nodes)), dtype=bool)
-            for _, nodes in self._kinds
-        ]
+        self._touching = [owned[:, nodes].any(axis=2) for _, nodes in self._kinds]
         self.active, self.whole_teeth = np.ones((2, len(sectors)), dtype=bool)
         self.assembled = self._assembled()
 

@@ -27,10 +27,8 @@ def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:
     plane = coarse.plane
     nodes = np.unique(coarse.lower_nodes) if plane else np.arange(len(coarse.coords))
     radius = float(np.hypot(*coarse.coords[:, :2].T).max())
-    known, sought = (
-        _unrolled(coarse.coords[nodes], radius, plane),
-        _unrolled(fine.coords, radius, plane),
-    )
+    known = _unrolled(coarse.coords[nodes], radius, plane)
+    sought = _unrolled(fine.coords, radius, plane)
     try:
         mesh, dims = Delaunay(known), known.shape[1]
     except QhullError as error:

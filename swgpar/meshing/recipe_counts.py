@@ -30,10 +30,8 @@ def with_counts(recipe: MeshRecipe, count: Callable[[str, str, int], int]) -> Me
             for name, value in counts.items()
         }
 
-    content = {
-        title: section(title, counts)
-        for title, counts in recipe.model_dump(exclude_none=True).items()
-    }
+    sections = recipe.model_dump(exclude_none=True)
+    content = {title: section(title, counts) for title, counts in sections.items()}
     if recipe.face_width is not None:
         width = content["face_width"]
         width["elements"] += (width["elements"] + recipe.face_width.elements) % 2

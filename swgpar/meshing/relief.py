@@ -14,11 +14,8 @@ from swgpar.meshing.quality import GAUSS, PLANE_CORNERS, jacobian_matrices, shap
 
 def boundary_nodes(section: CrossSection) -> np.ndarray:
     """Return the nodes (n,) on the boundary of the cross-section."""
-    edges = np.sort(
-        np.stack((section.quads, np.roll(section.quads, -1, axis=1)), axis=-1).reshape(-1, 2),
-        axis=1,
-    )
-    unique, times = np.unique(edges, axis=0, return_counts=True)
+    edges = np.stack((section.quads, np.roll(section.quads, -1, axis=1)), axis=-1).reshape(-1, 2)
+    unique, times = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
     return np.unique(unique[times == 1])
 
 

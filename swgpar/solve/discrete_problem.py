@@ -156,8 +156,8 @@ class DiscreteProblem:
 
     def flanks_of(self, ring: str) -> FlankContact:
         """Contact of the flanks of the flexible spline with those of a ring gear."""
-        (found,) = (flanks for flanks in self.flanks if flanks.ring.layout.name == ring)
-        return found
+        (contact,) = (flanks for flanks in self.flanks if flanks.ring.layout.name == ring)
+        return contact
 
     @property
     def force_floor(self) -> float:
@@ -249,9 +249,8 @@ class DiscreteProblem:
             return []
         u = self.displacement()
         rotation = flanks.ring_motion.ring_rotation(u)
-        pairs = facing_flanks(
-            self.partition, flanks.spline, flanks.ring.layout, u, rotation, margin
-        )
+        ring = flanks.ring.layout
+        pairs = facing_flanks(self.partition, flanks.spline, ring, u, rotation, margin)
         return [pair for pair in pairs if flanks.takes_part(pair)]
 
     def _choose_modelled_sectors(self) -> None:
@@ -390,12 +389,8 @@ class DiscreteProblem:
 
     def active_sets(self, state: LoadState) -> list[np.ndarray]:
         """Active sets of the contacts that the load state switches on, on this rank."""
-        return [
-            part
-            for contact in self.contacts
-            if contact.is_active(state)
-            for part in contact.active_sets()
-        ]
+        active = [contact for contact in self.contacts if contact.is_active(state)]
+        return [part for contact in active for part in contact.active_sets()]
 
     def scale_penalties(self, share: float) -> None:
         """Use this share of the full penalty in every contact."""
@@ -404,10 +399,8 @@ class DiscreteProblem:
 
     def penetration(self) -> float:
         """Largest penetration (mm) of the last evaluation, over all ranks; collective."""
-        return largest(
-            self.partition.comm,
-            max((contact.penetration() for contact in self.penalty_contacts), default=0.0),
-        )
+        here = max((contact.penetration() for contact in self.penalty_contacts), default=0.0)
+        return largest(self.partition.comm, here)
 
     def touching_pairs(self) -> int:
         """Flank pairs of the model in contact, over all ranks; collective."""

@@ -97,17 +97,15 @@ class MumpsFactor(Factor):
     def set_preconditioner(self, pc: PETSc.PC) -> None:
         """Cholesky's or LU."""
         usual = PETSc.PC.Type.CHOLESKY if self.kind.symmetric else PETSc.PC.Type.LU
-        pc.setType(
-            PETSc.Options(self.options_prefix).getString("pc_type", usual)
-        )  # another type forgets the package
+        # another type forgets the package
+        pc.setType(PETSc.Options(self.options_prefix).getString("pc_type", usual))
         pc.setFactorSolverType("mumps")
 
     def defaults(self, ksp_type: str) -> dict[str, object]:
         """Ordering and memory."""
+        plane = self.kind.unknowns_per_node == 2
         return {
-            "mat_mumps_icntl_7": QUASI_DENSE
-            if self.kind.unknowns_per_node == 2
-            else NESTED_DISSECTION,
+            "mat_mumps_icntl_7": QUASI_DENSE if plane else NESTED_DISSECTION,
             # no ScaLAPACK root: its Cholesky refuses the indefinite tangents of first steps
             "mat_mumps_icntl_13": 1,
             "mat_mumps_icntl_14": self._memory_share,
@@ -162,8 +160,5 @@ class MumpsFactor(Factor):
         counts = None if self.matrix is None else self.counts()
         if counts is None or not counts.entries:
             return 0.0
-        return (
-            counts.operations
-            / (INTENSITY * counts.entries)
-            * (1.0 if matrix is self.matrix else 1.0 + ANALYSIS)
-        )
+        analysis = 0.0 if matrix is self.matrix else ANALYSIS
+        return counts.operations / (INTENSITY * counts.entries) * (1.0 + analysis)

@@ -61,10 +61,12 @@ class MatrixKind:
         return self.positions.shape[1]
 
 
-REASONS = {
-    value: name for name, value in vars(PETSc.KSP.ConvergedReason).items() if isinstance(value, int)
-}
-"""Names of PETSc's reasons for the end of a linear solve."""
+def reason_names(reasons: type) -> dict[int, str]:
+    """Names of the reasons for which a solver of PETSc ends, of its class `ConvergedReason`."""
+    return {value: name for name, value in vars(reasons).items() if isinstance(value, int)}
+
+
+REASONS = reason_names(PETSc.KSP.ConvergedReason)
 
 
 class LinearSolver(ABC):

@@ -25,10 +25,9 @@ from swgpar.solve.bordered_system import BorderedSystem
 from swgpar.solve.convergence_test import ConvergenceTest, Decision, Verdict
 from swgpar.solve.discrete_problem import DiscreteProblem, ResidualInfo
 from swgpar.solve.line_search import LineSearch
-from swgpar.solve.linear_solver import MatrixKind
+from swgpar.solve.linear_solver import MatrixKind, reason_names
 from swgpar.solve.linear_solvers import make_linear_solver
 from swgpar.solve.solve_state import (
-    REASONS,
     AcceptableState,
     CycleBreaker,
     NewtonSettings,
@@ -63,6 +62,8 @@ PETSC_REASONS = {
     Verdict.OUT_OF_TIME: PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT,
 }
 """SNES's reason for each verdict, None to go on."""
+
+REASONS = reason_names(PETSc.SNES.ConvergedReason)
 
 IterationMonitor = Callable[[LoadState, int, float], None]
 """Called after every Newton iteration with load state, iteration, residual over contact force."""
@@ -144,9 +145,8 @@ class NewtonSolver:
 
     def _tangent(self, snes: PETSc.SNES, x: PETSc.Vec, j: PETSc.Mat, p: PETSc.Mat) -> None:
         problem, state = self.problem, self.state
-        PETSc.garbage_cleanup(
-            problem.partition.comm
-        )  # frees PETSc objects without Python references: the last border
+        # frees PETSc objects without Python references: the last border
+        PETSc.garbage_cleanup(problem.partition.comm)
         u = problem.displacement(x)
         state.pattern_misses = problem.tangent(u, state.load_state)
         missing = int(len(state.pattern_misses) > 0)
@@ -187,9 +187,8 @@ class NewtonSolver:
         if decision.near_solution:
             self.problem.segments.freeze()
         if decision.cycles:
-            logger.info(
-                "   contacts do not settle in Newton iteration %d: descending line search", its
-            )
+            text = "   contacts do not settle in Newton iteration %d: descending line search"
+            logger.info(text, its)
             self._break_cycle()
 
     def _break_cycle(self) -> None:
@@ -306,12 +305,9 @@ class NewtonSolver:
             self._take_back(state, before)
             state.result = SolveResult(True, state.iterations, before.residual, "converged")
         else:
-            reason = self.snes.getConvergedReason()
-            text = (
-                REASONS.get(reason, str(reason))
-                if reason < 0
-                else f"{state.iterations} iterations in all"
-            )
+            reason, text = self.snes.getConvergedReason(), f"{state.iterations} iterations in all"
+            if reason < 0:
+                text = REASONS.get(reason, str(reason))
             text = self.system.solver.failure or text
             state.result = SolveResult(False, state.iterations, state.residual, text)
 
@@ -322,10 +318,8 @@ class NewtonSolver:
         if breaker.rounds < MAX_FRICTION_ROUNDS and change > FRICTION_AGREEMENT * top:
             breaker.rounds += 1
             return
-        breaker.active, breaker.solution = (
-            False,
-            (self.problem.x.copy(), self.problem.segments.saved()),
-        )
+        breaker.active = False
+        breaker.solution = self.problem.x.copy(), self.problem.segments.saved()
         self.problem.segments.release()
 
     def _after_converged(self, state: SolveState) -> None:
@@ -344,23 +338,19 @@ class NewtonSolver:
             state.before_augmentation = None
             return
         penetration = problem.penetration()
-        if (
-            penetration > settings.penetration_tolerance
-            and state.augmentations < settings.max_augmentations
-        ):
-            self._augment(state)
-            return
-        if penetration > settings.penetration_tolerance and settings.max_augmentations:
-            self._warn(state, penetration)
+        if penetration > settings.penetration_tolerance:
+            if state.augmentations < settings.max_augmentations:
+                self._augment(state)
+                return
+            if settings.max_augmentations:
+                self._warn(state, penetration)
         problem.accept()
         state.result = SolveResult(True, state.iterations, state.residual, "converged")
 
     def _augment(self, state: SolveState) -> None:
         contacts = self.problem.penalty_contacts
-        multipliers = [contact.multiplier for contact in contacts]
-        state.before_augmentation = AcceptableState(
-            state.residual, self.problem.x.copy(), multipliers
-        )
+        multipliers, x = [contact.multiplier for contact in contacts], self.problem.x.copy()
+        state.before_augmentation = AcceptableState(state.residual, x, multipliers)
         state.augmentations += 1
         for contact in contacts:
             contact.augment()
@@ -377,8 +367,5 @@ class NewtonSolver:
         problem.accept()
 
     def _warn(self, state: SolveState, penetration: float) -> None:
-        logger.warning(
-            "   penetration of %.2g mm remains after %d augmentations",
-            penetration,
-            state.augmentations,
-        )
+        text = "   penetration of %.2g mm remains after %d augmentations"
+        logger.warning(text, penetration, state.augmentations)

@@ -140,11 +140,3 @@ class SolveState:
             f"{np.degrees(here.angle):.4g} degrees, after {self.iterations} Newton iterations, "
             f"residual {self.residual:.1e} of the contact force"
         )
-
-
-REASONS = {
-    value: name
-    for name, value in vars(PETSc.SNES.ConvergedReason).items()
-    if isinstance(value, int)
-}
-"""Names of PETSc's reasons."""

@@ -34,7 +34,7 @@ class Block:
     f: float = 0.9
 
     def __post_init__(self) -> None:
-        self.partition = SimpleNamespace(comm=MPI.COMM_SELF, n_multipliers=3)
+        self.partition = SimpleNamespace(comm=MPI.COMM_SELF, n_multipliers=3, has_multipliers=True)
         self.x = PETSc.Vec().createSeq(6, comm=MPI.COMM_SELF)
         self.x.array[0] = 2.0
 
