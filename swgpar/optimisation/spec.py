@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from swgpar.errors import InputError
 from swgpar.input.quantities import Section, quantity, show, show_key
+from swgpar.input.require import require
 from swgpar.input.toml_file import read_toml, split_override, validate
 from swgpar.studies.run_file import RunFile, RunsSection, flat, refusals_of, require_only
 
@@ -159,10 +160,8 @@ def _check_variable(variable: Variable, seen: set[str]) -> None:
         if key in seen:
             raise InputError(f"{where}: {show_key(key)} is varied twice: allowed once")
         seen.add(key)
-    bounds = variable.low, variable.high
-    if bool(variable.choices) == (None not in bounds) or (
-        variable.choices and bounds != (None, None)
-    ):
+    missing = [variable.low, variable.high].count(None)
+    if missing != (2 if variable.choices else 0):
         raise InputError(f"{where} needs low and high, or choices: allowed is one of both")
     if variable.choices:
         if not all(isinstance(choice, (bool, int, float, str)) for choice in variable.choices):
@@ -171,10 +170,8 @@ def _check_variable(variable: Variable, seen: set[str]) -> None:
             )
         return
     low, high = float(variable.low), float(variable.high)
-    if not low < high:
-        raise InputError(f"{where}: high = {high:g} is out of range: allowed above {low:g} (low)")
-    if variable.log and low <= 0.0:
-        raise InputError(f"{where}: low = {low:g} is out of range: allowed above 0 with log = true")
+    require(low < high, f"{where}: high", high, f"above {low:g} (low)")
+    require(low > 0.0 or not variable.log, f"{where}: low", low, "above 0 with log = true")
     if variable.integer and not (low.is_integer() and high.is_integer()):
         raise InputError(
             f"{where}: low = {low:g}, high = {high:g}: allowed whole numbers with integer = true"

@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 from swgpar.errors import InputError
 from swgpar.input.quantities import Section, quantity, show, show_key
+from swgpar.input.require import require
 from swgpar.input.toml_file import read_toml, split_override, validate
 from swgpar.studies.run_file import RunFile, RunsSection, flat, refusals_of, require_only
 
@@ -201,10 +202,7 @@ def _check_case(case: CaseSection, study: StudySection) -> None:
             raise InputError(
                 f"{tolerance} has no published value: allowed {', '.join(case.published)}"
             )
-        if percent <= 0.0:
-            raise InputError(
-                f"{tolerance} = {show(percent)} is out of range: allowed above 0 to inf %"
-            )
+        require(percent > 0.0, tolerance, percent, "above 0 to inf %")
         if case.published[name] == 0.0:
             raise InputError(
                 f"{tolerance} is a share of a published 0: allowed for other values only"
