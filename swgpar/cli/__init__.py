@@ -7,7 +7,6 @@ import sys
 import traceback
 from collections.abc import Sequence
 
-from swgpar.cli.commands import COMMANDS
 from swgpar.cli.parser import parser
 from swgpar.errors import InputError, OutOfMemoryError, SwgparError, shortened
 
@@ -54,6 +53,8 @@ def _main(arguments: Sequence[str] | None) -> int:
 
         petsc.start(rest)
         watch.rearm()
+        from swgpar.cli.commands import COMMANDS
+
         COMMANDS[command](known)
     except SwgparError as error:
         from mpi4py import MPI

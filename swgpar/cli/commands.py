@@ -1,5 +1,4 @@
-"""What the subcommands do. Their imports are their own: a command that needs no solver does not
-load it."""
+"""What the subcommands do. This module is imported when PETSc has started."""
 
 from __future__ import annotations
 
@@ -7,20 +6,20 @@ import argparse
 import inspect
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mpi4py import MPI
+
+from swgpar import api, log, petsc, watch
 from swgpar.errors import InputError, StudyError, printable
-
-if TYPE_CHECKING:
-    from swgpar.input.design import Design
+from swgpar.input.design import Design
+from swgpar.log import console
+from swgpar.presentation.drive_result import DriveResult
+from swgpar.results.atomic import on_all
+from swgpar.systems import system_of
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    from mpi4py import MPI
-
-    from swgpar import api
-    from swgpar.systems import system_of
-
     design = _design(arguments)
     system = system_of(design)
     _begin(arguments, "increments", restarts="restart" in system.options)
@@ -58,8 +57,6 @@ def _optimise(arguments: argparse.Namespace) -> None:
 
 
 def _new(arguments: argparse.Namespace) -> None:
-    from swgpar import api
-
     design = api.new(arguments.design, **_given(api.new, arguments))
     drive = design.drive
     _print(
@@ -73,8 +70,6 @@ def _new(arguments: argparse.Namespace) -> None:
 
 
 def _export(arguments: argparse.Namespace) -> None:
-    from swgpar import api
-
     source = arguments.source
     if arguments.overrides:
         if Path(source).is_dir():
@@ -88,8 +83,6 @@ def _export(arguments: argparse.Namespace) -> None:
 
 
 def _mesh(arguments: argparse.Namespace) -> None:
-    from swgpar import api
-
     mesh = api.mesh(_design(arguments), arguments.mesh, arguments.out, arguments.format)
     lines = []
     for body, values in mesh.quality.items():
@@ -98,12 +91,6 @@ def _mesh(arguments: argparse.Namespace) -> None:
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    from mpi4py import MPI
-
-    from swgpar import api
-    from swgpar.results.atomic import on_all
-    from swgpar.systems import system_of
-
     design = _design(arguments)
     values = on_all(MPI.COMM_WORLD, lambda: api.check(design, mesh=arguments.mesh))
     _print(f"{name:40s} {value:.6g}" for name, value in values.items())
@@ -111,8 +98,6 @@ def _check(arguments: argparse.Namespace) -> None:
 
 
 def _report(arguments: argparse.Namespace) -> None:
-    from swgpar import api
-
     result = api.open_result(arguments.out)
     files = result.plot.save(arguments.out)
     api.save_report(result, arguments.out)
@@ -120,9 +105,6 @@ def _report(arguments: argparse.Namespace) -> None:
 
 
 def _view(arguments: argparse.Namespace) -> None:
-    from swgpar import api
-    from swgpar.presentation.drive_result import DriveResult
-
     result = api.open_result(arguments.out)
     if not isinstance(result, DriveResult):
         raise InputError(f"{arguments.out} holds a gear train: view is available for drives")
@@ -131,11 +113,6 @@ def _view(arguments: argparse.Namespace) -> None:
 
 def _design(arguments: argparse.Namespace) -> Design:
     """The design, or source, of the command with the values of --set; collective."""
-    from mpi4py import MPI
-
-    from swgpar import api
-    from swgpar.results.atomic import on_all
-
     path = arguments.source if arguments.command == "export" else arguments.design
     return on_all(MPI.COMM_WORLD, lambda: api.load_design(path, arguments.overrides))
 
@@ -149,11 +126,6 @@ def _given(function: Callable[..., Any], arguments: argparse.Namespace) -> dict[
 
 def _begin(arguments: argparse.Namespace, kind: str, *, restarts: bool = True) -> None:
     """Say what is saved when a signal ends the command. kind : what is counted"""
-    from mpi4py import MPI
-
-    from swgpar import watch
-    from swgpar.log import console
-
     if MPI.COMM_WORLD.rank == 0:
         watch.begin(kind, arguments.out, restarts=restarts, terminal=console.is_terminal)
 
@@ -161,10 +133,6 @@ def _begin(arguments: argparse.Namespace, kind: str, *, restarts: bool = True) -
 def _end() -> None:
     """Warn of options of PETSc that a study, or a system without PETSc, has not used; a drive says
     it earlier."""
-    from mpi4py import MPI
-
-    from swgpar import log, petsc
-
     with log.session(MPI.COMM_WORLD):
         petsc.warn_of_unused_options()
     MPI.COMM_WORLD.Barrier()  # mpirun ends all ranks when one of them fails
@@ -172,10 +140,6 @@ def _end() -> None:
 
 def _show(out: str, show: Callable[[], None]) -> None:
     """Show the results of many runs, and the files that are written; on rank 0 only."""
-    from mpi4py import MPI
-
-    from swgpar.log import console
-
     if MPI.COMM_WORLD.rank == 0:
         show()
         patterns = ("*.csv", "*.html", "best/*.toml")
@@ -185,8 +149,6 @@ def _show(out: str, show: Callable[[], None]) -> None:
 
 def _print(lines: Iterable[str]) -> None:
     """Print lines, on rank 0 only."""
-    from mpi4py import MPI
-
     if MPI.COMM_WORLD.rank == 0:
         for line in lines:
             print(printable(line))
