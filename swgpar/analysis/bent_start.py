@@ -41,10 +41,12 @@ class BentSpline:
             PENETRATION * design.drive.module if inset is None else inset,
         )
         self.radius = design.inner_radius + 0.5 * design.flexible_spline.rim
-        self.amplitudes = bent_ring(design.cam(), design.inner_radius, self.radius, design.lobes)
-        self.order = float(design.lobes) * np.arange(len(self.amplitudes))
+        self.amplitudes = bent_ring(
+            design.cam(), design.inner_radius, self.radius, design.wave_generator.lobes
+        )
+        self.order = float(design.wave_generator.lobes) * np.arange(len(self.amplitudes))
         self.half = 0.5 * design.wave_generator.face_width
-        self.end = design.rest_plane if design.has_cup else 0.5 * design.drive.face_width
+        self.end = design.cup_sizes.rest_plane if design.has_cup else 0.5 * design.drive.face_width
         self.surface = design.cam_surface()
 
     def displacement(self, points: np.ndarray) -> np.ndarray:

@@ -22,8 +22,8 @@ def check_bearing(design: DriveDesign) -> None:
         'wave_generator.type = "four_roller"',
         "with cams whose curve an inner race can follow",
     )
-    lobes = f"wave_generator.lobes = {design.lobes}"
-    require_available(design.lobes == 2, SECTION, lobes, "with two")
+    lobes = f"wave_generator.lobes = {design.wave_generator.lobes}"
+    require_available(design.wave_generator.lobes == 2, SECTION, lobes, "with two")
     resolved = output.root_stress and "root_stress" in output.model_fields_set
     require(not resolved, "output.root_stress", True, f"only false with {SECTION}")
     depth, ball = bearing.race_thickness, bearing.ball_diameter

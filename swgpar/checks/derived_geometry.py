@@ -28,11 +28,13 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         f"ratio ({driving} / output)": design.kinematics.input_ratio,
         "d, diametral deflection (mm)": design.deflection,
         "a, major semi-axis (mm)": design.major_semi_axis,
-        **_smallest(cam, design.lobes),
+        **_smallest(cam, design.wave_generator.lobes),
         "taut length of cam / inner perimeter - 1": taut_length(cam)
         / (2.0 * np.pi * design.inner_radius)
         - 1.0,
-        "travel of the pins (mm)": pin_travel(cam, design.inner_radius, design.lobes),
+        "travel of the pins (mm)": pin_travel(
+            cam, design.inner_radius, design.wave_generator.lobes
+        ),
         "r_fs, inner radius of the spline (mm)": design.inner_radius,
         "backlash at the pitch circle (mm)": design.backlash,
         "gamma, rotation that closes it (deg)": float(np.degrees(design.backlash_angle)),

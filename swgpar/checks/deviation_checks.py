@@ -30,8 +30,8 @@ PLANE_ZERO = ("cup.eccentricity", "cup.tilt", "ring_gear.tilt", "wave_generator.
 
 def check_deviations(design: DriveDesign, deviations: Deviations) -> None:
     """Raise InputError for the first deviation that does not fit."""
-    lobes = f"wave_generator.lobes = {design.lobes}"
-    require_available(design.lobes == 2, "[deviations]", lobes, "with two")
+    lobes = f"wave_generator.lobes = {design.wave_generator.lobes}"
+    require_available(design.wave_generator.lobes == 2, "[deviations]", lobes, "with two")
     if design.load.torque == 0.0:
         raise InputError("load.torque = 0 holds the output: allowed above 0 N·m with [deviations]")
     program, friction = given_program(design), design.contact.friction

@@ -116,7 +116,11 @@ def _check_pancake(design: DriveDesign) -> None:
     for given, what, allowed in (
         (design.cup, "cup", 'only with drive.model = "cup"'),
         (fixed, 'drive.layout = "wave_generator_fixed"', '"ring_fixed" or "spline_fixed"'),
-        (design.lobes != 2, f"wave_generator.lobes = {design.lobes}", "2"),
+        (
+            design.wave_generator.lobes != 2,
+            f"wave_generator.lobes = {design.wave_generator.lobes}",
+            "2",
+        ),
         (design.housing, "ring_gear.housing", "without it"),
         (design.bearing, "wave_generator.bearing", "a cam without a bearing"),
         (design.deviations, "deviations", "without them"),
@@ -144,7 +148,7 @@ def _check_linear_solver(design: DriveDesign) -> None:
 
 
 def _check_teeth(design: DriveDesign) -> None:
-    drive, lobes = design.drive, design.lobes
+    drive, lobes = design.drive, design.wave_generator.lobes
     difference = drive.teeth_rg - drive.teeth_fs
     multiple = "two" if lobes == 2 else f"wave_generator.lobes = {lobes}"
     require(
@@ -198,7 +202,7 @@ def _check_concave(design: DriveDesign, wave: Harmonic) -> None:
     """Bores so far from a concave part of a harmonic cam that points of them have several feet on
     it."""
     a, b, bore = design.major_semi_axis, design.minor_semi_axis, design.inner_radius
-    order = design.lobes**2
+    order = design.wave_generator.lobes**2
 
     def room(b: float) -> float:
         return 1.0 + (b - 0.5 * order * (a - b)) / b**2 * (bore - b) - UNIQUE

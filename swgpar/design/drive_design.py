@@ -8,7 +8,7 @@ import numpy as np
 from swgpar.design.cup_section import Cup
 from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.deviations import Deviations
-from swgpar.design.kinematics import Kinematics
+from swgpar.design.kinematics import Kinematics, make_kinematics
 from swgpar.design.program_sections import Ratcheting, Stiffness
 from swgpar.design.sections import (
     GEARS,
@@ -72,8 +72,7 @@ class DriveDesign(Design):
 
     @property
     def gears(self) -> tuple[GearName, ...]:
-        """The gears in the order of the bodies; the dynamic spline of a pancake drive is the third
-        one."""
+        """The gears in the order of the bodies; a dynamic spline is the third one."""
         return GEARS if self.dynamic_spline is None else (*GEARS, "dynamic_spline")
 
     def axial_range(self, gear: GearName) -> tuple[float, float]:
@@ -81,20 +80,13 @@ class DriveDesign(Design):
         half, second = 0.5 * self.drive.face_width, self.dynamic_spline
         if second is None or gear == "flexible_spline":
             return -half, half
-        width = second.face_width or 0.5 * (self.drive.face_width - second.gap)
-        return (
-            (half - width, half) if gear == "dynamic_spline" else (-half, half - width - second.gap)
-        )
+        begin = half - (second.face_width or half - 0.5 * second.gap)
+        return (begin, half) if gear == "dynamic_spline" else (-half, begin - second.gap)
 
     @property
     def deflection(self) -> float:
         """Diametral deflection d, mm: twice the radial one at a lobe, for any number of lobes."""
         return self.drive.module * (self.drive.teeth_rg - self.drive.teeth_fs)
-
-    @property
-    def lobes(self) -> int:
-        """Lobes of the wave generator, 2 or 3."""
-        return self.wave_generator.lobes
 
     @property
     def inner_radius(self) -> float:
@@ -111,46 +103,29 @@ class DriveDesign(Design):
 
     @property
     def minor_semi_axis(self) -> float | None:
-        """Minor semi-axis b of the wave generator, mm (eqs 3.2, 3.4); None for rollers, which have
-        none."""
+        """Minor semi-axis b of the wave generator, mm (eqs 3.2, 3.4); rollers have none."""
         wave = self.wave_generator
-        return (
-            None
-            if isinstance(wave, FourRoller)
-            else wave.C * (self.inner_radius - 0.5 * self.deflection)
-        )
+        if isinstance(wave, FourRoller):
+            return None
+        return wave.C * (self.inner_radius - 0.5 * self.deflection)
 
     @property
     def kinematics(self) -> Kinematics:
         """Speeds and angles."""
-        drive = self.drive
-        output: GearName = "flexible_spline" if self.dynamic_spline is None else "dynamic_spline"
-        standing: GearName = "ring_gear"
-        if drive.layout == "spline_fixed":
-            output, standing = standing, output
-        return Kinematics(
-            drive.teeth_fs,
-            drive.teeth_rg,
-            self.lobes,
-            output,
-            standing,
-            wave_generator_is_fixed=drive.layout == "wave_generator_fixed",
+        return make_kinematics(
+            self.drive, self.wave_generator.lobes, self.dynamic_spline is not None
         )
 
     @property
     def has_program(self) -> bool:
-        """Whether the output follows a load program, in place of one torque and a rotation of the
-        wave generator."""
+        """Whether the output follows a load program, in place of one torque and a rotation."""
         return bool(self.load.program or self.stiffness or self.ratcheting)
 
     @property
     def is_mirror_symmetric(self) -> bool:
         """Whether the undeformed drive is its own image in the plane through the axis and the major
-        axis.
-
-        The balls of a bearing are placed on one side of it or the other. With bolts no other state
-        mirrors it.
-        """
+        axis. The balls of a bearing are placed on one side of it or the other. With bolts no other
+        state mirrors it."""
         return (
             self.wave_generator.type != "asymmetric_parabolic"
             and self.bearing is None
@@ -159,8 +134,7 @@ class DriveDesign(Design):
 
     @property
     def has_cup(self) -> bool:
-        """Whether the flexible spline has a wall and an end; the plane model leaves out the cup of
-        its section."""
+        """Whether the flexible spline has a wall and an end; the plane model leaves them out."""
         return self.drive.model == "cup"
 
     @property
@@ -175,18 +149,16 @@ class DriveDesign(Design):
 
     @property
     def copies(self) -> int:
-        """How many times the model makes the whole drive.
-
-        The number of lobes where the drive equals itself rotated by one of them and the design
-        allows it, else 1.
-        """
+        """How many times the model makes the whole drive: the number of lobes where the drive
+        equals itself rotated by one of them and the design allows it, else 1."""
+        lobes = self.wave_generator.lobes
         counts = [self.drive.teeth_fs, self.drive.teeth_rg]
         if self.bearing is not None:
             counts.append(self.bearing.balls)
         if self.is_bolted:
             counts.append(self.cup.bolts)
-        symmetric = all(count % self.lobes == 0 for count in counts)
-        return self.lobes if symmetric and self.solver.symmetry else 1
+        symmetric = all(count % lobes == 0 for count in counts)
+        return lobes if symmetric and self.solver.symmetry else 1
 
     @property
     def periods(self) -> int:
@@ -258,16 +230,6 @@ class DriveDesign(Design):
         return self.bearing_sizes.rolling_speed(self.kinematics.spline_speed)
 
     @property
-    def ball_passing_angle(self) -> float:
-        """Rotation (rad) of the wave generator after which a ball takes the place of the one before
-        it on the cam.
-
-        inf where the balls are fixed to the cam.
-        """
-        slip = abs(1.0 - self.cage_speed)
-        return 2.0 * np.pi / self.bearing.balls / slip if slip > 1e-9 else np.inf
-
-    @property
     def uses_pins(self) -> bool:
         """Whether pins deflect the flexible spline; with a bearing the cam grows instead."""
         return self.steps.pins and self.bearing is None
@@ -282,7 +244,7 @@ class DriveDesign(Design):
 
     @property
     def resolves_root_stress(self) -> bool:
-        """Whether windows resolve the stress at the teeth in the one loaded state."""
+        """Whether windows resolve the stress at the teeth."""
         return self.output.root_stress and not self.has_program and not self.without_windows
 
     @property
@@ -293,20 +255,16 @@ class DriveDesign(Design):
             return 0.0
         middle = self.inner_radius + 0.5 * self.flexible_spline.rim
         height = 0.5 * self.drive.teeth_fs * self.drive.module - middle
-        return axial_travel(self.deflection, self.cup.length, middle, height, self.lobes)
+        return axial_travel(
+            self.deflection, self.cup.length, middle, height, self.wave_generator.lobes
+        )
 
     @property
     def omitted_bending(self) -> float:
-        """Share of the bending strain that the plane model's condensed sectors leave out, at
-        most."""
-        return omitted_bending(
-            self.deflection,
-            self.inner_radius,
-            self.flexible_spline.rim,
-            self.drive.teeth_fs,
-            self.lobes,
-            self.wave_generator.type == "elliptical",
-        )
+        """Share of the bending strain that condensed sectors leave out, at most."""
+        wave, sizes = self.wave_generator, (self.inner_radius, self.flexible_spline.rim)
+        elliptical = wave.type == "elliptical"
+        return omitted_bending(self.deflection, *sizes, self.drive.teeth_fs, wave.lobes, elliptical)
 
     @property
     def condenses_teeth(self) -> bool:
@@ -332,12 +290,6 @@ class DriveDesign(Design):
         return CupSizes(
             self.cup, self.inner_radius, self.flexible_spline.rim, 0.5 * self.drive.face_width
         )
-
-    @property
-    def rest_plane(self) -> float:
-        """z (mm) at which the deflection vanishes: the middle of the closed end or flange; 0 in the
-        plane model."""
-        return self.cup_sizes.rest_plane if self.has_cup else 0.0
 
     def modulus_of(self, *bodies: DesignBody) -> float:
         """Modulus of elasticity (MPa) of the softest of bodies: the scale of contacts and supports
@@ -410,28 +362,24 @@ class DriveDesign(Design):
     def tooth_motion(self, z: float = 0.0, ring: GearName = "ring_gear") -> ToothMotion:
         """Motion of the flexible spline's tooth in its slot of `ring` at the section z, mm, of the
         rigid limit."""
-        radius = self.inner_radius + 0.5 * self.flexible_spline.rim
-        share = 1.0
+        inner, axes = self.inner_radius, (self.major_semi_axis, self.minor_semi_axis)
+        radius, share = inner + 0.5 * self.flexible_spline.rim, 1.0
         if self.has_cup:
             # the deflection of a cup grows linearly from the closed end, whose middle stays plane
-            share = (self.rest_plane - z) / self.rest_plane
-        line = neutral_line(
-            self.wave_generator,
-            self.major_semi_axis,
-            self.minor_semi_axis,
-            self.inner_radius,
-            radius,
-            share,
-        )
+            share = (self.cup_sizes.rest_plane - z) / self.cup_sizes.rest_plane
+        line = neutral_line(self.wave_generator, *axes, inner, radius, share)
         return ToothMotion(line, self.drive.teeth_fs, self.drive.teeth(ring).n_teeth)
 
     def rigid_teeth(self, ring: GearName = "ring_gear") -> RigidTeeth:
         """Undeformed teeth of the flexible spline and of a ring gear at mid-width."""
-        profiles, motion = (
-            (self.profile("flexible_spline"), self.profile(ring)),
+        profiles = self.profile("flexible_spline"), self.profile(ring)
+        return RigidTeeth(
+            *profiles,
             self.tooth_motion(ring=ring),
+            self.wave_generator.lobes,
+            self.drive.teeth_fs,
+            self.drive.module,
         )
-        return RigidTeeth(*profiles, motion, self.lobes, self.drive.teeth_fs, self.drive.module)
 
     def cam(self) -> Cam:
         """Exact curve of the cam, major axis along +y. Raises InputError where its keys give no
@@ -447,5 +395,5 @@ class DriveDesign(Design):
             micro.wg_crowning,
             micro.wg_slope,
             micro.crowning_shape,
-            self.lobes,
+            self.wave_generator.lobes,
         )

@@ -30,6 +30,7 @@ class AnswerKind:
     the field that declares it
     detail : whether the terminal and the first table of the report leave it out
     exact : whether it has no error: a count, a number that is given, an error
+    error, place, remark, limit : where the evaluation has those of the `Answer`, like `path`
     """
 
     name: str
@@ -38,6 +39,10 @@ class AnswerKind:
     path: str = ""
     detail: bool = False
     exact: bool = False
+    error: str = ""
+    place: str = ""
+    remark: str = ""
+    limit: str = ""
 
 
 @dataclass(frozen=True)
@@ -70,17 +75,10 @@ def part_answers(*kinds: AnswerKind, default: Any = MISSING) -> Any:
 
 
 def answer(
-    name: str,
-    text: str,
-    unit: str = "",
-    path: str = "",
-    *,
-    detail: bool = False,
-    exact: bool = False,
-    default: Any = MISSING,
+    name: str, text: str, unit: str = "", path: str = "", *, default: Any = MISSING, **more: Any
 ) -> Any:
     """A field of an `evaluation` that is an answer; arguments are those of `AnswerKind`."""
-    return part_answers(AnswerKind(name, text, unit, path, detail, exact), default=default)
+    return part_answers(AnswerKind(name, text, unit, path, **more), default=default)
 
 
 def joined_error(*parts: float | None) -> float | None:
@@ -158,14 +156,19 @@ class AnswerGroup:
         reasons = self.reasons()
         for kind in declared_answers(type(self)):
             value = self._at(kind.path)
+            error = self._at(kind.error)
             if value is not None or kind.name in reasons:
+                known = kind.exact or value is None or error is not None
                 yield Answer(
                     kind.name,
                     None if value is None else float(value),
                     kind.unit,
                     kind.text,
-                    no_error="" if kind.exact or value is None else NO_ESTIMATE,
-                    remark=reasons[kind.name] if value is None else "",
+                    error=error,
+                    no_error="" if known else NO_ESTIMATE,
+                    place=self._at(kind.place) or "",
+                    remark=reasons[kind.name] if value is None else self._at(kind.remark) or "",
+                    limit=self._at(kind.limit),
                     detail=kind.detail,
                 )
 
@@ -178,11 +181,10 @@ class AnswerGroup:
         return iter(())
 
     def _at(self, path: str) -> Any:
-        value: Any = self
+        value: Any = self if path else None
         for name in path.split("."):
-            if value is None:
-                return None
-            value = value.get(name) if isinstance(value, Mapping) else getattr(value, name)
+            if value is not None:
+                value = value.get(name) if isinstance(value, Mapping) else getattr(value, name)
         return value
 
 

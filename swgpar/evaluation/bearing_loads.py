@@ -3,19 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import (
-    Answer,
-    AnswerGroup,
-    AnswerKind,
-    answer,
-    evaluation,
-    part_answers,
-)
+from swgpar.evaluation.answers import AnswerGroup, AnswerKind, answer, evaluation, part_answers
 from swgpar.evaluation.bearing_life import BearingSeries, million_turns
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
@@ -38,6 +31,16 @@ class ComplianceShares:
     def bearing(self) -> float:
         """Share of balls and race."""
         return self.balls + self.race
+
+
+def _shares(kind: str) -> Iterator[AnswerKind]:
+    """Answers in a field with shares in the torsional or the radial compliance."""
+    for part, ending in (("bearing", ""), ("balls", "_of_balls")):
+        name, text = (
+            f"bearing.{kind}_share{ending}",
+            f"share of the {part} in the {kind} compliance",
+        )
+        yield AnswerKind(name, text, path=f"{kind}_share.{part}")
 
 
 @evaluation
@@ -75,12 +78,14 @@ class BallLoads(AnswerGroup):
     load_ripple : None without load;  torsional_share, radial_share : None without a torque
     """
 
-    largest_load_N: float = answer("bearing.largest_load", "largest ball load under load", "N")
+    largest_load_N: float = answer(
+        "bearing.largest_load", "largest ball load under load", "N", place="place"
+    )
     largest_pressure_MPa: float = answer(
-        "bearing.pressure", "largest pressure of a ball on a race", "MPa"
+        "bearing.pressure", "largest pressure of a ball on a race", "MPa", place="place"
     )
     largest_approach_um: float = answer(
-        "bearing.approach", "largest approach of the races at a ball", "µm"
+        "bearing.approach", "largest approach of the races at a ball", "µm", place="place"
     )
     wg_angle_deg: float
     cam_angle_deg: float
@@ -95,30 +100,8 @@ class BallLoads(AnswerGroup):
     load_ripple: float | None = answer(
         "bearing.load_ripple", "range of the largest ball load over its mean"
     )
-    torsional_share: ComplianceShares | None = part_answers(
-        AnswerKind(
-            "bearing.torsional_share",
-            "share of the bearing in the torsional compliance",
-            path="torsional_share.bearing",
-        ),
-        AnswerKind(
-            "bearing.torsional_share_of_balls",
-            "share of the balls in the torsional compliance",
-            path="torsional_share.balls",
-        ),
-    )
-    radial_share: ComplianceShares | None = part_answers(
-        AnswerKind(
-            "bearing.radial_share",
-            "share of the bearing in the radial compliance",
-            path="radial_share.bearing",
-        ),
-        AnswerKind(
-            "bearing.radial_share_of_balls",
-            "share of the balls in the radial compliance",
-            path="radial_share.balls",
-        ),
-    )
+    torsional_share: ComplianceShares | None = part_answers(*_shares("torsional"))
+    radial_share: ComplianceShares | None = part_answers(*_shares("radial"))
     race_s1_MPa: float | None = answer(
         "bearing.race_s1", "largest tension in the outer race under load", "MPa", default=None
     )
@@ -137,15 +120,10 @@ class BallLoads(AnswerGroup):
     ASKED_BY = "[wave_generator.bearing]"
     SECTION = "bearing"
 
-    def answers(self) -> Iterator[Answer]:
-        for one in super().answers():
-            at_ball = one.name in (
-                "bearing.largest_load",
-                "bearing.pressure",
-                "bearing.approach",
-            )
-            place = f"{self.cam_angle_deg:.0f} degrees from the major axis" if at_ball else ""
-            yield replace(one, place=place)
+    @property
+    def place(self) -> str:
+        """Where the load of a ball is the largest."""
+        return f"{self.cam_angle_deg:.0f} degrees from the major axis"
 
     def remarks(self) -> Iterator[str]:
         yield (
@@ -198,6 +176,13 @@ def ball_rows(model: DriveModel, state: LoadState, increment: int, step: int) ->
     return rows
 
 
+def ball_passing_angle(cage_speed: float, balls: int) -> float:
+    """Rotation (rad) of the wave generator after which a ball takes the place of the one before it
+    on the cam; inf where the balls are fixed to the cam."""
+    slip = abs(1.0 - cage_speed)
+    return 2.0 * np.pi / balls / slip if slip > 1e-9 else np.inf
+
+
 def evaluate_bearing(
     design: DriveDesign,
     rows: Sequence[Row],
@@ -216,7 +201,7 @@ def evaluate_bearing(
     loads = np.array([row["load_N"] for row in loaded]).reshape(-1, design.bearing.balls)
     largest = max(loaded, key=lambda row: row["load_N"])
     peaks = loads.max(axis=1)
-    passing = design.ball_passing_angle
+    passing = ball_passing_angle(design.cage_speed, design.bearing.balls)
     span = np.radians(np.ptp([row["wg_angle_deg"] for row in loaded]))
     return BallLoads(
         largest_load_N=largest["load_N"],

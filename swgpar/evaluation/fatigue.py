@@ -4,14 +4,13 @@ places, life."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.answers import (
-    Answer,
     AnswerGroup,
     AnswerKind,
     answer,
@@ -19,7 +18,6 @@ from swgpar.evaluation.answers import (
     joined_error,
     part_answers,
     place_text,
-    with_error,
 )
 from swgpar.evaluation.fatigue_criteria import (
     CriticalPlane,
@@ -51,7 +49,8 @@ LARGEST = 1000.0
 ROOT, CONTACT = "tooth root", "flank under contact"
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "zx")
-CRITERIA = ("goodman", "crossland", "yield")
+CRITERIA = {"goodman": "by Goodman", "crossland": "by Crossland", "yield": "against yield"}
+"""Criteria of the safety, with words for them."""
 
 SAME = 1e-6
 """Relative difference below which two utilisations are equal."""
@@ -74,6 +73,11 @@ class LeastSafety:
     radius: float
     z: float
     angle_deg: float
+
+    @property
+    def place(self) -> str:
+        """Words for the place."""
+        return place_text(self.region, None, self.radius, self.z)
 
 
 @dataclass(frozen=True)
@@ -127,13 +131,16 @@ class SafetyAndLife(AnswerGroup):
     """
 
     least: Mapping[str, LeastSafety] = part_answers(
-        AnswerKind(
-            "fatigue.goodman", "least safety factor by Goodman", path="least.goodman.safety"
+        *(
+            AnswerKind(
+                f"fatigue.{name}",
+                f"least safety factor {words}",
+                path=f"least.{name}.safety",
+                place=f"least.{name}.place",
+                error="goodman_error" if name == "goodman" else "",
+            )
+            for name, words in CRITERIA.items()
         ),
-        AnswerKind(
-            "fatigue.crossland", "least safety factor by Crossland", path="least.crossland.safety"
-        ),
-        AnswerKind("fatigue.yield", "least safety factor against yield", path="least.yield.safety"),
         AnswerKind(
             "fatigue.amplitude",
             "amplitude of the normal stress where Goodman's safety is the least",
@@ -148,7 +155,9 @@ class SafetyAndLife(AnswerGroup):
     sampling_error: float | None
     life: Life
     root_factor: float | None = answer(
-        "fatigue.root_factor", "factor of windows on stresses in the tooth root"
+        "fatigue.root_factor",
+        "factor of windows on stresses in the tooth root",
+        error="root_factor_error",
     )
     root_factor_error: float | None
     windows: bool
@@ -170,17 +179,10 @@ class SafetyAndLife(AnswerGroup):
         left_out = ("_turns", "_hours") if design.has_program else ("_programs",)
         return tuple(kind for kind in super().kinds(design) if not kind.name.endswith(left_out))
 
-    def answers(self) -> Iterator[Answer]:
-        for one in super().answers():
-            name = one.name.partition(".")[2]
-            if name == "root_factor":
-                one = with_error(one, self.root_factor_error)
-            if name in self.least:
-                at = self.least[name]
-                one = replace(one, place=place_text(at.region, None, at.radius, at.z))
-            if name == "goodman":
-                one = with_error(one, joined_error(self.mesh_error, self.sampling_error))
-            yield one
+    @property
+    def goodman_error(self) -> float | None:
+        """Error of Goodman's safety; None where a part of it is not known."""
+        return joined_error(self.mesh_error, self.sampling_error)
 
     def remarks(self) -> Iterator[str]:
         if self.life.life_turns is None and self.life.life_programs is None:

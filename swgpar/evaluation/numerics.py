@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 
-from swgpar.evaluation.answers import Answer, AnswerGroup, answer, evaluation
+from swgpar.evaluation.answers import AnswerGroup, answer, evaluation
 from swgpar.results.history import Row
 
 BALANCE = 1e-4
@@ -25,6 +24,7 @@ class Numerics(AnswerGroup):
         "torque that is left over in an increment, largest",
         "N·mm",
         exact=True,
+        limit="largest_balance_Nmm",
     )
     largest_tooth_torque_Nmm: float
     condensed_MPa: float | None = answer(
@@ -37,12 +37,6 @@ class Numerics(AnswerGroup):
     def largest_balance_Nmm(self) -> float:
         """Torque (N mm) that may be left over."""
         return BALANCE * self.largest_tooth_torque_Nmm
-
-    def answers(self) -> Iterator[Answer]:
-        for one in super().answers():
-            yield replace(
-                one, limit=self.largest_balance_Nmm if one.name == "residue.torque" else None
-            )
 
 
 def torque_left(rows: Sequence[Row]) -> float:

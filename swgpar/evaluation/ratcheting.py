@@ -4,13 +4,12 @@ way."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.design.kinematics import Kinematics
-from swgpar.evaluation.answers import Answer, AnswerGroup, answer, evaluation
+from swgpar.evaluation.answers import AnswerGroup, answer, evaluation
 from swgpar.evaluation.program_results import PointRow
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.model.drive_model import DriveModel
@@ -31,7 +30,10 @@ class RatchetingTorque(AnswerGroup):
     """
 
     peak_torque_Nm: float = answer(
-        "ratcheting.peak_torque_Nm", "largest torque of the output", "N·m"
+        "ratcheting.peak_torque_Nm",
+        "largest torque of the output",
+        "N·m",
+        remark="peak_remark",
     )
     peak_error_Nm: float
     peak_rotation_deg: float = answer(
@@ -51,11 +53,11 @@ class RatchetingTorque(AnswerGroup):
     ASKED_BY = "[ratcheting]"
     SECTION = "ratcheting"
 
-    def answers(self) -> Iterator[Answer]:
-        torque, *others = super().answers()
+    @property
+    def peak_remark(self) -> str:
+        """What to know of the largest torque."""
         beside = f"the points beside it are {self.peak_error_Nm:.3g} N·m lower"
-        yield replace(torque, remark=beside if self.is_peak else "no peak: it still grows")
-        yield from others
+        return beside if self.is_peak else "no peak: it still grows"
 
     def remarks(self) -> Iterator[str]:
         yield f"what gives way: {self.gave_way}; end of the run: {self.ended}"

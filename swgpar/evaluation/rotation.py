@@ -15,7 +15,6 @@ from swgpar.evaluation.answers import (
     evaluation,
     known_quotient,
     part_answers,
-    with_error,
 )
 from swgpar.evaluation.jamming import energy_remark, jamming_remark
 from swgpar.evaluation.numerics import torque_left
@@ -45,7 +44,14 @@ def _by_column(group: str, field: str, words: str, *, detail: bool) -> Iterator[
     """Answers in a field by column of the history."""
     for mean in MEAN_COLUMNS:
         text = f"{mean.label or mean.name}, {words} over the rotation"
-        yield AnswerKind(f"{group}.{mean.name}", text, mean.unit, f"{field}.{mean.name}", detail)
+        yield AnswerKind(
+            f"{group}.{mean.name}",
+            text,
+            mean.unit,
+            f"{field}.{mean.name}",
+            detail,
+            error="" if detail else f"mesh_error.{mean.name}",
+        )
 
 
 @evaluation
@@ -107,10 +113,7 @@ class Rotation(AnswerGroup):
         )
 
     def answers(self) -> Iterator[Answer]:
-        for one in super().answers() if self.means else ():
-            group, _, name = one.name.partition(".")
-            error = self.mesh_error.get(name) if group == "mean" else one.error
-            yield one if error is None else with_error(one, error)
+        return super().answers() if self.means else iter(())
 
     def reasons(self) -> Mapping[str, str]:
         if not self.means or self.torque_ripple is not None:

@@ -25,7 +25,7 @@ from swgpar.load.negligible_torque import negligible_torque
 
 def start_state(design: DriveDesign) -> LoadState:
     """Undeformed drive; the pins, or the shrunk cam, touch the inner surface."""
-    travel = pin_travel(design.cam(), design.inner_radius, design.lobes)
+    travel = pin_travel(design.cam(), design.inner_radius, design.wave_generator.lobes)
     if design.uses_pins:
         return LoadState(Stage.START, 0, pin_inset=travel)
     return LoadState(Stage.START, 0, cam_clearance=travel)

@@ -288,7 +288,7 @@ def rigid_contacts(design: DriveDesign) -> Callable[[BodyElements], WaveGenerato
         n_quadrature=design.contact.wg_quadrature,
         penalty=design.wg_penalty,
         pin_half_angle=float(np.radians(design.wave_generator.pin_half_angle)),
-        lobes=design.lobes,
+        lobes=design.wave_generator.lobes,
         pressure_limit=PRESSURE_LIMIT * design.modulus_of("flexible_spline"),
     )
 

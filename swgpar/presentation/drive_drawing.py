@@ -126,7 +126,7 @@ def _tooth(design: DriveDesign, gear: GearName) -> np.ndarray:
 def _curves(design: DriveDesign) -> dict[str, list[np.ndarray]]:
     """Closed curves of the gears and the cam, mm, the spline deflected with its major axis along
     +y."""
-    drive, half, lobes = design.drive, 0.5 * design.deflection, design.lobes
+    drive, half, lobes = design.drive, 0.5 * design.deflection, design.wave_generator.lobes
     angle = 2.0 * np.pi / drive.teeth_rg * (np.arange(drive.teeth_rg) + 0.5)
     ring = rotated(_tooth(design, "ring_gear")[None], angle[:, None]).reshape(-1, 2)
     outer = design.geometry.gears["ring_gear"].outer_radius

@@ -276,7 +276,7 @@ def test_faces_of_the_closed_end_look_along_the_axis_away_from_its_middle() -> N
     case, mesh = design(), meshes("medium")["flexible_spline"]
     corners = mesh.coords[mesh.faces["end"]]
     area = 0.5 * np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-    outside = corners[:, :, 2].mean(axis=1) > case.rest_plane
+    outside = corners[:, :, 2].mean(axis=1) > case.cup_sizes.rest_plane
     assert np.array_equal(np.sign(area[:, 2]), np.where(outside, 1.0, -1.0))
     r_out = case.inner_radius + case.cup_sizes.thickness - case.cup.fillet_radius
     exact = np.pi * (r_out**2 - case.cup.inner_radius**2) / mesh.n_sectors

@@ -80,7 +80,7 @@ def test_three_lobes_give_whole_ratios(profile: Profile, layout: str, ratio: flo
     design, _ = starter_design(request)
     assert (
         design.kinematics.ratio,
-        design.lobes,
+        design.wave_generator.lobes,
         design.drive.teeth_rg - design.drive.teeth_fs,
     ) == (
         ratio,

@@ -2,18 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Mapping
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import (
-    NO_ESTIMATE,
-    Answer,
-    AnswerGroup,
-    AnswerKind,
-    answer,
-    evaluation,
-)
+from swgpar.evaluation.answers import NO_ESTIMATE, AnswerGroup, AnswerKind, answer, evaluation
 
 
 @evaluation
@@ -29,6 +21,8 @@ class Accuracy(AnswerGroup):
         "accuracy.estimated",
         "estimated relative error of the largest tension at the teeth",
         exact=True,
+        remark="remark",
+        limit="asked",
     )
     reached: bool
 
@@ -39,13 +33,10 @@ class Accuracy(AnswerGroup):
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
         return ()  # a study does not ask for it
 
-    def answers(self) -> Iterator[Answer]:
-        for one in super().answers():
-            yield replace(one, limit=self.asked, remark=one.remark or self._remark)
-
     def reasons(self) -> Mapping[str, str]:
-        return {"accuracy.estimated": f"{NO_ESTIMATE}; {self._remark}"}
+        return {"accuracy.estimated": f"{NO_ESTIMATE}; {self.remark}"}
 
     @property
-    def _remark(self) -> str:
+    def remark(self) -> str:
+        """What to know of the estimate."""
         return "" if self.reached else "NOT reached: no finer mesh is taken"

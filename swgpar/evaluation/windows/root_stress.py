@@ -26,7 +26,6 @@ from swgpar.evaluation.answers import (
     joined_error,
     part_answers,
     place_text,
-    with_error,
     with_no_limit,
 )
 from swgpar.evaluation.places import root_nodes
@@ -137,7 +136,14 @@ class RootStress(AnswerGroup):
     period : angles of the wave generator (degrees) and s1 (MPa) there, of one sampled period
     """
 
-    s1: float = answer("root.s1", "largest tension at the teeth under load, by windows", "MPa")
+    s1: float = answer(
+        "root.s1",
+        "largest tension at the teeth under load, by windows",
+        "MPa",
+        error="total_error",
+        place="place",
+        remark="warning",
+    )
     error: float | None = answer(
         "root.s1_error",
         "its error by the windows and by the mesh of the drive",
@@ -160,7 +166,13 @@ class RootStress(AnswerGroup):
     in_root: float = 0.0
     drive_error: float | None = None
     period: tuple[tuple[float, float], ...] = part_answers(
-        AnswerKind("root.mean_s1", "the same over one period, mean", "MPa", "over_period.mean"),
+        AnswerKind(
+            "root.mean_s1",
+            "the same over one period, mean",
+            "MPa",
+            "over_period.mean",
+            error="over_period.mean_error",
+        ),
         AnswerKind(
             "root.maximum_s1", "the same over one period, largest", "MPa", "over_period.maximum"
         ),
@@ -175,21 +187,19 @@ class RootStress(AnswerGroup):
         return super().kinds(design) if design.resolves_root_stress else ()
 
     def answers(self) -> Iterator[Answer]:
-        over = self.over_period
         for one in super().answers():
-            if one.name == "root.s1":
-                where = place_text(self.region, self.tooth, self.radius, self.z, self.angle_deg)
-                one = with_error(replace(one, place=where, remark=self.warning), self.total_error)
-                one = with_no_limit(one) if self.warning else one
-            elif one.name == "root.mean_s1" and over is not None:
-                one = with_error(one, over.mean_error)
-            yield one
+            yield with_no_limit(one) if one.name == "root.s1" and self.warning else one
 
     def remarks(self) -> Iterator[str]:
         if (over := self.over_period) is not None:
             half = over.sampling_error
             change = "" if half is None else f": half as many change the mean by {half:.1f} MPa"
             yield f"{len(self.period)} angles of the period, one window at each further one{change}"
+
+    @property
+    def place(self) -> str:
+        """Words for the place."""
+        return place_text(self.region, self.tooth, self.radius, self.z, self.angle_deg)
 
     @property
     def levels(self) -> Sequence[float]:
