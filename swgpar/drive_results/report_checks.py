@@ -141,7 +141,11 @@ def _edge(contact: LargestContact | None) -> Check:
         else "lies off edges"
     )
     others = f"; edges carry up to {contact.edge_force_N:.4g} N" if contact.edge_force_N else ""
-    return Check("edge contact", not at.edge, f"the largest pressure of the flanks {text}{others}")
+    text = f"the largest pressure of the flanks {text}{others}"
+    if contact.unknown_force_N and not at.edge:
+        unknown = f"that of a pair with {contact.unknown_force_N:.4g} N could not be computed"
+        return Check("edge contact", None, f"{text}; {unknown}")
+    return Check("edge contact", not at.edge, text)
 
 
 def _resolution(root: RootStress | None, accuracy: Accuracy | None) -> Check:

@@ -45,6 +45,9 @@ END = 1e-6
 """Distance over the module from the end of a profile within which a contact lies on an edge."""
 
 
+CELL_DIGITS = 6
+"""Of the pressures of cells in contact_lines.csv."""
+
 Neighbours = tuple[MovedTooth, MovedTooth, MovedTooth]
 """A tooth between its neighbours, clockwise first."""
 
@@ -57,6 +60,9 @@ class ContactStation:
     s_mm : middle of the contact, arc length from the tip of the flexible spline's tooth;
     half_width_mm : of it
     pressure_MPa : largest pressure
+    first_cell_mm : middle of the first cell across, arc length from the tip
+    cell_width_mm, cell_length_mm : of every cell, across and along the face width
+    cells_MPa : (n,) pressure of the cells across, constant on each
     """
 
     z_mm: float
@@ -64,6 +70,17 @@ class ContactStation:
     s_mm: float
     half_width_mm: float
     pressure_MPa: float
+    first_cell_mm: float
+    cell_width_mm: float
+    cell_length_mm: float
+    cells_MPa: tuple[float, ...]
+
+    def row(self) -> dict[str, float]:
+        """The columns of contact_lines.csv; those of the cells are p1_MPa and so on."""
+        values = asdict(self)
+        cells = values.pop("cells_MPa")
+        digits = (float(f"{pressure:.{CELL_DIGITS}g}") for pressure in cells)
+        return values | {f"p{k}_MPa": pressure for k, pressure in enumerate(digits, start=1)}
 
 
 @dataclass(frozen=True)
@@ -121,7 +138,7 @@ class PairContact:
         """The rows of contact_lines.csv."""
         pair = {"tooth": self.tooth, "flank": self.flank, "ring_tooth": self.ring_tooth}
         pair |= {"ring": self.ring} if self.ring else {}
-        return [{**pair, **asdict(station)} for station in self.stations]
+        return [{**pair, **station.row()} for station in self.stations]
 
 
 def pair_contacts(model: DriveModel, state: LoadState) -> list[PairContact]:
@@ -257,18 +274,23 @@ def _with_pressure(
     if model.design.drive.model == "plane":
         found = _line(model, gap, load, modulus)
         shape, width, reaches = found, float(np.ptp(load.z)), False
-        size = float(along[0])
-        stations: tuple[ContactStation, ...] = (
-            ContactStation(0.0, size, found.middle, found.half_width, found.peak),
+        station = ContactStation(
+            z_mm=0.0,
+            line_load_Nmm=float(along[0]),
+            s_mm=found.middle,
+            half_width_mm=found.half_width,
+            pressure_MPa=found.peak,
+            first_cell_mm=float(found.x[0]),
+            cell_width_mm=float(found.x[1] - found.x[0]),
+            cell_length_mm=width,
+            cells_MPa=tuple(found.pressure.tolist()),
         )
+        stations: tuple[ContactStation, ...] = (station,)
     else:
         patch = _patch(model, gap, load, along, contact.force_N, modulus)
         shape, reaches = patch.strongest, patch.reaches
-        columns = (patch.z, patch.line_load, patch.middle, patch.half_width, patch.pressure)
-        stations = tuple(
-            ContactStation(*map(float, values)) for values in zip(*columns, strict=True)
-        )
-        width = len(patch.z) * float(patch.z[1] - patch.z[0])
+        stations = patch_stations(patch)
+        width = len(patch.z) * patch.cell_length
     top = max(stations, key=lambda station: station.pressure_MPa)
     ends = top.s_mm + top.half_width_mm * np.array([[-1.0], [1.0]])
     ring_tip = gap.foot(ends, np.array([top.z_mm])).min() < END * model.design.drive.module
@@ -295,6 +317,25 @@ def _with_pressure(
         edge=int(bool(edges)),
         edge_place=" and the ".join(edges),
         stations=stations,
+    )
+
+
+def patch_stations(patch: PatchContact) -> tuple[ContactStation, ...]:
+    """The stations of a contact over a patch."""
+    load, pressure = patch.line_load, patch.pressure
+    return tuple(
+        ContactStation(
+            z_mm=float(patch.z[k]),
+            line_load_Nmm=float(load[k]),
+            s_mm=float(patch.middle[k]),
+            half_width_mm=float(patch.half_width[k]),
+            pressure_MPa=float(pressure[k]),
+            first_cell_mm=float(patch.first[k]),
+            cell_width_mm=patch.cell_width,
+            cell_length_mm=patch.cell_length,
+            cells_MPa=tuple(patch.cells[k].tolist()),
+        )
+        for k in range(len(patch.z))
     )
 
 

@@ -42,22 +42,36 @@ contact better."""
 class PatchContact:
     """Contact over a patch.
 
-    z : (n,) mm, stations along the length that carry a load;  line_load : (n,) N/mm
-    middle, half_width : (n,) mm, of the contact at a station;  pressure : (n,) MPa, the largest
-    there
+    z : (n,) mm, stations along the length that carry a load
+    cells : (n, m) MPa, pressure of the cells across a station, constant on each
+    first : (n,) mm, middle of the first of them across;  cell_width, cell_length : mm, of every
+    cell
+    middle, half_width : (n,) mm, of the contact at a station
     at_end : whether it reaches the end of a body across;  reaches : whether it reaches one of the
     ends of its length
     strongest : line contact at the station with the largest pressure
     """
 
     z: np.ndarray
-    line_load: np.ndarray
+    cells: np.ndarray
+    first: np.ndarray
+    cell_width: float
+    cell_length: float
     middle: np.ndarray
     half_width: np.ndarray
-    pressure: np.ndarray
     at_end: bool
     reaches: bool
     strongest: LineContact
+
+    @property
+    def line_load(self) -> np.ndarray:
+        """Line load (n,) N/mm of the stations."""
+        return self.cells.sum(axis=1) * self.cell_width
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """Largest pressure (n,) MPa at the stations."""
+        return self.cells.max(axis=1)
 
 
 Gap = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -258,10 +272,12 @@ class _Grid:
         )
         return PatchContact(
             z=self.z[columns],
-            line_load=pressure[:, columns].sum(axis=0) * self.dt,
+            cells=pressure[:, columns].T,
+            first=self.s0[columns] + self.t[0],
+            cell_width=float(self.dt),
+            cell_length=float(self.dz),
             middle=middle,
             half_width=half,
-            pressure=pressure[:, columns].max(axis=0),
             at_end=at_end,
             reaches=bool(reaches),
             strongest=strongest,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
 
 MOST_FLANKS = 24
 """In the contact pattern, those with the largest forces."""
+
+CELL = re.compile(r"p\d+_MPa")
+"""Names of the columns of contact_lines.csv with the pressures of cells."""
 
 ANGLE = "angle of the wave generator (degrees)"
 ANGLE_AGAINST_RING = "angle of the wave generator against the ring gear (degrees)"
@@ -98,7 +102,7 @@ def draw_load_sharing(pairs: Columns, history: Columns, title: str, lobes: int =
 
 
 def draw_contact_pattern(pairs: Columns, lines: Columns, step: int | None, plane: bool) -> Figure:
-    """Pressure on all loaded flanks.
+    """Pressure on all loaded flanks: that of the cells, at their places.
 
     pairs, lines : columns of pairs.csv and contact_lines.csv
     step : of the history; None for that with the largest pressure. Raises InputError where no flank
@@ -106,10 +110,12 @@ def draw_contact_pattern(pairs: Columns, lines: Columns, step: int | None, plane
     """
     from matplotlib.figure import Figure
 
+    if "cell_width_mm" not in lines:
+        raise InputError(
+            "contact_lines.csv has no cells: allowed with results of this version of swgpar"
+        )
     if step is None:
-        pressure = np.nan_to_num(pairs["pressure_MPa"])
-        off_edge = np.where(pairs["edge"] == 0, pressure, 0.0)
-        step = int(pairs["step"][(off_edge if off_edge.any() else pressure).argmax()])
+        step = int(pairs["step"][np.nan_to_num(pairs["pressure_MPa"]).argmax()])
     increment = pairs["increment"][pairs["step"] == step].max(initial=0.0)  # the last one of a step
     chosen = np.flatnonzero((pairs["increment"] == increment) & np.isfinite(pairs["pressure_MPa"]))
     if not len(chosen):
@@ -132,13 +138,15 @@ def draw_contact_pattern(pairs: Columns, lines: Columns, step: int | None, plane
 
 
 class _Flank:
-    """A flank in contact: half ellipses of pressure at the stations along its face width.
+    """The pressure on a flank in contact: cells at the stations along its face width.
 
     pairs, lines : columns of the tables;  k : row of the pair
 
     Attributes
     ----------
-    name : the flank and what it carries;  z, s, half_width, peak : (n,) of the stations, mm and MPa
+    name : the flank and what it carries
+    pressure : (n, m) MPa, of the cells across at the stations, constant on each
+    s, z : (n, m + 1) and (n, 2) mm, edges of the cells across and along the face width
     """
 
     def __init__(self, pairs: Columns, lines: Columns, k: int) -> None:
@@ -148,29 +156,27 @@ class _Flank:
         self.name = f"tooth {pairs['tooth'][k]:.0f}, {pairs['flank'][k]}{ring}\n{load}"
         names = ("increment", "tooth", "flank", "ring_tooth", "ring")
         here = np.all([lines[name] == pairs[name][k] for name in names if name in pairs], axis=0)
-        self.z, self.s = lines["z_mm"][here], lines["s_mm"][here]
-        self.half_width, self.peak = lines["half_width_mm"][here], lines["pressure_MPa"][here]
+        cells = [name for name in lines if CELL.fullmatch(name)]
+        self.pressure = np.column_stack([lines[name][here] for name in cells])
+        first, width = lines["first_cell_mm"][here], lines["cell_width_mm"][here]
+        edges = np.arange(len(cells) + 1) - 0.5
+        self.s = first[:, None] + width[:, None] * edges
+        half = 0.5 * lines["cell_length_mm"][here]
+        self.z = lines["z_mm"][here][:, None] + half[:, None] * np.array([-1.0, 1.0])
 
-    def at(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Middle and half width (n,) mm and largest pressure (n,) MPa at z (n,) mm, linear between
-        stations."""
-        peak = np.interp(z, self.z, self.peak, left=0.0, right=0.0)
-        return np.interp(z, self.z, self.s), np.interp(z, self.z, self.half_width), peak
-
-
-def _half_ellipse(
-    s: np.ndarray, middle: np.ndarray, half_width: np.ndarray, peak: np.ndarray
-) -> np.ndarray:
-    return peak * np.sqrt(np.clip(1.0 - ((s - middle) / half_width) ** 2, 0.0, None))
+    def loaded(self) -> tuple[np.ndarray, np.ndarray]:
+        """Corners (n, 4, 2) mm, z and s, of the cells that carry a pressure, and it (n,) MPa."""
+        station, cell = np.nonzero(self.pressure > 0.0)
+        low, high = self.s[station, cell], self.s[station, cell + 1]
+        left, right = self.z[station].T
+        corners = np.array([[left, low], [right, low], [right, high], [left, high]])
+        return corners.transpose(2, 0, 1), self.pressure[station, cell]
 
 
 def _draw_pressure_lines(figure: Figure, flanks: list[_Flank]) -> None:
     axes = figure.add_subplot()
     for flank in flanks:
-        s = flank.s[0] + flank.half_width[0] * np.linspace(-1.1, 1.1, 101)
-        axes.plot(
-            s, _half_ellipse(s, flank.s[0], flank.half_width[0], flank.peak[0]), label=flank.name
-        )
+        axes.stairs(flank.pressure[0], flank.s[0], label=flank.name, lw=1.2)
     axes.set(
         xlabel="arc length from the tip (mm)", ylabel="contact pressure (MPa)", ylim=(0.0, None)
     )
@@ -179,25 +185,29 @@ def _draw_pressure_lines(figure: Figure, flanks: list[_Flank]) -> None:
 
 
 def _draw_pressure_maps(figure: Figure, flanks: list[_Flank], along: str) -> None:
+    from matplotlib import colormaps
+    from matplotlib.collections import PolyCollection
+
     columns = min(5 if len(flanks) > 8 else 4, len(flanks))
     rows = -(-len(flanks) // columns)
     figure.set_size_inches(12.0, max(5.0, 2.2 * rows + 1.0))
     maps = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
-    width = max(np.abs(flank.z).max() for flank in flanks)
-    low = min((flank.s - flank.half_width).min() for flank in flanks)
-    high = max((flank.s + flank.half_width).max() for flank in flanks)
+    cells = [flank.loaded() for flank in flanks]
+    corners = np.concatenate([places.reshape(-1, 2) for places, _ in cells])
+    width = np.abs(corners[:, 0]).max()
+    low, high = corners[:, 1].min(), corners[:, 1].max()
     margin = 0.1 * (high - low)
-    z = np.linspace(-1.05 * width, 1.05 * width, 240)
-    s = np.linspace(max(0.0, low - margin), high + margin, 320)[:, None]
-    top = max(flank.peak.max() for flank in flanks)
-    for axes, flank in zip(maps, flanks):
-        pressure = _half_ellipse(s, *flank.at(z))
-        image = axes.pcolormesh(
-            z, s[:, 0], pressure, shading="nearest", vmin=0.0, vmax=top, cmap="magma"
+    top = max(pressure.max() for _, pressure in cells)
+    for axes, flank, (places, pressure) in zip(maps, flanks, cells):
+        image = PolyCollection(
+            list(places), array=pressure, cmap="magma", edgecolors="face", lw=0.2
         )
+        image.set_clim(0.0, top)
+        axes.add_collection(image)
+        axes.set(facecolor=colormaps["magma"](0.0), xlim=(-1.05 * width, 1.05 * width))
         axes.set_title(flank.name, fontsize=8 if rows == 1 else 7)
         axes.tick_params(labelsize=8)
-    maps[0].invert_yaxis()
+    maps[0].set_ylim(high + margin, max(0.0, low - margin))  # the tip is above
     for axes in maps[len(flanks) :]:
         axes.set_axis_off()
     figure.supxlabel(along, fontsize=9)

@@ -64,7 +64,8 @@ class DriveFigures(FigureSet):
             "transmission_error_spectrum": result.transmission_error,
             "pairs": result.pairs,
             "load_sharing": result.pairs,
-            "contact_pattern": np.isfinite(pressure).any(),
+            "contact_pattern": np.isfinite(pressure).any()
+            and "cell_width_mm" in result.contact_lines,
             "haigh": result.fatigue,
             "safety": result.fatigue,
             "ball_loads": result.balls,
