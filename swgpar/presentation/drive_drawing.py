@@ -126,18 +126,19 @@ def _tooth(design: DriveDesign, gear: GearName) -> np.ndarray:
 def _curves(design: DriveDesign) -> dict[str, list[np.ndarray]]:
     """Closed curves of the gears and the cam, mm, the spline deflected with its major axis along
     +y."""
-    drive, half, lobes = design.drive, 0.5 * design.deflection, design.wave_generator.lobes
+    drive = design.drive
     angle = 2.0 * np.pi / drive.teeth_rg * (np.arange(drive.teeth_rg) + 0.5)
     ring = rotated(_tooth(design, "ring_gear")[None], angle[:, None]).reshape(-1, 2)
     outer = design.geometry.gears["ring_gear"].outer_radius
     r = design.inner_radius + 0.5 * design.flexible_spline.rim
 
+    line = design.tooth_motion().line
+
     def moved(psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Points of the mid-line (n, 2) that were at the angles psi, and the rotation of the ring
         there."""
-        w, v = half * np.cos(lobes * psi), -half / lobes * np.sin(lobes * psi)
-        place = ((r + w) * np.array([-np.sin(psi + v / r), np.cos(psi + v / r)])).T
-        return place, psi + (v + lobes * half * np.sin(lobes * psi)) / r
+        place = line.position(psi)
+        return np.column_stack([place.real, place.imag]), psi + line.tilt(psi)[0]
 
     place, turned = moved(2.0 * np.pi / drive.teeth_fs * np.arange(drive.teeth_fs))
     tooth = _tooth(design, "flexible_spline") - [0.0, r]
