@@ -7,33 +7,8 @@ decreased meanwhile. It sticks where the residual does not decrease at all. It a
 has at most `MAX_ITERATIONS_FACTOR` times as many; `solver.max_cutbacks` limits the halvings.
 
 The cycle breaker combines a line search that ends on the descending side (`LineSearch.descending`)
-with frozen segments of the flanks. Where that converges the segments are cut anew, and the
-iteration goes on from there. Without friction, residual and tangent are the derivatives of a
-potential. With frozen segments and a convex potential the active set cannot cycle, because the
-potential decreases in every step:
-
-1. Along a Newton step s from x the slope of the potential starts at -F . s < 0. By convexity it
-only grows.
-2. The step ends where the slope is still negative. The slope was negative before, so the potential
-decreases.
-3. Hence no state is met twice. The step also leaves at most half of the slope (or is the full one),
-and the slope
-   changes at a rate of at most L |s|^2. The potential therefore decreases by (F . s)^2 / (4 L
-   |s|^2) or more in every step. It is bounded below, so that F . s, and with it F, goes to zero.
-
-The line search usually ends at a slope of up to half of its start on either side. That takes about
-a quarter fewer residuals and has no such proof.
-
-With friction there is no potential, because the friction bound follows the pressure. For given
-friction bounds there is one, but for the change of the master's metric (Tresca's problem). The
-cycle breaker solves such problems. The bounds of each one are the pressures of the last one, until
-they agree (Licht, Pratt and Raous, 1991: they do where the coefficient is small). Friction follows
-the pressure again when the iteration goes on with segments cut anew.
-
-Where one face carries all load, segments can move farther with the state than the state with them.
-An iteration that cuts them anew then runs away from any solution. What remains is the solution on
-the frozen segments: forces balance on them as on any others, and only the position of the
-quadrature points depends on the path of the solve.
+with frozen segments of the flanks and, with friction, given bounds. Why the active set cannot cycle
+then, and what follows, is in docs/theory/newton_step.md ("Cycle breaker").
 """
 
 from __future__ import annotations
