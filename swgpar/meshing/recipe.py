@@ -17,22 +17,14 @@ class ToothRecipe(Section):
     """Elements of half a tooth cross-section of one gear, and of its rim."""
 
     tip: int = quantity(
-        text="elements over the tip, from the centre of the top land to the end of the rounded tip "
-        "edge",
-        ge=2,
-        le=40,
+        text="elements from the centre of the top land to the end of the tip edge", ge=2, le=40
     )
     layers: int = quantity(1, text="layers of elements directly below the flank", ge=1, le=40)
     layer_ratio: float = quantity(
-        1.0,
-        text="thickness of each of these layers over that of the next one nearer the flank",
-        ge=1.0,
-        le=3.0,
+        1.0, text="thickness of each layer over that of the next nearer the flank", ge=1.0, le=3.0
     )
     flank: int = quantity(
-        text="elements along the flank, from the tip edge to the split in the root arc",
-        ge=1,
-        le=400,
+        text="elements along the flank, from the tip edge to the root arc's split", ge=1, le=400
     )
     root: int = quantity(
         text="elements from the split in the root arc to the middle of the root", ge=2, le=200
@@ -49,15 +41,10 @@ class FaceWidthRecipe(Section):
     """Elements along the face width."""
 
     elements: int = quantity(
-        text="elements along the face width; in a pancake drive along that of each ring gear",
-        ge=2,
-        le=400,
+        text="elements along the face width, in a pancake drive of each ring gear", ge=2, le=400
     )
     end_ratio: float = quantity(
-        1.0,
-        text="length of the middle elements over that of the elements at both ends",
-        ge=1.0,
-        le=10.0,
+        1.0, text="length of the middle elements over those at both ends", ge=1.0, le=10.0
     )
 
 
@@ -68,14 +55,10 @@ class CupRecipe(Section):
     fillet: int = quantity(text="elements along the fillet", ge=1, le=100)
     closed_end: int = quantity(text="elements along the closed end", ge=1, le=400)
     end_ratio: float = quantity(
-        1.0,
-        text="length of the middle elements of cylinder and closed end over those at their ends",
-        ge=1.0,
-        le=20.0,
+        1.0, text="length of middle over end elements, of cylinder and closed end", ge=1.0, le=20.0
     )
     joined_columns: bool = quantity(
-        False,
-        text="whether three columns of elements become one in the wall, a pitch behind the teeth",
+        False, text="whether three columns of elements become one a pitch behind the teeth"
     )
 
 

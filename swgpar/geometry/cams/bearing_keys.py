@@ -18,10 +18,7 @@ class Bearing(Section):
         None, unit="mm", text="width of the outer race; without it that of the cam", gt=0.0
     )
     clearance: float = quantity(
-        0.0,
-        unit="mm",
-        text="clearance of a ball where the outer race lies on the cam's curve",
-        ge=0.0,
+        0.0, unit="mm", text="clearance of a ball with the outer race on the cam's curve", ge=0.0
     )
     inner_conformity: float = quantity(
         0.52, text="radius of the inner race's groove across over the ball diameter", gt=0.5, le=2.0
@@ -32,7 +29,7 @@ class Bearing(Section):
     first_ball: float = quantity(
         0.0,
         unit="deg",
-        text="angle of a ball from the major axis before the rotation",
+        text="angle of a ball from the major axis at the start",
         ge=-180.0,
         le=180.0,
     )
@@ -47,8 +44,5 @@ class Bearing(Section):
     )
     material: OptionalMaterial = None
     load_rating: float | None = quantity(
-        None,
-        unit="N",
-        text="basic dynamic load rating; without it that of ISO 281 for these sizes",
-        gt=0.0,
+        None, unit="N", text="basic dynamic load rating; without it that of ISO 281", gt=0.0
     )

@@ -59,11 +59,7 @@ class _Involute(ProfileKeys):
 
     type: Literal["involute"] = quantity("involute", text="kind of profile")
     pressure_angle: float | None = quantity(
-        None,
-        unit="deg",
-        text="pressure angle of this gear; without it drive.pressure_angle",
-        gt=0.0,
-        lt=45.0,
+        None, unit="deg", text="pressure angle; without it drive.pressure_angle", gt=0.0, lt=45.0
     )
     cutter_radius: float = quantity(unit="mm", text="tip radius of the cutter's teeth", gt=0.0)
     shift: float = quantity(0.0, unit="modules", text="profile shift coefficient", ge=-1.0, le=1.0)
@@ -88,19 +84,14 @@ class Conjugate(ProfileKeys):
     r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
     r_tip: float = quantity(0.0, unit="mm", text="radius of the rounded tip edge; 0: sharp", ge=0.0)
     backlash: float = quantity(
-        0.0,
-        unit="mm",
-        text="circumferential backlash at the pitch circle, taken from this gear's teeth",
-        ge=0.0,
+        0.0, unit="mm", text="backlash along the pitch circle, taken from these teeth", ge=0.0
     )
     relief: float = quantity(0.0, unit="mm", text="tip relief, along the addendum circle", ge=0.0)
     relief_height: float = quantity(
         0.2, unit="modules", text="height of the relieved part of the flank", gt=0.0, le=2.0
     )
     section: float = quantity(
-        0.0,
-        unit="mm",
-        text="axial coordinate of the cup's section whose motion counts; 0: mid-width",
+        0.0, unit="mm", text="axial coordinate of the section whose motion counts; 0: mid-width"
     )
 
 
