@@ -15,10 +15,10 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.gear_trains.cascade import CascadeDesign
-from swgpar.gear_trains.gear_pair import GearPairDesign
-from swgpar.gear_trains.planetary import PlanetaryDesign
-from swgpar.gear_trains.ring import RingDesign
+from swgpar.gear_trains.cascade.design import CascadeDesign
+from swgpar.gear_trains.gear_pair.design import GearPairDesign
+from swgpar.gear_trains.planetary.design import PlanetaryDesign
+from swgpar.gear_trains.ring.design import RingDesign
 from swgpar.input.quantities import Section, show, unit_of
 from swgpar.meshing.recipe import MeshRecipe
 from swgpar.optimisation.spec import OptimiseSection

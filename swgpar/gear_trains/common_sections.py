@@ -4,28 +4,24 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from annotated_types import Ge, Gt
+from annotated_types import Gt
 
 from swgpar.errors import InputError
 from swgpar.input.design import Design
 from swgpar.input.quantities import Section, quantity, show
 
 Positive = Annotated[float, Gt(0.0)]
-NotNegative = Annotated[float, Ge(0.0)]
-
 
 MAX_STEPS = 10_000_000
 """Largest number of time steps of a simulation."""
 
 
 def require_steps(key: str, step: float, duration: float) -> None:
-    """Refuse a time step (s) that is longer than the simulation, or so short that it has too many
-    of them."""
+    """Refuse a time step (s) that is longer than the simulation, or of which there are too many."""
     if not duration / MAX_STEPS <= step <= duration:
         raise InputError(
             f"{key} = {show(step)} is out of range: allowed {duration / MAX_STEPS:.6g} to "
-            f"{duration:g} s (at most "
-            f"{MAX_STEPS} steps)"
+            f"{duration:g} s (at most {MAX_STEPS} steps)"
         )
 
 

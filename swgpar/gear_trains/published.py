@@ -1,5 +1,4 @@
-"""Published values in a design file beside the computed ones: section [published], quantities by
-name."""
+"""Published values in a design file, section [published], beside the computed quantities."""
 
 from __future__ import annotations
 
@@ -18,8 +17,7 @@ STATISTICS = {"mean": "mean", "deviation": "standard deviation"}
 
 
 def numbered(name: str, count: int) -> list[str]:
-    """Names of the single numbers of a quantity: its own name, or with the position in the list in
-    brackets."""
+    """Names of the numbers of a quantity: its own name, or with the position in brackets."""
     return [name] if count == 1 else [f"{name}[{number}]" for number in range(1, count + 1)]
 
 
@@ -29,24 +27,20 @@ def number_label(value: float) -> str:
 
 
 def check_published(published: Mapping[str, Any], known: Mapping[str, Quantity]) -> None:
-    """Refuse names that are no quantity, and values that are not as many numbers as the quantity
-    has."""
+    """Refuse names that are no quantity, and values that are not as many numbers as it has."""
     for name, given in published.items():
         if name not in known:
             near = difflib.get_close_matches(name, known, n=1)
             hint = f"did you mean {near[0]}?" if near else f"allowed {', '.join(known)}"
-            raise InputError(
-                f"published.{show_key(name)} is not a quantity of this gear train: {hint}"
-            )
-        values = given if isinstance(given, list) else [given]
+            key = show_key(name)
+            raise InputError(f"published.{key} is not a quantity of this gear train: {hint}")
+        values, count = given if isinstance(given, list) else [given], known[name].count
         numbers = all(
             isinstance(v, (int, float)) and not isinstance(v, bool) and np.isfinite(v)
             for v in values
         )
-        if not numbers or len(values) != known[name].count:
-            wanted = (
-                "one number" if known[name].count == 1 else f"a list of {known[name].count} numbers"
-            )
+        if not numbers or len(values) != count:
+            wanted = "one number" if count == 1 else f"a list of {count} numbers"
             raise InputError(
                 f"published.{name} = {show(given)} is not {wanted}: allowed {known[name].text}"
             )
@@ -57,21 +51,21 @@ def compare(
     computed: Mapping[str, float | Sequence[float]],
     known: Mapping[str, Quantity],
 ) -> list[dict[str, Any]]:
-    """Rows of published.csv; the difference is in percent of the published value, empty where that
-    is 0."""
-    rows = []
-    for name, given in published.items():
-        expected, found = np.atleast_1d(given), np.atleast_1d(computed[name])
+    """Rows of published.csv; the difference is in % of the published value, empty where it is
+    0."""
+    return [
+        {
+            "quantity": title,
+            "meaning": known[name].text,
+            "published": float(old),
+            "computed": float(new),
+            "difference_percent": float(100.0 * (new - old) / abs(old)) if old else None,
+        }
+        for name, given in published.items()
         for title, old, new in zip(
-            numbered(name, len(expected)), expected.tolist(), found.tolist(), strict=True
-        ):
-            rows.append(
-                {
-                    "quantity": title,
-                    "meaning": known[name].text,
-                    "published": float(old),
-                    "computed": float(new),
-                    "difference_percent": 100.0 * (new - old) / abs(old) if old else None,
-                }
-            )
-    return rows
+            numbered(name, np.size(given)),
+            np.atleast_1d(given),
+            np.atleast_1d(computed[name]),
+            strict=True,
+        )
+    ]

@@ -1,5 +1,4 @@
-"""Result of a gear train, in memory or in files: history.csv, tables, published.csv and
-summary.json."""
+"""Result of a gear train, in memory or in files: tables and summary.json."""
 
 from __future__ import annotations
 
@@ -88,10 +87,8 @@ def read(out: Path) -> TrainResult:
 def _read_compared(path: Path) -> list[dict[str, Any]]:
     texts = ("quantity", "meaning")
     with open(path, newline="", encoding="utf-8") as file:
-        return [
-            {
-                name: value if name in texts else float(value) if value else None
-                for name, value in row.items()
-            }
-            for row in csv.DictReader(file)
-        ]
+        rows = list(csv.DictReader(file))
+    return [
+        {n: value if n in texts else float(value) if value else None for n, value in row.items()}
+        for row in rows
+    ]

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import platform
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from types import ModuleType
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import scipy
@@ -35,45 +34,33 @@ SECTION = "gear_train"
 """The section that makes a design file that of a gear train."""
 
 
-@dataclass(frozen=True)
-class TrainModel:
-    """A kind of gear train.
+class TrainModel(Protocol):
+    """A kind of gear train: a package with these names.
 
-    design : its design file;  check_fit : refuses values that do not fit each other
+    Design : its design file;  check_fit : refuses values that do not fit each other
     quantities : what can be compared;  derived : for `swgpar check`
     compute : all results;  drawings : all figures of a result
     """
 
-    design: type[TrainDesign]
-    check_fit: Callable[[Any], None]
-    quantities: Callable[[Any], Mapping[str, Quantity]]
-    derived: Callable[[Any], dict[str, float]]
-    compute: Callable[[Any, MPI.Comm], TrainResult]
-    drawings: Callable[[TrainResult], Drawings]
+    @property
+    def Design(self) -> type[TrainDesign]: ...
+    def check_fit(self, design: Any) -> None: ...
+    def quantities(self, design: Any) -> Mapping[str, Quantity]: ...
+    def derived(self, design: Any) -> dict[str, float]: ...
+    def compute(self, design: Any, comm: MPI.Comm) -> TrainResult: ...
+    def drawings(self, result: TrainResult) -> Drawings: ...
 
 
-def _model(package: ModuleType, design: type[TrainDesign]) -> TrainModel:
-    return TrainModel(
-        design,
-        package.check_fit,
-        package.quantities,
-        package.derived,
-        package.compute,
-        package.drawings,
-    )
-
-
-MODELS = {
-    "cascade": _model(cascade, cascade.CascadeDesign),
-    "gear_pair": _model(gear_pair, gear_pair.GearPairDesign),
-    "planetary": _model(planetary, planetary.PlanetaryDesign),
-    "ring": _model(ring, ring.RingDesign),
+MODELS: dict[str, TrainModel] = {
+    "cascade": cascade,
+    "gear_pair": gear_pair,
+    "planetary": planetary,
+    "ring": ring,
 }
 
 
 def make_train(table: dict[str, Any]) -> TrainDesign:
-    """A checked design from the content of its file; every problem is an `InputError` of one
-    sentence."""
+    """A checked design from the content of its file; problems are InputErrors of one sentence."""
     section = table.get(SECTION)
     name = section.get("model") if isinstance(section, dict) else None
     choices = " or ".join(f'"{name}"' for name in MODELS)
@@ -82,7 +69,7 @@ def make_train(table: dict[str, Any]) -> TrainDesign:
     if not isinstance(name, str) or name not in MODELS:
         raise InputError(f"{SECTION}.model = {show(name)} is not available: allowed {choices}")
     model = MODELS[name]
-    design = validate(model.design, table).made_by(make_train)
+    design = validate(model.Design, table).made_by(make_train)
     model.check_fit(design)
     check_published(design.published, model.quantities(design))
     return design
@@ -90,7 +77,7 @@ def make_train(table: dict[str, Any]) -> TrainDesign:
 
 def model_of(design: TrainDesign) -> TrainModel:
     """The kind of a design."""
-    return next(model for model in MODELS.values() if model.design is type(design))
+    return next(model for model in MODELS.values() if model.Design is type(design))
 
 
 @releasing
@@ -102,10 +89,8 @@ def run_train(design: TrainDesign, options: RunOptions) -> TrainResult:
     InputError, OutputError, ConvergenceError
         On all ranks.
     """
-    folder = options.out
-    comm = options.comm
+    folder, comm, model = options.out, options.comm, model_of(design)
     begin = time.perf_counter()
-    model = model_of(design)
     if folder is not None:
         prepare(folder, comm, False, options.overwrite)
     open_log(folder, comm)
@@ -134,8 +119,7 @@ def run_train(design: TrainDesign, options: RunOptions) -> TrainResult:
 
 @contextmanager
 def reported_arithmetic() -> Iterator[None]:
-    """Refuse values that fit their ranges and are still too far apart for the arithmetic inside the
-    block."""
+    """Refuse values in their ranges that are too far apart for the arithmetic in the block."""
     try:
         with np.errstate(all="ignore"):  # what is not finite then is found in the results
             yield
@@ -146,8 +130,7 @@ def reported_arithmetic() -> Iterator[None]:
 
 
 def require_finite(values: Mapping[str, float | list[float]]) -> None:
-    """Refuse values with infinite results, by name, or with none at all. A single NaN stands for
-    what there is not."""
+    """Refuse infinite results by name, or none at all. A NaN stands for what there is not."""
     numbers = {name: np.atleast_1d(value) for name, value in values.items()}
     infinite = [name for name, value in numbers.items() if np.isinf(value).any()]
     if infinite or all(np.isnan(value).all() for value in numbers.values()):

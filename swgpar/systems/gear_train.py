@@ -15,7 +15,6 @@ from mpi4py import MPI
 from swgpar.gear_trains.common_sections import TrainDesign
 from swgpar.gear_trains.published import numbered
 from swgpar.gear_trains.result import TrainResult
-from swgpar.gear_trains.terminal import print_compared
 from swgpar.gear_trains.train import (
     make_train,
     model_of,
@@ -55,6 +54,8 @@ class GearTrains(System[TrainDesign, TrainResult]):
         return open_train(folder, comm)
 
     def print(self, result: TrainResult) -> None:
+        from swgpar.gear_trains.report import print_compared  # loads what pages need
+
         print_compared(result.compared)
 
     def report(self, result: TrainResult) -> bytes:

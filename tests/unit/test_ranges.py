@@ -122,7 +122,7 @@ def sections(model: type[Section]) -> Iterator[type[Section]]:
 
 
 def test_every_unit_has_its_magnitudes() -> None:
-    for design in (DriveDesign, *(model.design for model in MODELS.values())):
+    for design in (DriveDesign, *(model.Design for model in MODELS.values())):
         for section in sections(design):
             for name, field in section.model_fields.items():
                 assert unit_of(field) in SMALLEST_AND_LARGEST, (section, name)

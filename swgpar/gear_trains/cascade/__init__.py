@@ -6,9 +6,10 @@ CorPower Ocean (author, title and year are not in the text at hand), cited by it
 numbers.
 """
 
-from swgpar.gear_trains.cascade.design import CascadeDesign, check_fit
+from swgpar.gear_trains.cascade.design import CascadeDesign as Design
+from swgpar.gear_trains.cascade.design import check_fit
 from swgpar.gear_trains.cascade.figures import drawings
 from swgpar.gear_trains.cascade.quantities import derived, quantities
 from swgpar.gear_trains.cascade.run import compute
 
-__all__ = ["CascadeDesign", "check_fit", "compute", "derived", "drawings", "quantities"]
+__all__ = ["Design", "check_fit", "compute", "derived", "drawings", "quantities"]

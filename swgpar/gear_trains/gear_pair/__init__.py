@@ -6,9 +6,10 @@ Gear, PhD thesis, Memorial University of Newfoundland, St. John's, 2021, chapter
 equation and table numbers.
 """
 
-from swgpar.gear_trains.gear_pair.design import GearPairDesign, check_fit
+from swgpar.gear_trains.gear_pair.design import GearPairDesign as Design
+from swgpar.gear_trains.gear_pair.design import check_fit
 from swgpar.gear_trains.gear_pair.figures import drawings
 from swgpar.gear_trains.gear_pair.quantities import derived, quantities
 from swgpar.gear_trains.gear_pair.run import compute
 
-__all__ = ["GearPairDesign", "check_fit", "compute", "derived", "drawings", "quantities"]
+__all__ = ["Design", "check_fit", "compute", "derived", "drawings", "quantities"]

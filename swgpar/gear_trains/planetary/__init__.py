@@ -6,9 +6,10 @@ Gear, PhD thesis, Memorial University of Newfoundland, St. John's, 2021, chapter
 equation and table numbers.
 """
 
-from swgpar.gear_trains.planetary.design import PlanetaryDesign, check_fit
+from swgpar.gear_trains.planetary.design import PlanetaryDesign as Design
+from swgpar.gear_trains.planetary.design import check_fit
 from swgpar.gear_trains.planetary.figures import drawings
 from swgpar.gear_trains.planetary.quantities import derived, quantities
 from swgpar.gear_trains.planetary.run import compute
 
-__all__ = ["PlanetaryDesign", "check_fit", "compute", "derived", "drawings", "quantities"]
+__all__ = ["Design", "check_fit", "compute", "derived", "drawings", "quantities"]

@@ -6,9 +6,10 @@ Gear, PhD thesis, Memorial University of Newfoundland, St. John's, 2021, chapter
 its equation and table numbers.
 """
 
-from swgpar.gear_trains.ring.design import RingDesign, check_fit
+from swgpar.gear_trains.ring.design import RingDesign as Design
+from swgpar.gear_trains.ring.design import check_fit
 from swgpar.gear_trains.ring.figures import drawings
 from swgpar.gear_trains.ring.quantities import derived, quantities
 from swgpar.gear_trains.ring.run import compute
 
-__all__ = ["RingDesign", "check_fit", "compute", "derived", "drawings", "quantities"]
+__all__ = ["Design", "check_fit", "compute", "derived", "drawings", "quantities"]
