@@ -1,5 +1,4 @@
-"""The accuracy that a run is asked for: which designs allow one, and how many angles of a period
-suit it."""
+"""The accuracy that a run is asked for: which designs allow one, and how many angles suit it."""
 
 from __future__ import annotations
 
@@ -36,8 +35,7 @@ def require_refinable(design: DriveDesign, accuracy: float) -> None:
 
 
 def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
-    """The design with as many angles of the period as suit an accuracy, where it does not say them
-    itself.
+    """The design with the angles of the period that suit an accuracy, unless it says them itself.
 
     Raises InputError where the accuracy is out of range.
     """

@@ -36,10 +36,8 @@ class BentSpline:
     """
 
     def __init__(self, design: DriveDesign, inset: float | None = None) -> None:
-        self.design, self.inset = (
-            design,
-            PENETRATION * design.drive.module if inset is None else inset,
-        )
+        self.design = design
+        self.inset = PENETRATION * design.drive.module if inset is None else inset
         self.radius = design.inner_radius + 0.5 * design.flexible_spline.rim
         self.amplitudes = bent_ring(
             design.cam(), design.inner_radius, self.radius, design.wave_generator.lobes
@@ -77,8 +75,7 @@ class BentSpline:
         return np.clip((self.end - z) / self.end, 0.0, None)
 
     def section(self, theta: np.ndarray, radius: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Positions (n, 3) mm of points of the bent sections, whose normals stay normal to the
-        middle line."""
+        """Positions (n, 3) mm of points of bent sections, which stay normal to the middle line."""
         outward, around, slope = self._waves(theta)
         share, height = self._share(z), radius - self.radius
         lean = share * (around - slope) / self.radius
@@ -89,8 +86,7 @@ class BentSpline:
         return np.column_stack([-sine * along - cosine * across, cosine * along - sine * across, z])
 
     def _waves(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Radial and circumferential displacement (n,) mm at mid-width, and the derivative of the
-        first by theta."""
+        """Radial and circumferential displacement (n,) mm at mid-width, slope of the first."""
         outward, around, slope = (np.zeros_like(theta) for _ in range(3))
         for amplitude, order in zip(self.amplitudes, self.order):
             wave = amplitude * np.exp(1j * order * theta)
@@ -109,8 +105,7 @@ class BentSpline:
         return moved / self.end
 
     def _on_plate(self, radius: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Which points (n,) belong to the closed end or flange, the fillet but for its beginning
-        included."""
+        """Which points (n,) belong to the closed end or flange, with most of the fillet."""
         wall, margin = self.design.cup_sizes.wall, 0.5 * self.design.flexible_spline.rim
         if wall.outwards:
             beyond = radius > wall.outer.points[-1, 1] + margin
@@ -119,8 +114,7 @@ class BentSpline:
         return beyond & (z > wall.back + wall.length)
 
     def _closed_end(self, theta: np.ndarray, radius: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Displacement (n, 3) mm of the closed end or flange, a plate that bends along with the
-        wall at its edge."""
+        """Displacement (n, 3) mm of the closed end or flange, a plate that bends with the wall."""
         deflection, slope, around = (np.zeros_like(radius) for _ in range(3))
         for amplitude, order in zip(self.amplitudes[1:], self.order[1:]):
             wave = amplitude * np.exp(1j * order * theta) / self.end
@@ -141,18 +135,15 @@ class BentSpline:
         )
 
     def _plate(self, order: float) -> tuple[np.ndarray, np.ndarray]:
-        """Powers (4,) of the radius and their factors (4,) in the deflection of a plate, for waves
-        of this order.
+        """Powers (4,) of the radius and factors (4,) in the deflection of a plate by such waves.
 
         They solve the biharmonic equation. The bore, or the rim of a flange, is free; with a
         clamped ring the plate ends there and neither deflects nor leans. The other edge has the
         wall's deflection and lean.
         """
         cup = self.design.cup
-        edge, nu = (
-            (cup.clamping_radius or cup.edge) / self.radius,
-            self.design.materials["flexible_spline"].poisson,
-        )
+        edge = (cup.clamping_radius or cup.edge) / self.radius
+        nu = self.design.materials["flexible_spline"].poisson
         power = np.array([order, -order, order + 2.0, 2.0 - order])
 
         def derivative(at: float, times: int) -> np.ndarray:
@@ -160,12 +151,8 @@ class BentSpline:
 
         value, slope, bend, third = (derivative(edge, times) for times in range(4))
         moment = bend + nu * (slope / edge - order**2 * value / edge**2)
-        laplacian_slope = (
-            third
-            + bend / edge
-            - slope / edge**2
-            - order**2 * (slope / edge**2 - 2.0 * value / edge**3)
-        )
+        laplacian_slope = third + bend / edge - slope / edge**2
+        laplacian_slope -= order**2 * (slope / edge**2 - 2.0 * value / edge**3)
         shear = laplacian_slope - (1.0 - nu) * order**2 / edge * (slope / edge - value / edge**2)
         at_edge = [moment, shear] if cup.clamping_radius is None else [value, slope]
         conditions = [derivative(1.0, 0), derivative(1.0, 1), *at_edge]
@@ -173,8 +160,7 @@ class BentSpline:
 
 
 class BentRace:
-    """The outer race of a bearing, bent along with the flexible spline whose inner surface it
-    touches.
+    """The outer race of a bearing, bent along with the flexible spline around it.
 
     inset : mm, by which its outer surface lies inside of the cam's
     """
@@ -194,8 +180,7 @@ class BentRace:
 
 
 def bend(model: DriveModel) -> None:
-    """Set the model's x to the bent spline on the unturned cam, with a bearing between them;
-    collective."""
+    """Set the model's x to the bent spline on the unturned cam, or on its bearing; collective."""
     design, penetration = model.design, PENETRATION * model.design.drive.module
     inset = penetration
     if design.bearing is not None:
@@ -211,9 +196,7 @@ def bend(model: DriveModel) -> None:
         first, end = model.partition.owned_sectors(body)
         sectors = np.arange(first, end)
         angle = layout.sector_angle(layout.first_tooth + sectors)
-        points = rotated(
-            np.broadcast_to(layout.mesh.coords, (len(sectors), *layout.mesh.coords.shape)),
-            angle[:, None],
-        )
+        coords = np.broadcast_to(layout.mesh.coords, (len(sectors), *layout.mesh.coords.shape))
+        points = rotated(coords, angle[:, None])
         values = field.displacement(points.reshape(-1, 3)).reshape(points.shape)
         write_field(model.partition, body, sectors, values, model.problem.x)

@@ -30,19 +30,16 @@ from swgpar.petsc import PETSc
 
 
 def transfer(coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec) -> None:
-    """Set y of the fine model to the state x of the coarse one; both on the same ranks, sector by
-    sector."""
+    """Set y of the fine model to x of the coarse one, sector by sector, on the same ranks."""
     for body, layout in fine.partition.layouts.items():
         first, end = fine.partition.owned_sectors(body)
         sectors = np.arange(first, end)
         angle = layout.sector_angle(layout.first_tooth + sectors)
         local = rotated(read_field(coarse.partition, body, sectors, x), -angle[:, None])
         matrix = interpolation(coarse.partition.layouts[body].mesh, layout.mesh)
-        values = (
-            np.stack([matrix @ sector for sector in local])
-            if len(local)
-            else np.zeros((0, matrix.shape[0], 3))
-        )
+        values = np.zeros((len(local), matrix.shape[0], 3))
+        for own, sector in enumerate(local):
+            values[own] = matrix @ sector
         write_field(fine.partition, body, sectors, rotated(values, angle[:, None]), y)
     if fine.comm.rank == fine.comm.size - 1:
         n = fine.partition.n_multipliers
@@ -119,8 +116,7 @@ def starts_bent(design: DriveDesign) -> bool:
 
 
 def _reach_load(stepper: LoadStepper) -> list[int]:
-    """From the bent shape if the design asks for it and that works, else step by step; returns
-    Newton iterations."""
+    """From the bent shape if that is asked for and works, else step by step; Newton iterations."""
     if starts_bent(stepper.design):
         try:
             _jump(stepper)
@@ -148,8 +144,8 @@ def start_at_load(
     on_coarse: Callable[[DriveModel, MeshRecipe], None],
     kept: StartStates,
 ) -> bool:
-    """Reach the loaded state on coarser meshes or from the bent shape; False if none is asked for,
-    or if that fails.
+    """Reach the loaded state on coarser meshes or from the bent shape; False if that is not asked
+    for, or fails.
 
     recipe : of the stepper's mesh;  for the others see `start_loaded`
     """
@@ -199,8 +195,8 @@ def start_loaded(
 
 
 def take_over(coarse: DriveModel, stepper: LoadStepper) -> int:
-    """Take over the loaded state of the model on another mesh, release that model, and solve;
-    returns Newton iterations."""
+    """Take over the loaded state of the model on another mesh, which is released, and solve;
+    Newton iterations."""
     loaded = stepper.sequence.loaded
     try:
         transfer(coarse, coarse.problem.x, stepper.model, stepper.problem.x)

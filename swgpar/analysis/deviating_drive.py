@@ -64,30 +64,25 @@ def turn_mesh(recipe: MeshRecipe) -> MeshRecipe:
 
 
 def turn_design(design: DriveDesign) -> DriveDesign:
-    """The design as its turns are computed: half of the drive only if the deviations allow it,
-    condensed sectors."""
-    deviations = design.deviations
-    solver = design.solver.model_copy(
-        update={
-            "symmetry": design.solver.symmetry and _is_twofold(design, deviations),
-            "condensed_sectors": design.can_condense,
-            "max_iterations": max(design.solver.max_iterations, MAX_ITERATIONS),
-        }
-    )
-    contact = design.contact
-    if deviations.mesh == "coarse":
-        contact = contact.model_copy(
-            update={
-                "wg_quadrature": min(contact.wg_quadrature, CAM_QUADRATURE),
-                "wg_penalty_coef": min(contact.wg_penalty_coef, CAM_PENALTY),
-            }
-        )
-    steps = design.steps.model_copy(update={"bent_start": True, "samples": 0, "rotation": 0.0})
+    """The design as its turns are computed: condensed sectors, half of it if deviations allow."""
+    deviations, solver, contact = design.deviations, design.solver, design.contact
     wave = design.wave_generator
+    changes = {
+        "symmetry": solver.symmetry and _is_twofold(design, deviations),
+        "condensed_sectors": design.can_condense,
+        "max_iterations": max(solver.max_iterations, MAX_ITERATIONS),
+    }
+    solver = solver.model_copy(update=changes)
+    if deviations.mesh == "coarse":
+        cam = {
+            "wg_quadrature": min(contact.wg_quadrature, CAM_QUADRATURE),
+            "wg_penalty_coef": min(contact.wg_penalty_coef, CAM_PENALTY),
+        }
+        contact = contact.model_copy(update=cam)
+    steps = design.steps.model_copy(update={"bent_start": True, "samples": 0, "rotation": 0.0})
     if wave.bearing is not None:  # balls that pass would make every pitch another drive
-        wave = wave.model_copy(
-            update={"bearing": wave.bearing.model_copy(update={"cage_speed": 1.0})}
-        )
+        bearing = wave.bearing.model_copy(update={"cage_speed": 1.0})
+        wave = wave.model_copy(update={"bearing": bearing})
     return design.model_copy(
         update={"solver": solver, "steps": steps, "contact": contact, "wave_generator": wave}
     )
@@ -155,11 +150,9 @@ class DeviatingDrive:
     def points(
         self, known: Container[int] = (), share: tuple[int, int] = (0, 1)
     ) -> Iterator[TurnPoint]:
-        """States at all angles but those whose indices are `known`; an index counts the angles from
-        0 on.
+        """States at all angles but those whose indices, from 0 on, are `known`.
 
-        share : number of a share of the states, from 0, and how many shares there are: those of
-        this one are computed
+        share : number of a share of the states, from 0, which is computed, and how many there are
 
         Raises ConvergenceError where a state cannot be reached.
         """
@@ -171,9 +164,8 @@ class DeviatingDrive:
             states: dict[tuple[int, ...], list[int]] = {}
             for pitch in range(self.pitches):
                 if pitch * len(ideals) + phase not in known:
-                    states.setdefault(tuple(pitch % period for period in self.periods), []).append(
-                        pitch
-                    )
+                    renamed = tuple(pitch % period for period in self.periods)
+                    states.setdefault(renamed, []).append(pitch)
             start, guess = split(len(states), share[1]), ideal
             for first, *others in list(states.values())[start[share[0]] : start[share[0] + 1]]:
                 found = self._point(first * len(ideals) + phase, first, state, ideal, guess)
@@ -188,9 +180,8 @@ class DeviatingDrive:
         found = [(self.loaded, x.copy())]
         for phase in range(1, count):
             angle = self.design.kinematics.period_angle * phase / count
-            state = replace(
-                self.loaded, stage=Stage.ROTATE, step=Stage.ROTATE + phase - 1, angle=angle
-            )
+            step = Stage.ROTATE + phase - 1
+            state = replace(self.loaded, stage=Stage.ROTATE, step=step, angle=angle)
             self.stepper.advance(state)
             found.append((state, x.copy()))
         return found
@@ -222,8 +213,7 @@ class DeviatingDrive:
     def _point(
         self, index: int, pitch: int, state: LoadState, ideal: PETSc.Vec, guess: PETSc.Vec
     ) -> TurnPoint:
-        """The state at a phase of a pitch, from a guess, or from the ideal one by shares of the
-        deviations."""
+        """The state at a phase of a pitch, from a guess, or from the ideal one step by step."""
         problem, iterations = self.model.problem, 0
         deviations = self.tables.rolled(pitch)
         for start, steps in ((guess, 1), *((ideal, steps) for steps in STEPS)):
@@ -243,8 +233,8 @@ class DeviatingDrive:
         angle = np.degrees(state.angle + pitch * self.design.kinematics.period_angle)
         raise ConvergenceError(
             f"the drive with [deviations] did not converge at a wave-generator angle of "
-            f"{angle:.4g} degrees: "
-            f"{result.reason}, residual {result.residual:.1e} of the contact force"
+            f"{angle:.4g} degrees: {result.reason}, residual {result.residual:.1e} of the contact "
+            "force"
         )
 
     def _repeated(self, first: int, point: TurnPoint, pitch: int, index: int) -> TurnPoint:

@@ -1,5 +1,4 @@
-"""All evaluations of a run at its end: the summary, and the tables that come with fatigue and
-losses."""
+"""All evaluations of a run at its end: the summary, and the tables of fatigue and losses."""
 
 from __future__ import annotations
 
@@ -145,16 +144,11 @@ def _bearing(recorder: Recorder) -> BallLoads | None:
     design = recorder.model.design
     if design.bearing is None:
         return None
-    loaded = loaded_increments(
-        {"step": np.array([int(row["step"]) for row in recorder.record.rows])}
-    )
-    increments = [int(k) + 1 for k in loaded]
+    record = recorder.record
+    steps = np.array([int(row["step"]) for row in record.rows])
+    increments = [int(k) + 1 for k in loaded_increments({"step": steps})]
     return evaluate_bearing(
-        design,
-        recorder.record.balls,
-        increments,
-        recorder.record.bearing_shares,
-        recorder.record.race_stress,
+        design, record.balls, increments, record.bearing_shares, record.race_stress
     )
 
 

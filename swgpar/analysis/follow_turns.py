@@ -1,5 +1,4 @@
-"""Whole turns of the wave generator with deviations, as a part of a run: what is computed, kept and
-reported."""
+"""Whole turns of the wave generator with deviations: what a run computes, keeps and reports."""
 
 from __future__ import annotations
 
@@ -28,8 +27,7 @@ REPORTS = 10
 
 
 def follow_turns(recipe: MeshRecipe, recorder: Recorder) -> None:
-    """Compute the angles of the turns that the recorder does not know, and let it keep them;
-    collective.
+    """Let the recorder keep the angles of the turns that it does not know; collective.
 
     The states do not depend on each other. In the plane, where every rank has room for the whole
     drive, the ranks share the states; they share the cup.

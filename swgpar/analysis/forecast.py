@@ -1,5 +1,4 @@
-"""What a run will need: elements, unknowns, memory and time, from design and recipe, before
-anything is meshed.
+"""What a run will need, before anything is meshed: elements, unknowns, memory and time.
 
 Memory and time of a gear's thin bodies grow linearly with the unknowns. The constants are those of
 runs on two cores with 27,000 to 790,000 unknowns (docs/verification/forecast.md); other machines
@@ -24,8 +23,7 @@ from swgpar.petsc import is_out_of_memory
 
 @dataclass(frozen=True)
 class Growth:
-    """Needs of a run with default shortcuts and windows on two ranks: base + growing * unknowns /
-    100,000.
+    """Needs of a default run on two ranks: base + growing * unknowns / 100,000.
 
     memory, memory_base : GB of all ranks;  seconds, seconds_base : wall time
     """
@@ -45,8 +43,7 @@ GROWTH["pancake"] = GROWTH["cup"]
 
 @dataclass(frozen=True)
 class Forecast:
-    """elements : of the whole drive;  unknowns : modelled;  memory : GB of all ranks;  seconds :
-    wall time"""
+    """elements : of the whole drive;  unknowns : modelled;  memory : GB;  seconds : wall time"""
 
     elements: int
     unknowns: int
@@ -94,14 +91,12 @@ def require_memory(
         allowed = f"solver.memory_limit = {limit:g} GB ({free:.3g} GB are free)"
     raise InputError(
         f"the mesh has {needs.elements:,} elements and {needs.unknowns:,} unknowns, which need "
-        f"about "
-        f"{needs.memory:.3g} GB of memory: allowed are meshes that need at most {allowed}"
+        f"about {needs.memory:.3g} GB of memory: allowed are meshes that need at most {allowed}"
     )
 
 
 def free_memory(comm: MPI.Comm = MPI.COMM_SELF) -> float:
-    """Memory (GB) that is free on the machines of all ranks; infinite where it is not known.
-    Collective."""
+    """Free memory (GB) of the machines of all ranks; infinite if it is not known. Collective."""
     node = comm.Split_type(MPI.COMM_TYPE_SHARED)
     here = _free_here() if node.rank == 0 else 0.0
     node.Free()
@@ -111,10 +106,9 @@ def free_memory(comm: MPI.Comm = MPI.COMM_SELF) -> float:
 def _free_here() -> float:
     """Memory (GB) that is free on this machine, or in the container around this process."""
     try:
-        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
-        found = next(line for line in lines if line.startswith("MemAvailable:"))
-        free = float(found.split()[1]) * 1024.0 / 1e9
-    except (OSError, StopIteration):  # no Linux
+        content = Path("/proc/meminfo").read_text(encoding="ascii")
+        free = float(content.partition("MemAvailable:")[2].split()[0]) * 1024.0 / 1e9
+    except (OSError, IndexError):  # no Linux
         return float("inf")
     group = Path("/sys/fs/cgroup")
     try:
@@ -133,8 +127,7 @@ def reported_memory(needs: Forecast) -> Iterator[None]:
     # made before it is needed: then there may be no memory for it
     failure = OutOfMemoryError(
         f"not enough memory: {needs.unknowns:,} unknowns need about {needs.memory:.3g} GB on all "
-        f"ranks: "
-        "take a coarser mesh, or more memory"
+        "ranks: take a coarser mesh, or more memory"
     )
     failure.alone = True
     try:

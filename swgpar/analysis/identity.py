@@ -20,8 +20,7 @@ SOLVER_CHOICES = {
 
 
 def identity(design: DriveDesign, recipe: MeshRecipe, accuracy: float | None) -> str:
-    """Identity of what is computed: everything but the output, the rotation and how systems are
-    solved.
+    """Identity of what is computed: all but the output, the rotation and how systems are solved.
 
     The angles of the rotation are compared one by one.
     """

@@ -1,5 +1,4 @@
-"""Load stepping: one increment after the other, with prediction, cut-back and closing of the
-backlash."""
+"""Load stepping: increments with prediction, cut-back and closing of the backlash."""
 
 from __future__ import annotations
 
@@ -36,10 +35,6 @@ angle."""
 
 class LoadStepper:
     """Takes the model from one load state to the next.
-
-    Parameters
-    ----------
-    model : the drive
 
     Attributes
     ----------
@@ -111,16 +106,13 @@ class LoadStepper:
                 continue
             saved.copy(x)
             cutbacks += 1
-            if self.iterations >= settings.iteration_limit:
-                limit = (
-                    f"{settings.iteration_limit} Newton iterations of one increment "
-                    f"(solver.iteration_limit)"
-                )
-                raise ConvergenceError(
-                    self._failure(target, state, replace(result, reason=limit), cutbacks - 1)
-                )
-            if cutbacks > settings.max_cutbacks or origin == target:  # nothing to halve
-                raise ConvergenceError(self._failure(target, state, result, cutbacks - 1))
+            exhausted = self.iterations >= settings.iteration_limit
+            if exhausted:
+                limit = f"{settings.iteration_limit} Newton iterations of one increment"
+                result = replace(result, reason=f"{limit} (solver.iteration_limit)")
+            # a state that is its own origin has nothing to halve
+            if exhausted or cutbacks > settings.max_cutbacks or origin == target:
+                raise self._failure(target, state, result, cutbacks - 1)
             share *= 0.5
             logger.info(
                 "   cut back to %.3g of the increment (%s, residual %.1e)",
@@ -149,11 +141,9 @@ class LoadStepper:
         return replace(result, iterations=before + result.iterations)
 
     def _held(self, state: LoadState) -> LoadState | None:
-        """The same load with the flexible spline held, where contacts alone are to hold it;
-        otherwise None.
+        """The same load with the spline held, where contacts alone are to hold it; else None.
 
-        Two backlashes cannot be closed at once: the output then meets the held spline, and with it
-        the fixed ring gear.
+        Two backlashes cannot be closed at once: the output meets the held spline, then the ring.
         """
         free = self.problem.supports.spline_ratio is not None and not state.spline_held
         return replace(state, spline_held=True) if free else None
@@ -161,30 +151,25 @@ class LoadStepper:
     def _origin(self, target: LoadState) -> LoadState:
         """The present load state with what the output has under the control of the target.
 
-        After a cut-back an increment begins with the torque that held the output, or with the angle
-        that it had.
+        After a cut-back an increment begins with the torque that held the output, or its angle.
         """
         here, problem = self.load_state, self.problem
         if here.control == target.control:
             return here
         if target.control == "torque":
-            supports = problem.supports
-            return replace(
-                here, torque=float(supports.reactions(problem.multipliers())[supports.output_gear])
-            )
+            reactions = problem.supports.reactions(problem.multipliers())
+            return replace(here, torque=float(reactions[problem.supports.output_gear]))
         return replace(here, output_rotation=problem.output_rotation())
 
     def _takes_up_torque(self, state: LoadState) -> bool:
-        """Whether other flanks may have to carry than those of the present state: a backlash is to
-        be closed first."""
+        """Whether other flanks may have to carry: a backlash is to be closed first."""
         here = self.load_state
         if state.control == "rotation" or not state.torque:
             return False
         return here.control == "rotation" or here.torque * state.torque <= 0.0
 
     def jump(self, target: LoadState) -> None:
-        """Solve for `target` from the present x in one increment, whatever it is; raises
-        ConvergenceError."""
+        """Solve for `target` from x in one increment, whatever x is; raises ConvergenceError."""
         self.iterations = 0
         held = self._held(target)
         for state in (target,) if held is None else (held, target):
@@ -192,7 +177,7 @@ class LoadStepper:
                 self._close_backlash(state)
             result = self.solver.solve(state, max_iterations=MAX_JUMP_ITERATIONS)
             if not result.converged:
-                raise ConvergenceError(self._failure(target, target, result, 0))
+                raise self._failure(target, target, result, 0)
             self.iterations += result.iterations
         self._take(target, result)
 
@@ -211,13 +196,13 @@ class LoadStepper:
             ]
 
     @staticmethod
-    def _failure(target: LoadState, state: LoadState, result: SolveResult, cutbacks: int) -> str:
-        return (
+    def _failure(
+        target: LoadState, state: LoadState, result: SolveResult, cutbacks: int
+    ) -> ConvergenceError:
+        return ConvergenceError(
             f"step {target.step} ({target.stage.label}) did not converge at a wave-generator angle "
-            f"of "
-            f"{np.degrees(state.angle):.4g} degrees after {cutbacks} cut-backs: {result.reason}, "
-            f"residual "
-            f"{result.residual:.1e} of the contact force"
+            f"of {np.degrees(state.angle):.4g} degrees after {cutbacks} cut-backs: "
+            f"{result.reason}, residual {result.residual:.1e} of the contact force"
         )
 
     def _predict(self, state: LoadState) -> None:
@@ -251,8 +236,7 @@ class LoadStepper:
             self.problem.x.scale((first - new) / (first - old))
 
     def _extrapolation(self, state: LoadState) -> float:
-        """Share of the last step of a load program that leads on to `state`; 0 where not only the
-        load goes on.
+        """Share of the last step of a program that leads to `state`; 0 if other things change.
 
         It is bounded: contacts that come and go make the state bend off from the line.
         """
@@ -263,9 +247,8 @@ class LoadStepper:
             return 0.0
         name = "torque" if state.control == "torque" else "output_rotation"
         values = [getattr(one, name) for one in (older, last, state)]
-        if state.control == "torque" and min(values) < 0.0 < max(
-            values
-        ):  # there may be a backlash between
+        # there may be a backlash between
+        if state.control == "torque" and min(values) < 0.0 < max(values):
             return 0.0
         step = values[1] - values[0]
         return min((values[2] - values[1]) / step, MAX_EXTRAPOLATION) if step else 0.0
@@ -284,15 +267,14 @@ class LoadStepper:
             self._rotate_output(rotation, alone=target.spline_held)
 
     def _rotate_output(self, rotation: float, *, alone: bool = False) -> None:
-        """Rotate the output in its deformed pattern (rad). alone : without a flexible spline that
-        is held"""
+        """Rotate the output in its deformed pattern (rad). alone : without a held spline"""
         x, fixed = self.problem.x, self.model.fixed_body
         resting = {fixed, FLEXIBLE_SPLINE} if alone else {fixed}
         predict(self.model.partition, fixed, [KnownState(0.0, x)], x, 0.0, rotation, resting)
 
     def _predict_rotation(self, angle: float) -> None:
-        """Predict the state at an angle of the wave generator (rad) from the known states, or from
-        the present one."""
+        """Predict the state at an angle of the wave generator (rad) from the known or present
+        ones."""
         x = self.problem.x
         known = self.known_states or [KnownState(self.load_state.angle, x)]
         predict(self.model.partition, self.model.fixed_body, known, x, angle)

@@ -37,8 +37,7 @@ class KnownState:
 
 @dataclass(frozen=True)
 class InterpolationPoint:
-    """One of the states that are interpolated: its index, the teeth by which it is renamed, its
-    weight."""
+    """A state that is interpolated: its index, the teeth by which it is renamed, its weight."""
 
     index: int
     teeth: int
@@ -46,10 +45,9 @@ class InterpolationPoint:
 
 
 def interpolation_points(shifts: list[float]) -> list[InterpolationPoint]:
-    """States that give the one at shift 0, with the weights of a cubic polynomial.
+    """The two nearest states on either side of shift 0, with the weights of a cubic polynomial.
 
-    shifts : of the states, in teeth, the latest last. The two nearest ones on either side are
-    taken.
+    shifts : of the states, in teeth, the latest last
     """
     known: list[tuple[float, int, int]] = []
     for k in reversed(range(len(shifts))):
@@ -81,8 +79,7 @@ def predict(
     output_rotation: float = 0.0,
     resting: Collection[str] = (),
 ) -> None:
-    """Set x to the state at an angle of the wave generator (rad), from states at others;
-    collective.
+    """Set x to the state at an angle of the wave generator (rad), from others; collective.
 
     fixed_body : name of the gear that does not rotate
     output_rotation : rad, further rotation in its deformed pattern of what is not `resting`
@@ -92,13 +89,10 @@ def predict(
     for body, layout in partition.layouts.items():
         first, end = partition.owned_sectors(body)
         own = np.arange(first, end)
-        moved = _pattern(
-            partition, fixed_body, body, known, angle, 0.0 if body in resting else output_rotation
-        )
+        rotation, coords = 0.0 if body in resting else output_rotation, layout.mesh.coords
+        moved = _pattern(partition, fixed_body, body, known, angle, rotation)
         at = layout.sector_angle(layout.first_tooth + own)[:, None]
-        new.append(
-            (body, own, rotated(layout.mesh.coords + moved, at) - rotated(layout.mesh.coords, at))
-        )
+        new.append((body, own, rotated(coords + moved, at) - rotated(coords, at)))
     for body, own, values in new:
         write_field(partition, body, own, values, x)
 
@@ -111,8 +105,7 @@ def _pattern(
     angle: float,
     rotation: float,
 ) -> np.ndarray:
-    """Displacements (n_sectors, n_nodes, 3) mm of the owned sectors of a body, each in the frame of
-    its tooth."""
+    """Displacements (n_sectors, n_nodes, 3) mm of owned sectors, in the frames of their teeth."""
     layout = partition.layouts[body]
     teeth, fixed_teeth = layout.mesh.n_sectors, partition.layouts[fixed_body].mesh.n_sectors
     pitch = 2.0 * np.pi / fixed_teeth

@@ -79,8 +79,7 @@ def resume_run(
 
     identity : of the run that is to be continued
 
-    Returns what is saved, and the load states that the run consists of: without the first ones
-    where they were computed on other meshes.
+    Returns what is saved, and the load states of the run: without those on other meshes.
     """
     model, path = stepper.model, out / checkpoint.NAME
     saved = checkpoint.read_checkpoint(path, model.comm, SavedRun)

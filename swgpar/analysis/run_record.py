@@ -16,30 +16,24 @@ from swgpar.results.history import Row
 class RunRecord:
     """Record of a run up to the present increment.
 
-    A field has a type that is read back from JSON: numbers, texts, lists, dicts and dataclasses of
-    them.
+    A field has a type that is read back from JSON: numbers, texts, lists, dicts, dataclasses.
 
     Attributes
     ----------
     rows : history of the increments computed so far
-    starts_loaded : whether the history begins with the loaded state, on coarser meshes or from the
-    bent shape
+    starts_loaded : whether the history begins with the loaded state
     accuracy : what was asked for and reached, if an accuracy was asked for
     root_stress : of the loaded state, once it is resolved
     places : of the largest stresses under load, by column of the history
-    coarse : largest stresses on a coarser mesh, where a run has one, until `places` are compared
-    with them
+    coarse : largest stresses on a coarser mesh, until `places` are compared with them
     stress_errors : by it, as shares, of `places`
-    pairs, contact_lines : rows of pairs.csv and contact_lines.csv, the contacts of flanks under
-    load
+    pairs, contact_lines : rows of pairs.csv and contact_lines.csv
     cam_forces : N, of all increments, with [losses]
-    tooth_rotations : deg, mean rotation of the flexible spline's teeth at every increment, with
-    [ratcheting]
+    tooth_rotations : deg, mean of the flexible spline's teeth at increments, with [ratcheting]
     turns : rows of transmission_error.csv
     balls : rows of balls.csv, the loads of a bearing's balls
     race_stress : largest stresses of the outer race under load, MPa
-    housing : largest stresses and radial displacement of the housing under load, by fields of
-    `HousingStresses`
+    housing : largest values under load, by fields of `HousingStresses`
     bearing_shares : of the bearing in the compliance of the loaded state
     components : of the nodal fields in files, by body and name
     """

@@ -1,5 +1,4 @@
-"""What a run leaves out by itself where the scene allows it, and the mesh that it takes when none
-is named.
+"""What a run leaves out by itself, and the mesh that it takes when none is named.
 
 Without friction the loaded state does not depend on the path to it, and the state repeats after one
 period. So a run needs neither the steps of the assembly nor the angles of further periods, and it
@@ -60,18 +59,12 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
 
     Keys that the design sets are kept.
 
-    levels : whether the run may start on coarser meshes;  with `--accuracy` it has meshes of its
-    own
+    levels : whether the run may start on coarser meshes; with `--accuracy` it has its own
     """
-    steps = design.steps
-    solver = design.solver
-    changes = {}
-    left_out = []
-    points = program_points(design)
-    stiffness = design.stiffness
+    steps, solver, stiffness = design.steps, design.solver, design.stiffness
+    points, changes, left_out = program_points(design), {}, []
 
-    # with a bearing balls pass, with bolts teeth are not alike: no angle of another period has the
-    # same state
+    # balls pass, and teeth with bolts differ: no angle of another period has the same state
     repeats = design.bearing is None and not design.is_bolted
 
     def leave_out(key: str, value: int | bool, words: str) -> None:
@@ -80,21 +73,16 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
             left_out.append(words)
 
     if not design.contact.friction:
-        period, samples = (
-            float(np.degrees(design.kinematics.period_angle)),
-            SAMPLES[design.drive.model],
-        )
+        samples = SAMPLES[design.drive.model]
+        period = float(np.degrees(design.kinematics.period_angle))
         samples_enough = (
             repeats
             and steps.rotation >= 0.999999 * period
             and steps.rotation > (samples - 1) * steps.increment
         )
         if samples_enough and not points:
-            words = (
-                f"{steps.rotation - period:.4g} of {steps.rotation:.4g} degrees ({samples} angles "
-                f"of one period)"
-            )
-            leave_out("samples", samples, words)
+            beyond = f"{steps.rotation - period:.4g} of {steps.rotation:.4g} degrees"
+            leave_out("samples", samples, f"{beyond} ({samples} angles of one period)")
         # the bent spline lies on the cam that is not turned
         if points[0].angle == 0.0 if points else steps.load_increments == 1:
             leave_out("bent_start", True, "deflection and engagement step by step")
@@ -111,11 +99,8 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
     if not left_out:
         return Shortcuts(design, ())
     content: dict[str, Any] = {**steps.model_dump(exclude_unset=True), **changes}
-    update = {
-        "steps": type(steps).model_validate(content),
-        "solver": solver,
-        "stiffness": stiffness,
-    }
+    steps = type(steps).model_validate(content)
+    update = {"steps": steps, "solver": solver, "stiffness": stiffness}
     return Shortcuts(design.model_copy(update=update), tuple(left_out))
 
 

@@ -1,5 +1,4 @@
-"""Error of the torsional stiffness by the mesh, from the first position on a coarser mesh of the
-drive."""
+"""Error of the torsional stiffness by the mesh, from the first position on a coarser one."""
 
 from __future__ import annotations
 

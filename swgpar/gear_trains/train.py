@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 import scipy
@@ -34,7 +34,10 @@ SECTION = "gear_train"
 """The section that makes a design file that of a gear train."""
 
 
-class TrainModel(Protocol):
+D = TypeVar("D", bound=TrainDesign, contravariant=True)
+
+
+class TrainModel(Protocol[D]):
     """A kind of gear train: a package with these names.
 
     Design : its design file;  check_fit : refuses values that do not fit each other
@@ -44,14 +47,14 @@ class TrainModel(Protocol):
 
     @property
     def Design(self) -> type[TrainDesign]: ...
-    def check_fit(self, design: Any) -> None: ...
-    def quantities(self, design: Any) -> Mapping[str, Quantity]: ...
-    def derived(self, design: Any) -> dict[str, float]: ...
-    def compute(self, design: Any, comm: MPI.Comm) -> TrainResult: ...
+    def check_fit(self, design: D) -> None: ...
+    def quantities(self, design: D) -> Mapping[str, Quantity]: ...
+    def derived(self, design: D) -> dict[str, float]: ...
+    def compute(self, design: D, comm: MPI.Comm) -> TrainResult: ...
     def drawings(self, result: TrainResult) -> Drawings: ...
 
 
-MODELS: dict[str, TrainModel] = {
+MODELS: dict[str, TrainModel[Any]] = {
     "cascade": cascade,
     "gear_pair": gear_pair,
     "planetary": planetary,
@@ -75,7 +78,7 @@ def make_train(table: dict[str, Any]) -> TrainDesign:
     return design
 
 
-def model_of(design: TrainDesign) -> TrainModel:
+def model_of(design: TrainDesign) -> TrainModel[Any]:
     """The kind of a design."""
     return next(model for model in MODELS.values() if model.Design is type(design))
 
