@@ -1,9 +1,7 @@
-"""Log of a run on several ranks: rank 0 writes to the terminal and to run.log, the other ranks
-write nothing.
+"""Log of a run on several ranks: only rank 0 writes, to the terminal and to run.log.
 
-Progress is one line per increment, in the log file as on a terminal; a terminal shows a bar below
-it.
-`PhaseTimes` adds up wall seconds by phase name.
+Progress is one line per increment, in both; a terminal shows a bar below it. `PhaseTimes` adds up
+wall seconds by phase name.
 """
 
 from __future__ import annotations
@@ -65,8 +63,7 @@ console = Console(
 
 
 class _RunLog(logging.FileHandler):
-    """Appends to run.log; a log file that cannot be written must not stop a run or print a
-    traceback."""
+    """Appends to run.log; where that fails the run goes on, without a traceback."""
 
     def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802 (name given by logging)
         self.setLevel(logging.CRITICAL + 1)
@@ -81,8 +78,7 @@ class _Plain(logging.StreamHandler):
 
 
 class _ToRoot(logging.Handler):
-    """Passes records on to the handlers of the root logger; without any, Python shows warnings on
-    stderr."""
+    """Passes records to the handlers of the root logger, or Python shows warnings on stderr."""
 
     def emit(self, record: logging.LogRecord) -> None:
         logging.getLogger().handle(record)
@@ -95,13 +91,9 @@ def session(comm: MPI.Comm, *, terminal: bool = True, shown: bool = True) -> Ite
 
     Handlers that a program has attached to the logger "swgpar" stay, and get the log of rank 0.
 
-    Parameters
-    ----------
-    comm : communicator of the run
-    terminal : whether rank 0 shows everything on the terminal
+    comm : communicator of the run;  terminal : whether rank 0 shows everything on the terminal
     shown : without `terminal`: whether messages go where those of other libraries go, as far as the
-    levels that the
-        program has set allow: warnings to stderr, if it has set nothing
+        levels that the program has set allow: warnings to stderr, if it has set nothing
     """
     level, propagate, present = logger.level, logger.propagate, logger.handlers
     handler: logging.Handler = logging.NullHandler()
@@ -159,12 +151,7 @@ def close_file() -> None:
 class IncrementProgress:
     """One line per increment, and a progress bar when rank 0 has a terminal.
 
-    Parameters
-    ----------
-    comm : communicator of the run
-    total : number of increments of the whole run
-    done : increments that a restart finds finished
-    terminal : False shows no bar
+    total : increments of the whole run;  done : of them, by a run before;  terminal : shows a bar
     """
 
     def __init__(self, comm: MPI.Comm, total: int, *, done: int = 0, terminal: bool = True) -> None:
@@ -186,8 +173,7 @@ class IncrementProgress:
             self._bar.stop()
 
     def newton(self, step: str, angle_deg: float, iteration: int, residual: float) -> None:
-        """Report one Newton iteration: relative residual; on the bar only, and in the log at DEBUG
-        level."""
+        """Report a Newton iteration on the bar, and in the log at DEBUG level."""
         if self._bar and self._task is not None:
             self._bar.update(
                 self._task,
@@ -236,8 +222,7 @@ def progress_bar() -> Progress:
 class PhaseTimes:
     """Wall seconds added up by phase name.
 
-    Phases may be nested; each then counts its own full time, so that only phases of the same depth
-    add up.
+    Phases may be nested; each counts its full time, so that only those of one depth add up.
     """
 
     def __init__(self) -> None:

@@ -57,8 +57,7 @@ _warned_of: set[str] = set()
 
 
 def start(arguments: Sequence[str] = ()) -> None:
-    """Initialise PETSc on all ranks with options of the command line; collective. Without effect
-    when it has been.
+    """Initialise PETSc once on all ranks with options of the command line; collective.
 
     Raises InputError, on all ranks, when an option names a file that cannot be read or
     PETSC_OPTIONS names one at all, and SwgparError without petsc4py.
@@ -87,9 +86,8 @@ def start(arguments: Sequence[str] = ()) -> None:
                 " ".join(f"'{word}'" if '"' in word else f'"{word}"' for word in words)
             )
     _given.update(PETSc.Options().getAll())
-    globals()["PETSc"] = (
-        PETSc  # ranks that import it later, and not all together, do not start it again
-    )
+    # ranks that import it later, and not all together, do not start it again
+    globals()["PETSc"] = PETSc
 
 
 @contextmanager
@@ -104,8 +102,7 @@ def hidden_variables() -> Iterator[None]:
 
 @contextmanager
 def accepted_options(comm: MPI.Comm, *, all_errors: bool = False) -> Iterator[None]:
-    """Run a block in which PETSc reads options; what it does not accept is an InputError on all
-    ranks. Collective.
+    """Run a block in which PETSc reads options; those refused are an InputError on all ranks.
 
     An error of PETSc that is not about options is raised as it is, unless `all_errors` says that
     options have led to it; what has no memory always is.
@@ -133,21 +130,18 @@ def accepted_options(comm: MPI.Comm, *, all_errors: bool = False) -> Iterator[No
 
 @contextmanager
 def errors_of_callbacks() -> Iterator[None]:
-    """Raise errors that Python callbacks of PETSc raise as what they are: newer releases wrap them
-    in their own."""
+    """Raise errors of Python callbacks as what they are: newer releases of PETSc wrap them."""
     from petsc4py import PETSc
 
     try:
         yield
     except PETSc.Error as error:
-        found: BaseException | None = error
-        while (
-            found is not None and not isinstance(found, SwgparError) and not is_out_of_memory(found)
-        ):
-            found = found.__cause__ or found.__context__
-        if found is None or found is error:
+        cause: BaseException | None = error
+        while cause and not isinstance(cause, SwgparError) and not is_out_of_memory(cause):
+            cause = cause.__cause__ or cause.__context__
+        if cause is None or cause is error:
             raise
-        raise found from None
+        raise cause from None
 
 
 def is_out_of_memory(error: BaseException) -> bool:
@@ -156,8 +150,7 @@ def is_out_of_memory(error: BaseException) -> bool:
 
 
 def unused_options() -> list[str]:
-    """Options that were given at the start and that PETSc has not asked for so far, as they are
-    written: "-name"."""
+    """Options, as "-name", that were given and that PETSc has not asked for so far."""
     if not _given:
         return []
     from petsc4py import PETSc
@@ -185,8 +178,7 @@ def warn_of_unused_options() -> None:
 
 @contextmanager
 def _without_messages() -> Iterator[list[str]]:
-    """Keep what is written to stderr from the terminal; the list then holds the text of PETSc's
-    error.
+    """Keep stderr from the terminal; the list then holds the text of PETSc's error.
 
     While it starts, PETSc writes its errors itself. Everything else is written again at the end.
     """
@@ -201,15 +193,14 @@ def _without_messages() -> Iterator[list[str]]:
             os.dup2(terminal, 2)
             os.close(terminal)
             file.seek(0)
-            lines = file.read().decode(errors="replace").splitlines()
-            errors = [
-                line.partition("PETSC ERROR: ")[2] for line in lines if "PETSC ERROR: " in line
-            ]
-            messages += [text for text in errors if text and text[0] not in "-#"][:2][::-1]
-            messages += ["they are refused"]
-            for line in lines:
-                if "PETSC ERROR: " not in line:
+            errors = []
+            for line in file.read().decode(errors="replace").splitlines():
+                _, mark, text = line.partition("PETSC ERROR: ")
+                if not mark:
                     print(line, file=sys.stderr)
+                elif text and text[0] not in "-#":
+                    errors.append(text)
+            messages += [*errors[:2][::-1], "they are refused"]
 
 
 def _words(arguments: Sequence[str]) -> list[str] | InputError:
@@ -234,14 +225,10 @@ def _words(arguments: Sequence[str]) -> list[str] | InputError:
 
 
 def _without_files(words: Sequence[str]) -> list[str]:
-    """Options without those that name files of options: PETSc reports their errors well only once
-    it has started."""
-    after_file = [False, *(_is_one_of(word, FILES) for word in words)]
-    return [
-        word
-        for word, skipped in zip(words, after_file)
-        if not skipped and not _is_one_of(word, FILES)
-    ]
+    """Options without files of options: PETSc reports their errors well once it has started."""
+    names_file = [_is_one_of(word, FILES) for word in words]
+    left_out = [one or before for one, before in zip(names_file, [False, *names_file])]
+    return [word for word, out in zip(words, left_out) if not out]
 
 
 def _is_one_of(word: str, names: Sequence[str]) -> bool:

@@ -1,5 +1,4 @@
-"""Tasks shared by the ranks, without a rank that only serves the others, and their reports to rank
-0."""
+"""Tasks shared by the ranks, none of which only serves the others, and reports to rank 0."""
 
 from __future__ import annotations
 
@@ -21,8 +20,7 @@ Send = Callable[[Any], None]
 def share_tasks(
     comm: MPI.Comm, count: int, run: Callable[[int, Send], None], receive: Send
 ) -> None:
-    """Run tasks by their numbers 0 to count - 1, each on one rank: a rank that is free takes the
-    next one. Collective.
+    """Run tasks 0 to count - 1, each on one rank: a free rank takes the next one. Collective.
 
     run : called with a number, and with what sends a message to rank 0
     receive : called on rank 0 with every message
@@ -41,8 +39,7 @@ def share_tasks(
 
 
 class _Counter:
-    """The numbers 0, 1, 2, ... of which each rank takes the next one; the counter is in the memory
-    of rank 0.
+    """The numbers 0, 1, 2, ... of which each rank takes the next; rank 0 has the counter.
 
     Creation and `free` are collective, `take` is not.
     """

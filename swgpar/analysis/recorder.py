@@ -38,7 +38,7 @@ from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import SectorMesh
 from swgpar.model.drive_model import DriveModel
 from swgpar.results import history
-from swgpar.results.atomic import agreed, write_from_root
+from swgpar.results.atomic import agreed, on_root, write_from_root
 from swgpar.results.field_sources import FieldParts
 from swgpar.results.fields import BodyPart, FieldWriter, FlankGrids
 from swgpar.results.folder import (
@@ -273,7 +273,7 @@ class FolderRecorder(Recorder):
 
     def known_turns(self) -> list[Row]:
         path = self.out / TRANSMISSION_ERROR
-        present = self.comm.bcast(path.exists() if self.comm.rank == 0 else None)
+        present = on_root(self.comm, path.exists)
         with agreed(self.comm, path, "read"):
             columns = read_columns(path) if present else {}
         return [

@@ -18,7 +18,7 @@ from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.model.drive_model import DriveModel
 from swgpar.results import parallel_hdf5
-from swgpar.results.atomic import agreed
+from swgpar.results.atomic import agreed, on_root
 from swgpar.results.checkpoint import read_checkpoint, require_undamaged, write_checkpoint
 from swgpar.results.folder import START_STATES
 from swgpar.results.parallel_hdf5 import Block
@@ -109,7 +109,7 @@ class StartStates:
     def restore(self, model: DriveModel, recipe: MeshRecipe) -> bool:
         """Set the model's x to the state on this mesh; False where there is none. Collective."""
         path = self._path(model, recipe)
-        if path is None or not model.comm.bcast(path.exists() if model.comm.rank == 0 else None):
+        if path is None or not on_root(model.comm, path.exists):
             return False
         try:
             require_undamaged(path, model.comm)
@@ -122,8 +122,8 @@ class StartStates:
 
     def found(self, comm: MPI.Comm) -> bool:
         """Whether there are files, of this design or of another; collective."""
-        here = comm.rank == 0 and self.folder is not None and any(self.folder.glob(START_STATES))
-        return bool(comm.bcast(here))
+        folder = self.folder
+        return folder is not None and on_root(comm, lambda: any(folder.glob(START_STATES)))
 
     def remove(self, comm: MPI.Comm) -> None:
         """Remove the files: the checkpoint has all that a restart needs. Collective."""

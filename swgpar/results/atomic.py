@@ -41,8 +41,7 @@ def raise_first(comm: MPI.Comm, error: SwgparError | None) -> None:
 
 
 def on_all(comm: MPI.Comm, task: Callable[[], T]) -> T:
-    """What `task` returns; collective. If it fails on one rank, the error is raised on all, so that
-    none waits.
+    """What `task` returns; an error on one rank is raised on all, so that none waits. Collective.
 
     `task` must not contain collective calls after a statement that can fail on one rank only.
     """
@@ -62,8 +61,7 @@ def on_root(comm: MPI.Comm, task: Callable[[], T]) -> T:
 
 @contextmanager
 def agreed(comm: MPI.Comm, path: Path, action: str = "write") -> Iterator[None]:
-    """Run a block in which a rank may fail alone, and raise the error, or OutputError, on all ranks
-    if one did.
+    """Run a block in which a rank may fail alone; its error, or OutputError, is raised on all.
 
     The block must not contain collective calls after a statement that can fail on one rank only.
     It is collective itself: every rank enters and leaves it.

@@ -20,7 +20,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from swgpar.errors import OutputError
 from swgpar.results import parallel_hdf5
-from swgpar.results.atomic import agreed, plain, sentence
+from swgpar.results.atomic import agreed, on_root, plain, sentence
 from swgpar.results.parallel_hdf5 import Block
 
 T = TypeVar("T")
@@ -41,26 +41,21 @@ def write_checkpoint(path: Path, comm: MPI.Comm, blocks: Mapping[str, Block], co
     ----------
     path : the file
     blocks : rows by name
-    content : a dataclass, what else the state is made of, as JSON can hold it (numbers keep all
-    digits); of rank 0
+    content : a dataclass of rank 0, what else the state is made of, as JSON can hold it
     """
     rows = dict(blocks)
     sums = {body: comm.allreduce(_sum(block.array, block.first)) for body, block in rows.items()}
-    # An HDF5 attribute ends at 64 KiB, the history of a long run does not: the text goes into a
-    # data set.
-    text = comm.bcast(_text({_CONTENT: content, _SUMS: sums}) if comm.rank == 0 else None)
-    for key, values in (
-        (_ATTRS, np.frombuffer(text, dtype=np.uint8)),
-        (_DIGEST, np.frombuffer(hashlib.sha256(text).digest(), dtype=np.uint8)),
-        (_VERSION, np.array([VERSION])),
-    ):
-        rows[key] = Block(values if comm.rank == 0 else values[:0], 0, len(values))
+    # an attribute of HDF5 ends at 64 KiB, the history of a long run does not: a data set holds it
+    text = on_root(comm, lambda: _text({_CONTENT: content, _SUMS: sums}))
+    digest = hashlib.sha256(text).digest()
+    rows[_ATTRS] = Block.of_root(comm, np.frombuffer(text, dtype=np.uint8))
+    rows[_DIGEST] = Block.of_root(comm, np.frombuffer(digest, dtype=np.uint8))
+    rows[_VERSION] = Block.of_root(comm, np.array([VERSION]))
     parallel_hdf5.write(path, comm, rows)
 
 
 def _text(content: Mapping[str, Any]) -> bytes:
-    """The content for `json.loads`, numbers that are not finite among it: columns of tables have
-    them."""
+    """The content for `json.loads`; columns of tables have numbers that are not finite."""
     return json.dumps(content, default=plain).encode()
 
 
@@ -74,37 +69,28 @@ def read_checkpoint(path: Path, comm: MPI.Comm, kind: type[T]) -> T:
     OutputError
         The file cannot be read, is damaged, none of swgpar, or of another version; on all ranks.
     """
-    text, failure = b"", None
-    if comm.rank == 0:
-        try:
-            text = _read_attrs(path)
-        except OutputError as error:
-            failure = error
-    failure, text = comm.bcast((failure, text))
-    if failure is not None:
-        raise failure
+    text = on_root(comm, lambda: _read_attrs(path))
     try:
         return TypeAdapter(kind).validate_python(json.loads(text)[_CONTENT])
     except ValidationError as error:
-        raise _damaged(
-            path, f"{error.errors()[0]['loc'][-1]} is not what a checkpoint has"
-        ) from None
+        key = error.errors()[0]["loc"][-1]
+        raise _damaged(path, f"{key} is not what a checkpoint has") from None
 
 
 def require_undamaged(path: Path, comm: MPI.Comm) -> None:
-    """Read the whole checkpoint, each rank a part of it; raises OutputError on all ranks where it
-    is damaged."""
+    """Read the whole checkpoint, each rank a part; raises OutputError on all where it is
+    damaged."""
     sums: dict[str, int] = {}
     with agreed(comm, path, "read"):
         sums = json.loads(_read_attrs(path))[_SUMS]
-    found: dict[str, int] = {}
+    parts: dict[str, int] = {}
     with agreed(comm, path, "read"), h5py.File(path, "r") as file:
         for name in sums:
             rows = file[name].shape[0] if name in file else 0
             first, end = (rows * rank // comm.size for rank in (comm.rank, comm.rank + 1))
-            found[name] = _sum(file[name][first:end], first) if rows else 0
+            parts[name] = _sum(file[name][first:end], first) if rows else 0
     for name, expected in sums.items():
-        if comm.allreduce(found[name]) != expected:
+        if comm.allreduce(parts[name]) != expected:
             raise _damaged(path, f"{name} is not what was written")
 
 
@@ -116,16 +102,14 @@ def _read_attrs(path: Path) -> bytes:
             if _ATTRS not in names:
                 raise OutputError(
                     f"{path} is no checkpoint of swgpar: restore the one of this run, or start "
-                    f"again with overwrite = "
-                    "true (--overwrite)"
+                    "again with overwrite = true (--overwrite)"
                 )
             version = int(file[_VERSION][0]) if {_VERSION, _DIGEST} <= names else 0
             if version != VERSION:
                 raise OutputError(
                     f"{path} was written by another version of swgpar (version {version} of "
-                    f"checkpoints, this one "
-                    f"reads {VERSION}): continue with that version, or start again with overwrite "
-                    f"= true (--overwrite)"
+                    f"checkpoints, this one reads {VERSION}): continue with that version, or start "
+                    "again with overwrite = true (--overwrite)"
                 )
             text, digest = file[_ATTRS][:].tobytes(), file[_DIGEST][:].tobytes()
     except (OSError, RuntimeError, ValueError, KeyError, TypeError, IndexError) as error:
@@ -140,7 +124,7 @@ def _read_attrs(path: Path) -> bytes:
 def _damaged(path: Path, reason: str) -> OutputError:
     return OutputError(
         f"{path} is damaged: {reason}; restore it from a copy, or start again with overwrite = "
-        f"true (--overwrite)"
+        "true (--overwrite)"
     )
 
 

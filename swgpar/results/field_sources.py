@@ -27,8 +27,7 @@ from swgpar.results.fields import (
 class BodyMesh(NamedTuple):
     """Mesh of the modelled part of a body.
 
-    points : (n, 3) float64, mm, undeformed; sector by sector, nodes between two sectors appear
-    twice
+    points : (n, 3) float64, mm, undeformed; sector by sector, nodes between two appear twice
     cells : (m, 8) int64, hexahedra in VTK order
     """
 
@@ -100,8 +99,7 @@ class FieldFiles:
 
 
 class FieldParts:
-    """Fields in memory: every rank keeps those of the sectors it owns; they are gathered when they
-    are read."""
+    """Fields in memory: every rank keeps those of its sectors; reading gathers them."""
 
     gathered = True
 
@@ -114,8 +112,7 @@ class FieldParts:
         return sorted(next(iter(self._fields.values())))
 
     def keep(self, increment: int, fields: Mapping[str, Mapping[str, np.ndarray]]) -> None:
-        """Keep the fields of an increment: body -> name -> (n_sectors, n_local[, n_components]) of
-        this rank."""
+        """Keep fields of this rank: body -> name -> (n_sectors, n_local[, n_components])."""
         for body, values in fields.items():
             self._fields[body][increment] = {
                 name: stored(name, array) for name, array in values.items()
@@ -144,9 +141,8 @@ class FieldParts:
         n_local = part.points.shape[1]
         whole = np.empty((part.total * n_local, *rows.shape[1:]), dtype=rows.dtype)
         spans = self._comm.allgather((part.first * n_local, len(rows)))
-        for rank, (first, count) in enumerate(
-            spans
-        ):  # rank by rank: no message is larger than one part
+        # rank by rank: no message is larger than one part
+        for rank, (first, count) in enumerate(spans):
             if rank == self._comm.rank:
                 whole[first : first + count] = rows
             self._comm.Bcast(whole[first : first + count], root=rank)
@@ -154,8 +150,7 @@ class FieldParts:
 
 
 def chosen_increment(source: FieldSource, increment: int) -> int:
-    """The increment with a given index in the list of those with fields; negative indices count
-    from the end."""
+    """The increment with an index in the list of those with fields; negative from the end."""
     known = source.increments
     if not -len(known) <= increment < len(known):
         raise InputError(

@@ -42,8 +42,7 @@ TIME_STEP = 1e-3
 def times(angles: Sequence[float] | np.ndarray) -> np.ndarray:
     """Times (n,) of increments at these angles of the wave generator (n,), degrees.
 
-    They are the angles, made to increase: the increments that assemble the drive are all at the
-    first one.
+    They are the angles, made to increase: those that assemble the drive are all at the first one.
     """
     found = np.array(angles, dtype=float)
     for k in range(1, len(found)):
@@ -56,11 +55,9 @@ TENSOR6 = [0, 3, 5, 1, 4, 2]
 
 
 def stored(name: str, values: np.ndarray) -> np.ndarray:
-    """Nodal values (n_sectors, n_local[, n_components]) in the form in which they are kept, on disk
-    and in memory.
+    """Nodal values (n_sectors, n_local[, n_components]) as they are kept on disk and in memory.
 
-    Tensors have the components xx xy xz yy yz zz. Displacements are float64, all other fields
-    float32.
+    Tensors have the components xx xy xz yy yz zz. Displacements are float64, others float32.
     """
     if values.ndim == 3 and values.shape[2] == 6:
         values = values[..., TENSOR6]
@@ -125,10 +122,9 @@ class FieldWriter:
         for name, part in bodies.items():
             n_sectors, n_local = part.points.shape[:2]
             sector = np.arange(part.first, part.first + n_sectors)[:, None, None] * n_local
+            cells = (part.cells + sector).reshape(-1, 8)
             blocks[f"{name}/points"] = part.block(part.points.reshape(-1, 3), n_local)
-            blocks[f"{name}/cells"] = part.block(
-                (part.cells + sector).reshape(-1, 8), len(part.cells)
-            )
+            blocks[f"{name}/cells"] = part.block(cells, len(part.cells))
             if part.flanks is not None:
                 grids = zip(FLANKS, part.flanks, strict=True)
                 blocks |= {f"{name}/{key}": Block.of_root(self.comm, array) for key, array in grids}
@@ -139,8 +135,7 @@ class FieldWriter:
         return (self.out / FOLDER / f"{increment_name(index)}.h5").exists()
 
     def write_increment(self, index: int, fields: Mapping[str, Mapping[str, np.ndarray]]) -> None:
-        """Write nodal fields of the bodies: body -> name -> (n_sectors, n_local[,
-        n_components])."""
+        """Write nodal fields: body -> name -> (n_sectors, n_local[, n_components])."""
         blocks = {
             f"{body}/{name}": self._bodies[body].block(stored(name, array), array.shape[1])
             for body, values in fields.items()
@@ -151,8 +146,7 @@ class FieldWriter:
     def write_index(
         self, increments: Sequence[tuple[int, float]], names: Mapping[str, Mapping[str, int]]
     ) -> None:
-        """Rewrite fields.h5 and fields.xdmf: increments (index, cam angle), body -> field ->
-        components."""
+        """Rewrite both indices: increments (index, cam angle), body -> field -> components."""
         path = self.out / INDEX
         with agreed(self.comm, path):
             if self.comm.rank == 0:
@@ -167,19 +161,14 @@ class FieldWriter:
         self, increments: Sequence[tuple[int, float]], names: Mapping[str, Mapping[str, int]]
     ) -> str:
         when = times([angle for _, angle in increments]).tolist()
-        # a series for each body: VTK adds [1], [2] ... to names that return
-        return xdmf.document(
-            xdmf.series(
-                body,
-                [
-                    xdmf.grid(
-                        f"{body}_{index:04d}", self._grid(body, index, angle, time, names[body])
-                    )
-                    for time, (index, angle) in zip(when, increments, strict=True)
-                ],
-            )
-            for body in self._bodies
-        )
+        series = []
+        for body in self._bodies:  # a series for each: VTK adds [1], [2] ... to names that return
+            grids = [
+                xdmf.grid(f"{body}_{index:04d}", self._grid(body, index, angle, time, names[body]))
+                for time, (index, angle) in zip(when, increments, strict=True)
+            ]
+            series.append(xdmf.series(body, grids))
+        return xdmf.document(series)
 
     def _grid(
         self, body: str, index: int, angle: float, time: float, names: Mapping[str, int]

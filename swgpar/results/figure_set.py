@@ -29,8 +29,7 @@ Drawings = Mapping[str, "Callable[[], Figure]"]
 
 
 def import_matplotlib() -> None:
-    """Import matplotlib without the settings that a file matplotlibrc of the working directory may
-    hold."""
+    """Import matplotlib without the settings of a matplotlibrc in the working directory."""
     if "matplotlib" in sys.modules:
         return
     here = os.open(".", os.O_RDONLY)
@@ -70,11 +69,7 @@ PICTURE = 6
 class FigureSet(ABC):
     """The figures of one result.
 
-    Parameters
-    ----------
-    comm : communicator of the result
-    gathered : whether figures show fields that are gathered from all ranks, so that all have to
-    draw
+    comm : of the result;  gathered : whether figures show gathered fields, so that all ranks draw
     """
 
     def __init__(self, comm: MPI.Comm, *, gathered: bool = False) -> None:
@@ -93,13 +88,8 @@ class FigureSet(ABC):
     def save(self, folder: str | Path) -> list[Path]:
         """Write every figure as ``folder``/figures/NAME.png and return the files; collective.
 
-        The ranks share the figures among them, unless these show gathered fields: then rank 0
-        writes all.
-
-        Raises
-        ------
-        OutputError
-            A figure cannot be drawn or written; on all ranks.
+        The ranks share the figures, unless these show gathered fields: then rank 0 writes all.
+        Raises OutputError on all ranks where one cannot be drawn or written.
         """
         import_matplotlib()
         figures, comm = Path(folder) / FOLDER, self._comm
@@ -116,9 +106,8 @@ class FigureSet(ABC):
             try:
                 figure = self.drawings[name]()
                 if writes:
-                    figure.savefig(
-                        path, dpi=figure.dpi if name in self.exact_size else DOTS_PER_INCH
-                    )
+                    exact = name in self.exact_size
+                    figure.savefig(path, dpi=figure.dpi if exact else DOTS_PER_INCH)
             except Exception as error:  # whatever a drawing library raises
                 failure = failure or OutputError(f"cannot draw {path}: {sentence(error)}")
         raise_first(comm, failure)
@@ -137,8 +126,7 @@ class FigureSet(ABC):
 
 
 class NamedFigures(FigureSet):
-    """Figures whose names follow from the result: ``plot.NAME()`` draws one, ``plot.names`` lists
-    them."""
+    """Figures whose names follow from the result: ``plot.NAME()`` draws one of ``plot.names``."""
 
     def __init__(self, drawings: Drawings, comm: MPI.Comm) -> None:
         super().__init__(comm)
@@ -160,8 +148,7 @@ class NamedFigures(FigureSet):
 
 
 def save_figures(figures: FigureSet, folder: Path) -> None:
-    """Write the figures of a finished run; a figure that fails must not cost the run.
-    Collective."""
+    """Write the figures of a finished run; one that fails must not cost the run. Collective."""
     try:
         for path in figures.save(folder):
             logger.info("figure %s", path)

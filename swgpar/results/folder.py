@@ -12,7 +12,7 @@ from swgpar import log
 from swgpar.errors import InputError, OutputError
 from swgpar.input.quantities import show
 from swgpar.results import checkpoint, history, lock
-from swgpar.results.atomic import TEMPORARY, agreed, discard, sentence, write_file
+from swgpar.results.atomic import TEMPORARY, agreed, discard, on_root, sentence, write_file
 from swgpar.results.fields import FOLDER, INDEX
 
 RECIPE = "recipe.toml"
@@ -88,8 +88,7 @@ RESULTS = (
 
 
 def given_folder(out: str | Path) -> Path:
-    """The folder that a user has given; raises InputError for an empty text, which would be the
-    working directory."""
+    """The folder that a user has given; an empty text, the working directory, is an InputError."""
     if isinstance(out, str) and not out.strip():
         raise InputError(f"out = {show(out)} names no folder: give the path of one")
     return Path(out)
@@ -108,9 +107,8 @@ def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
 
     The function that runs releases the lock: it is decorated with `lock.releasing`.
 
-    Results of an earlier run are refused unless `restart` continues them or `overwrite` replaces
-    them. Returns whether there is a checkpoint to continue from: a run that ended before its first
-    checkpoint starts again.
+    Results of an earlier run are refused unless `restart` continues or `overwrite` replaces them.
+    Returns whether there is a checkpoint to continue from: without one a run starts again.
     """
     with agreed(comm, out):
         if comm.rank == 0:
@@ -121,13 +119,13 @@ def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
             probe.unlink()
             for left in out.glob(f"*{TEMPORARY}"):
                 discard(left)
-    present = comm.bcast((out / history.NAME).exists() if comm.rank == 0 else None)
-    saved = comm.bcast((out / checkpoint.NAME).exists() if comm.rank == 0 else None)
+    present, saved = on_root(
+        comm, lambda: [(out / name).exists() for name in (history.NAME, checkpoint.NAME)]
+    )
     if present and not restart and not overwrite:
         raise OutputError(
             f"{out} already holds results: continue them with restart = true (--restart), replace "
-            f"them with "
-            "overwrite = true (--overwrite), or choose another folder"
+            "them with overwrite = true (--overwrite), or choose another folder"
         )
     if overwrite and not restart:
         with agreed(comm, out):
@@ -155,6 +153,5 @@ def read_summary(folder: Path) -> dict[str, Any]:
 
 
 def read_design(folder: Path) -> dict[str, Any]:
-    """The design of a finished run, as in its summary.json; raises OutputError as
-    `read_summary`."""
+    """The design of a finished run, of its summary.json; raises OutputError as `read_summary`."""
     return read_summary(folder)["design"]

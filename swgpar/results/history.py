@@ -153,12 +153,9 @@ def columns_of(drives: str) -> tuple[Column, ...]:
 
 
 def plain_row(row: Mapping[str, Any]) -> Row:
-    """A row with Python's own types, in the order of the columns; ValueError for one that is not
-    declared."""
-    if unknown := sorted(row.keys() - COLUMNS.keys()):
-        raise ValueError(
-            f"history row: {', '.join(unknown)} is not declared in swgpar.results.history"
-        )
+    """A row with Python's own types in the order of the columns; others are a ValueError."""
+    if unknown := ", ".join(sorted(row.keys() - COLUMNS.keys())):
+        raise ValueError(f"history row: {unknown} is not declared in swgpar.results.history")
     return {
         name: (int if column.whole else float)(row[name])
         for name, column in COLUMNS.items()
@@ -174,8 +171,7 @@ def names_of(rows: Sequence[Mapping[str, Any]]) -> list[str]:
 
 
 def format_rows(rows: Iterable[Mapping[str, Any]]) -> bytes:
-    """The text of the whole file; floats as the shortest text that reads back the same, empty where
-    a row has no value."""
+    """The text of the whole file as of `format_csv`, empty where a row has no value."""
     plain = [plain_row(row) for row in rows]
     names = names_of(plain)
     return format_csv([{name: row.get(name) for name in names} for row in plain])
@@ -190,12 +186,10 @@ def columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
     """The history by columns, each (n,): int64 for `step` and for counts, else float64; float64 too
     for counts that a row lacks. NaN where a row has no value."""
     names = names_of(rows) if rows else [column.name for column in columns_of("all")]
-    whole = {
-        column.name
-        for column in DECLARED
-        if column.whole and all(column.name in row for row in rows)
+    kinds = {
+        name: np.int64 if column.whole and all(name in row for row in rows) else float
+        for name, column in COLUMNS.items()
     }
-    kinds = {name: np.int64 if name in whole else float for name in COLUMNS}
     return {
         name: np.array([row.get(name, np.nan) for row in rows], dtype=kinds.get(name))
         for name in names
@@ -208,12 +202,9 @@ def read_history(path: Path) -> list[Row]:
 
     Raises ValueError for columns of a newer version, or without those of `REQUIRED`.
     """
-    description = path.with_name(DESCRIPTION)
-    version = (
-        json.loads(description.read_text(encoding="utf-8"))["version"]
-        if description.exists()
-        else 1
-    )
+    description, version = path.with_name(DESCRIPTION), 1
+    if description.exists():
+        version = json.loads(description.read_text(encoding="utf-8"))["version"]
     if version > VERSION:
         raise ValueError(
             f"its columns are of version {version}, and swgpar {__version__} reads up to {VERSION}"
@@ -251,26 +242,24 @@ def wrapped(angle: np.ndarray) -> np.ndarray:
 
 
 def loaded_increments(history: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Indices of the increments under load: the last of the loading, all of the rotation. All, if
-    there are none.
+    """Indices of the increments under load: the last of the loading, the rotation; else all.
 
     history : columns, as `columns` gives them
     """
     step = history["step"]
     rotation = np.flatnonzero(step >= Stage.ROTATE)
     last_of_loading = np.flatnonzero(step == Stage.LOAD)[-1:]
-    found = np.concatenate([last_of_loading, rotation])
-    return found if len(found) else np.arange(len(step))
+    loaded = np.concatenate([last_of_loading, rotation])
+    return loaded if len(loaded) else np.arange(len(step))
 
 
 @dataclass(frozen=True)
 class Curves:
     """The history under load, ready to be drawn.
 
-    angle, values : (n,) degrees of the wave generator, and columns by name, where they were
-    computed
+    angle, values : (n,) degrees of the wave generator, and computed columns by name
     fine_angle, fine : (m,) and the periodic columns between them, NaN for one that lacks values;
-    the points where the rotation was not sampled
+        the points where the rotation was not sampled
     """
 
     angle: np.ndarray
@@ -282,14 +271,11 @@ class Curves:
 def curves(
     history: Mapping[str, np.ndarray], samples: int, increments: int, period: float, ratio: float
 ) -> Curves:
-    """Columns of the increments under load; one period of it, joined by periodic splines, where it
-    was sampled.
+    """Columns of the increments under load; of a sampled period, joined by periodic splines.
 
-    Parameters
-    ----------
-    samples : angles in a period, 0 where every increment was computed;  increments : that were
-    computed
-    period : degrees;  ratio : change of `wg_angle_deg` over that of `output_angle_deg`, on average
+    samples : angles in a period, 0 where every increment was computed
+    increments : that were computed;  period : degrees
+    ratio : change of `wg_angle_deg` over that of `output_angle_deg`, on average
     """
     shown = dict(history)
     if "output_angle_deg" in history:

@@ -1,5 +1,4 @@
-"""A lock on a results folder: two runs cannot write into it at once, on this machine or another
-one.
+"""A lock on a results folder: two runs, on any machines, cannot write into it at once.
 
 The system keeps the lock for as long as the process lives, so that one of a process that was killed
 is none. Where a file system has no locks, a file with the owner decides.
@@ -37,8 +36,7 @@ _held: dict[str, BaseFileLock] = {}
 
 
 def acquire(folder: Path) -> None:
-    """Lock an existing folder for this process until the function decorated with `releasing` ends;
-    on one rank.
+    """Lock an existing folder until the function decorated with `releasing` ends; on one rank.
 
     Raises OutputError when another process holds the lock, OSError when its file cannot be written.
     """
@@ -87,8 +85,7 @@ def _release(folder: str) -> None:
 
 
 def _refusal(folder: Path, path: Path) -> str:
-    """Who holds the lock, by the record in its file: the number of a process and its machine, each
-    on a line."""
+    """Who holds the lock, by the lines of its file: the number of a process, its machine."""
     who = "another process"
     with suppress(OSError, ValueError, IndexError):
         process, host = path.read_text(encoding="utf-8").splitlines()[:2]

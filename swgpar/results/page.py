@@ -1,5 +1,4 @@
-"""Pages of HTML that are one file and need nothing else: templates of the package, and the tables
-and pictures in them.
+"""Pages of HTML that are one file and need nothing else: templates, tables and pictures.
 
 Templates lie in the room of their page as `*.html.j2`. They escape every value. A page names its
 scripts, and its content security policy lets no others run.
@@ -18,8 +17,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 RANK = "results/rank.js"
-"""Script that puts the rows of ranked tables in the order of the column whose heading is
-clicked."""
+"""Script that orders the rows of ranked tables by the column whose heading is clicked."""
 
 
 @dataclass(frozen=True)
@@ -32,8 +30,8 @@ class Row:
 
 @dataclass(frozen=True)
 class Table:
-    """Texts stand on the left, numbers on the right. ranked : whether headings order the rows, by
-    `RANK` on the page"""
+    """Texts stand on the left, numbers on the right. ranked : whether headings order rows by
+    `RANK`"""
 
     header: Sequence[str]
     rows: Sequence[Row]
@@ -49,8 +47,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture in the file itself. text : what it shows;  wide : whether it takes the width of the
-    page"""
+    """A picture in the file itself. text : what it shows;  wide : whether as wide as the page"""
 
     png: bytes
     text: str
@@ -74,8 +71,7 @@ def page(template: str, title: str, *, scripts: Sequence[str] = (), **values: An
 
 
 def render(template: str, **values: Any) -> str:
-    """The text of a template of the package, every value escaped; a path below the package, and
-    what it shows."""
+    """The text of a template, a path below the package, with escaped values."""
     return _environment().get_template(template).render(**values)
 
 

@@ -83,12 +83,9 @@ def _lay_out(
 ) -> dict[str, int]:
     """Make the file without its rows; returns where in the file the rows of each data set begin."""
     shapes = {name: (block.total, *block.array.shape[1:]) for name, block in blocks.items()}
-    size = (
-        sum(int(np.prod(shapes[name])) * blocks[name].array.dtype.itemsize for name in blocks)
-        + LAYOUT_BYTES
-    )
+    sizes = [int(np.prod(shapes[name])) * blocks[name].array.dtype.itemsize for name in blocks]
     discard(temporary)
-    reserve(temporary, size)
+    reserve(temporary, sum(sizes) + LAYOUT_BYTES)
     early = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     early.set_layout(h5py.h5d.CONTIGUOUS)
     early.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
@@ -129,12 +126,7 @@ def _fill(
         for name, (array, first, _) in blocks.items():
             if len(array):
                 _write_rows(file, offsets[name], array, first)
-    except (
-        OSError,
-        RuntimeError,
-        ValueError,
-        TypeError,
-    ) as error:  # MPI.Exception is a RuntimeError
+    except (OSError, RuntimeError, ValueError, TypeError) as error:  # MPI's is a RuntimeError
         failure = error
     with agreed(comm, path):
         try:
@@ -159,16 +151,15 @@ def _write_rows(file: MPI.File, begin: int, array: np.ndarray, first: int) -> No
 def read_rows(
     path: Path, comm: MPI.Comm, ranges: Mapping[str, tuple[int, int]]
 ) -> dict[str, np.ndarray]:
-    """Rows first .. first + count - 1 of data sets; each rank reads its own, errors are raised on
+    """Rows first .. first + count - 1 of data sets; each rank its own, errors are raised on
     all."""
     arrays: dict[str, np.ndarray] = {}
     with agreed(comm, path, "read"), h5py.File(path, "r") as file:
         for name, (first, count) in ranges.items():
             if name not in file:
                 raise ValueError(f"it has no data set {name!r}")
-            if first + count > file[name].shape[0]:
-                raise ValueError(
-                    f"{name!r} has {file[name].shape[0]} rows, {first + count} are needed"
-                )
+            present = file[name].shape[0]
+            if first + count > present:
+                raise ValueError(f"{name!r} has {present} rows, {first + count} are needed")
             arrays[name] = file[name][first : first + count]
     return arrays

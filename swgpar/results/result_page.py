@@ -1,5 +1,4 @@
-"""Parts that the reports of all systems have: the figures of the results folder, the design,
-versions and times."""
+"""Parts that the reports of all systems have: figures, the design, versions and times."""
 
 from __future__ import annotations
 
@@ -18,8 +17,8 @@ class RunFacts:
     """What a report says of the program and the inputs.
 
     design : the whole design, defaults included;  versions : by program
-    ranks : MPI ranks;  wall_s : time, s;  memory_MB : largest of every rank. None or empty where it
-    is not known
+    ranks : MPI ranks;  wall_s : time, s;  memory_MB : largest of every rank. None or empty if not
+        known
     """
 
     design: Mapping[str, Any]

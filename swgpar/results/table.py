@@ -1,5 +1,4 @@
-"""CSV tables: floats as the shortest text that reads back the same, empty where there is no
-value."""
+"""CSV tables: floats as the shortest text that reads back the same, nothing for no value."""
 
 from __future__ import annotations
 
@@ -28,8 +27,7 @@ def format_csv(rows: Sequence[Mapping[str, Any]]) -> bytes:
 
 
 def _cell(value: Any) -> Any:
-    """A value as a file has it: a text that a spreadsheet would compute begins with an
-    apostrophe."""
+    """A value in a file: a text that a spreadsheet would compute begins with an apostrophe."""
     if isinstance(value, float):
         return repr(float(value))  # NumPy 2 shows the type of its own numbers
     if not isinstance(value, str):
@@ -53,8 +51,7 @@ def format_columns(columns: Mapping[str, Sequence[Any] | np.ndarray]) -> bytes:
 
 
 def as_columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
-    """The columns of a table given by its rows, as `read_columns` reads them from its file; none
-    without rows."""
+    """The columns of a table given by its rows, as `read_columns` reads them; none for no rows."""
     found = {name: np.array([row[name] for row in rows]) for name in (rows[0] if rows else {})}
     return {
         name: values.astype(float) if values.dtype.kind in "if" else values

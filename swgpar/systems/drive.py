@@ -29,8 +29,7 @@ from swgpar.systems.protocol import Measured, System
 
 
 class Drives(System[DriveDesign, DriveResult]):
-    """The drive's adapter: analysis, results and quantities under the names that all systems
-    share."""
+    """The drive's adapter to the names that all systems share."""
 
     noun = "a drive"
     options = frozenset({"mesh", "accuracy", "restart", "plain"})

@@ -32,8 +32,7 @@ from swgpar.systems.protocol import Measured, System
 
 
 class GearTrains(System[TrainDesign, TrainResult]):
-    """The gear trains' adapter: their runs, results and quantities under the names that all systems
-    share."""
+    """The gear trains' adapter to the names that all systems share."""
 
     noun = "a gear train"
     options = frozenset()

@@ -67,11 +67,8 @@ R = TypeVar("R", bound=Result)
 
 
 class System(ABC, Generic[D, R]):
-    """A kind of systems: its design files, runs and results. D is the class of its designs, R that
-    of its results.
+    """A kind of systems: its design files, runs and results, of classes D and R.
 
-    Attributes
-    ----------
     noun : what one is called in messages, with its article
     options : which of the options "mesh", "accuracy", "plain" and "restart" a run has
     """
@@ -81,8 +78,7 @@ class System(ABC, Generic[D, R]):
 
     @abstractmethod
     def load(self, table: dict[str, Any]) -> D:
-        """A checked design from the content of its file; every problem is an InputError of one
-        sentence."""
+        """A checked design from the content of its file; problems are InputErrors."""
 
     @abstractmethod
     def check(self, design: D) -> dict[str, float]:
@@ -94,8 +90,7 @@ class System(ABC, Generic[D, R]):
 
     @abstractmethod
     def run(self, design: D, options: RunOptions) -> R:
-        """Run a design; collective. Options have values as far as `options` of this class names
-        them."""
+        """Run a design; collective. Options have values as far as `options` names them."""
 
     @abstractmethod
     def open(self, folder: Path, comm: MPI.Comm) -> R:
@@ -145,8 +140,7 @@ class System(ABC, Generic[D, R]):
 
     @abstractmethod
     def identity(self, design: D, recipe: MeshRecipe | None) -> dict[str, Any]:
-        """What is computed, for restarts: "identity", and further values that a finished run must
-        have in common."""
+        """What is computed, for restarts: "identity", and what finished runs must share besides."""
 
     @abstractmethod
     def measure(self, result: R) -> Measured:

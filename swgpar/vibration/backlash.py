@@ -4,10 +4,8 @@ deflection.
     f(d) = k (d - b) beyond b, k (d + b) below -b, 0 between;    P(d) = k (|d| - b)² / 2 outside, 0
     between
 
-P is the integral of f. Equation 4.32 of the source lacks k b² / 2: its energy jumps at the ends of
-the gap.
-Arrays broadcast; stiffness k in N/m, deflections d, half backlash b and deviations s in m, s = 0
-allowed.
+P is the integral of f. Equation 4.32 of the source lacks k b² / 2: its energy jumps at the gap's
+ends. Arrays broadcast; stiffness k in N/m, deflections d, half backlash b, deviations s >= 0 in m.
 """
 
 from __future__ import annotations
@@ -36,8 +34,7 @@ def energy(stiffness: Array, deflection: Array, half_backlash: Array) -> np.ndar
 def _beyond(
     mean: Array, deviation: Array, half_backlash: Array
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Expectations of 1, of x and of x² over x = d - b where d > b and over x = -d - b where d <
-    -b, (2, ...)."""
+    """Expectations (2, ...) of 1, x and x² over x = d - b > 0 and over x = -d - b > 0."""
     m, s = np.asarray(mean, dtype=float), np.asarray(deviation, dtype=float)
     x = np.array([m - half_backlash, -m - half_backlash])
     ratio = x / np.where(s > 0.0, s, 1.0)
@@ -90,11 +87,8 @@ def energy_stiffness(
     """
     s2 = np.asarray(deviation, dtype=float) ** 2
     slope = mean_stiffness(stiffness, mean, deviation, half_backlash)
-    # for smaller deviations the difference of the energies is round-off; its limit is half the
-    # slope
-    scale = np.abs(mean) + half_backlash
-    resolved = s2 > 1e-10 * scale**2
-    rise = mean_energy(stiffness, mean, deviation, half_backlash) - energy(
-        stiffness, mean, half_backlash
-    )
+    # for smaller deviations the difference of energies is round-off; its limit is half the slope
+    resolved = s2 > 1e-10 * (np.abs(mean) + half_backlash) ** 2
+    rise = mean_energy(stiffness, mean, deviation, half_backlash)
+    rise = rise - energy(stiffness, mean, half_backlash)
     return np.where(resolved, 2.0 / 3.0 * (slope + rise / np.where(resolved, s2, 1.0)), slope)

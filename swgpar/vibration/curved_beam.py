@@ -1,5 +1,4 @@
-"""Curved-beam element of a thin ring with exact static shape functions, and the ring of such
-elements.
+"""Curved-beam element of a thin ring with exact static shape functions, and rings of it.
 
 Displacements of the centre line at the angle a: u outward, w counter-clockwise, and the rotation r
 = (w - u') / R of its cross-section. The energy is that of Flügge's thin ring,
@@ -12,11 +11,9 @@ L.-K. Chiang, Dynamic analysis of an arch due to a moving load, Journal of Sound
 (2004) 511-534), the stretching one with J = 1 + I / (A R²). Stiffness and mass follow from the
 energy and are symmetric. Deviations from print:
 
-- shape functions are P(a) Q⁻¹, not P Qᵀ (eqs 3.67, 6.5); eq. 3.18 lacks the G4 term and has one of
-G3 for it;
+- shape functions are P(a) Q⁻¹, not P Qᵀ (eqs 3.67, 6.5); eq. 3.18 has a G3 term for that of G4;
 - the stiffness is Q⁻ᵀ (∫ of the strains' products) Q⁻¹; the printed V Q⁻¹ (eqs 5.3, 6.21; D of eq.
-3.61) has signs and
-  an entry R⁻¹ in the rows of the moments that make it unsymmetric.
+  3.61) has signs and an entry R⁻¹ in the rows of the moments that make it unsymmetric.
 """
 
 from __future__ import annotations
@@ -32,8 +29,7 @@ QUADRATURE = 8
 
 @dataclass(frozen=True)
 class BeamSection:
-    """Of a ring. E : Pa;  density : kg/m³;  radius : m, of the centre line;  area : m²;  inertia :
-    m⁴"""
+    """Of a ring. E : Pa;  density : kg/m³;  radius : m, centre line;  area : m²;  inertia : m⁴"""
 
     E: float
     density: float
@@ -55,12 +51,8 @@ class BeamSection:
 
 
 def solutions(section: BeamSection, angle: float) -> np.ndarray:
-    """P: (3, 6), values of u, w (m) and r (rad) of the six solutions at an angle from the element's
-    middle."""
-    a = angle
-    c = np.cos(angle)
-    s = np.sin(angle)
-    j = 1.0 + section.slenderness
+    """P: (3, 6), u, w (m) and r (rad) of the six solutions at an angle from the middle."""
+    a, c, s, j = angle, np.cos(angle), np.sin(angle), 1.0 + section.slenderness
     values = np.array(
         [
             [1.0, c, s, a * s, 0.0, a * c],
@@ -74,12 +66,11 @@ def solutions(section: BeamSection, angle: float) -> np.ndarray:
 
 def _strains(section: BeamSection, angle: float) -> np.ndarray:
     """(2, 6): e and k of the six solutions."""
-    out = np.zeros((2, 6))
-    out[0, 0] = -section.slenderness / section.radius
-    out[1, [0, 3, 5]] = (
-        np.array([1.0, 2.0 * np.cos(angle), -2.0 * np.sin(angle)]) / section.radius**2
-    )
-    return out
+    strains = np.zeros((2, 6))
+    strains[0, 0] = -section.slenderness / section.radius
+    strains[1, [0, 3, 5]] = 1.0, 2.0 * np.cos(angle), -2.0 * np.sin(angle)
+    strains[1] /= section.radius**2
+    return strains
 
 
 @dataclass(frozen=True)
@@ -100,9 +91,8 @@ class Element:
     @classmethod
     def over(cls, section: BeamSection, angle: float) -> Element:
         """The element of a ring whose ends are `angle` rad apart."""
-        inverse = np.linalg.inv(
-            np.vstack([solutions(section, -0.5 * angle), solutions(section, 0.5 * angle)])
-        )
+        ends = [solutions(section, end) for end in (-0.5 * angle, 0.5 * angle)]
+        inverse = np.linalg.inv(np.vstack(ends))
         points, weights = np.polynomial.legendre.leggauss(QUADRATURE)
         inertial = section.density * np.diag([section.area, section.area, section.inertia])
         bending, stretching, mass = (np.zeros((6, 6)) for _ in range(3))
@@ -121,8 +111,7 @@ class Element:
         return self.bending + self.stretching
 
     def shape_functions(self, angle: float) -> np.ndarray:
-        """(3, 6): u, w, r at an angle from the middle per displacements of the two nodes (eq.
-        6.5)."""
+        """(3, 6): u, w, r at an angle from the middle per displacement of both nodes (eq. 6.5)."""
         return solutions(self.section, angle) @ self.inverse
 
 
@@ -161,14 +150,13 @@ class Ring:
         return 3 * self.elements
 
     def modes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Natural frequencies (unknowns,) in rad/s, growing, and their shapes (unknowns, unknowns)
-        of unit mass."""
+        """Natural frequencies (unknowns,) rad/s, growing, and shapes (unknowns, unknowns) of unit
+        mass."""
         squares, shapes = eigh(self.stiffness, self.mass)
         return np.sqrt(squares.clip(0.0)), shapes
 
     def bending_share(self, shapes: np.ndarray) -> np.ndarray:
-        """Bending's share of the strain energy of displacements (unknowns, n); 0 for a rigid
-        motion."""
+        """Bending's share of the strain energy of displacements (unknowns, n); 0 if rigid."""
         bending, elastic = (
             np.einsum("ik,ij,jk->k", shapes, m, shapes) for m in (self.bending, self.elastic)
         )
@@ -206,8 +194,7 @@ class Ring:
 def supports_restrain_ring(
     supports: int, radial: float, tangential: float, torsional: float, radius: float
 ) -> bool:
-    """Whether equally spaced supports (N/m, N/m, N·m/rad) hold a ring of some radius (m) against
-    all rigid motions."""
+    """Whether equally spaced supports (N/m, N/m, N·m/rad) hold a ring (radius in m) in place."""
     angle = 2.0 * np.pi * np.arange(supports) / supports
     none, one = np.zeros(supports), np.ones(supports)
     motions = (
@@ -222,8 +209,7 @@ def supports_restrain_ring(
 
 
 def free_frequencies(section: BeamSection, waves: int) -> np.ndarray:
-    """Both natural frequencies (2,) in rad/s of a free ring with `waves` waves around it: bending,
-    then stretching.
+    """Natural frequencies (2,) rad/s of a free ring with `waves` waves: bending, stretching.
 
     Exact for the energy above: u = U cos(n a), w = W sin(n a).
     """

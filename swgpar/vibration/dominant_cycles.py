@@ -9,7 +9,6 @@ SLOWEST_WAVE = 18
 
 
 def dominant_cycles(values: np.ndarray, revolutions: float = 1.0) -> float:
-    """Number of slow cycles in a revolution with the largest amplitude; values : (n,), equally
-    spaced in all time."""
+    """Slow cycles in a revolution with the largest amplitude. values : (n,), equally spaced"""
     amplitude = np.abs(np.fft.rfft(values))[: int(SLOWEST_WAVE * revolutions) + 1]
     return float((1 + np.argmax(amplitude[1:])) / revolutions)

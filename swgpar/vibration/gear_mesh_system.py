@@ -1,5 +1,4 @@
-"""Masses, springs and dampers with gear meshes under a steady load and white noise, and their time
-integration.
+"""Masses, springs and dampers with gear meshes under a steady load and white noise, in time.
 
     M q'' + C q' + K q + sum_j w_j f_j(w_j . q) = F + B W(t)
 
@@ -57,11 +56,9 @@ class GearMeshSystem:
         return self.stiffness + deflection_rows.T @ (equivalent[:, None] * deflection_rows)
 
     def newmark(self, stiffness: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray]:
-        """Left matrix of the scheme at the end of a step and right matrix at its start, (2 n, 2 n)
-        each, for p = K q.
+        """Left and right matrix (2 n, 2 n) of the scheme with p = K q.
 
-        stiffness : K at that moment (n, n). The right matrix of a step is to be taken with the K of
-        its start.
+        stiffness : K (n, n), for the left matrix at the end of a step, for the right at its start
         """
         m, c, k = self.mass, self.damping, 0.5 * h * stiffness
         return np.block([[c + k, m], [m, -0.5 * h * m]]), np.block([[c - k, m], [m, 0.5 * h * m]])

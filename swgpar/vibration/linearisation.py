@@ -1,5 +1,4 @@
-"""Statistical linearisation: mean and covariance over time of a gear-mesh system with normally
-distributed coordinates.
+"""Statistical linearisation: mean and covariance over time of a gear-mesh system.
 
 Each mesh is replaced by the linear law f_0 + k_e (d - E[d]) with f_0 = E[f] and an equivalent
 stiffness k_e. Both follow from mean and standard deviation of the mesh deflection d at the same
@@ -39,8 +38,7 @@ EQUIVALENT: dict[Criterion, Callable[..., np.ndarray]] = {
 """Equivalent stiffness of a mesh by criterion."""
 
 TOLERANCE, MAX_ITERATIONS = 1e-10, 60
-"""Relative change of mean forces and equivalent stiffnesses in the last iteration of a step; limit
-of iterations."""
+"""Relative change of mean forces and equivalent stiffnesses in a step's last iteration; limit."""
 
 MEAN_TOLERANCE = 1e-8
 """Relative change in the last Newton iteration of the mean; convergence is quadratic."""
@@ -50,8 +48,7 @@ MEAN_TOLERANCE = 1e-8
 class CoordinateMoments:
     """time : (rows,) s;  mean : (rows, n) of the coordinates, m
 
-    covariance : (rows, 2 n, 2 n) of coordinates and velocities, m and m/s; symmetric up to
-    round-off
+    covariance : (rows, 2 n, 2 n) of coordinates and velocities; symmetric up to round-off
     """
 
     time: np.ndarray
@@ -59,8 +56,7 @@ class CoordinateMoments:
     covariance: np.ndarray
 
     def of(self, rows: np.ndarray) -> Moments:
-        """Moments without the start of values whose `rows` (values, n) are theirs per
-        coordinate."""
+        """Moments, without the start, of values with so much per coordinate, `rows` (values, n)."""
         n = self.mean.shape[1]
         variances = np.einsum("ki,tij,kj->tk", rows, self.covariance[1:, :n, :n], rows)
         return Moments(self.mean[1:] @ rows.T, np.sqrt(np.maximum(variances, 0.0)))
@@ -70,8 +66,7 @@ class CoordinateMoments:
 class _MeshState:
     """Meshes at the end of a step.
 
-    stiffness : (m,) N/m;  rows : (m, n), mesh deflections per coordinate;  deviation : (m,) m, of
-    the deflections
+    stiffness : (m,) N/m;  rows : (m, n), deflections per coordinate;  deviation : (m,) m, of them
     forces : (m,) N, expected forces;  equivalent : (m,) N/m, equivalent stiffnesses
     """
 
@@ -90,23 +85,14 @@ def linearise(
     every: int,
     criterion: Criterion,
 ) -> CoordinateMoments:
-    """Moments of a system that starts at rest at `start` (n,), after every `every` of `count` steps
-    of h seconds."""
+    """Moments of a system from rest at `start` (n,) after each `every` of `count` steps of h s."""
     n, half_backlash, equivalent = system.size, system.half_backlash, EQUIVALENT[criterion]
     q, v, covariance = start.astype(float), np.zeros(n), np.zeros((2 * n, 2 * n))
     saved = [(0.0, q, covariance)]
-    stiffness, rows, deviation = (
-        system.mesh_stiffness(0.0),
-        system.deflection_rows(0.0),
-        np.zeros(len(half_backlash)),
-    )
-    meshes = _MeshState(
-        stiffness,
-        rows,
-        deviation,
-        mean_force(stiffness, rows @ q, deviation, half_backlash),
-        equivalent(stiffness, rows @ q, deviation, half_backlash),
-    )
+    stiffness, rows = system.mesh_stiffness(0.0), system.deflection_rows(0.0)
+    deviation = np.zeros(len(half_backlash))
+    law = stiffness, rows @ q, deviation, half_backlash
+    meshes = _MeshState(stiffness, rows, deviation, mean_force(*law), equivalent(*law))
     for step in range(1, count + 1):
         t = step * h
         q, v, new = _step(system, t, h, (q, v, covariance), meshes, criterion)
@@ -125,8 +111,7 @@ def _step(
     meshes: _MeshState,
     criterion: Criterion,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mean coordinates (n,), mean velocities (n,) and covariance (2 n, 2 n) at time t, h seconds
-    after `moments`.
+    """Mean coordinates (n,), velocities (n,) and covariance (2 n, 2 n) at t, h s after `moments`.
 
     Updates `meshes`, which belong to the start of the step, to its end.
     """
@@ -154,10 +139,8 @@ def _step(
         meshes.forces, meshes.equivalent = mean_force(*law), equivalent(*law)
         change = np.abs(meshes.forces - old_forces).max()
         change /= (np.abs(meshes.stiffness) * half_backlash + np.abs(meshes.forces)).max()
-        if (
-            max(change, np.abs((meshes.equivalent - old_equivalent) / meshes.stiffness).max())
-            < TOLERANCE
-        ):
+        softened = np.abs((meshes.equivalent - old_equivalent) / meshes.stiffness).max()
+        if max(change, softened) < TOLERANCE:
             return new_q, 2.0 / h * (new_q - q) - v, new
     raise ConvergenceError(f"the linearisation did not converge at {t:g} s")
 
@@ -170,8 +153,7 @@ def _mean(
     meshes: _MeshState,
     half_backlash: np.ndarray,
 ) -> np.ndarray:
-    """Solve left q + weight sum_j w_j E[f_j](w_j . q) = known by Newton's method, with E[df/dd] as
-    E[f]'."""
+    """Solve left q + weight sum_j w_j E[f_j](w_j . q) = known by Newton's method."""
     rows = meshes.rows
     for _ in range(MAX_ITERATIONS):
         forces, slope = mean_force_and_stiffness(

@@ -1,5 +1,4 @@
-"""Mesh stiffness over the tooth cycle: a rectangular wave of one and two pairs of teeth, as a
-Fourier series."""
+"""Mesh stiffness over the tooth cycle: the Fourier series of a wave of one and two pairs."""
 
 from __future__ import annotations
 
@@ -32,10 +31,6 @@ class MeshStiffness:
         """Stiffness of all meshes, (m,) N/m, at a time in s."""
         j = np.arange(1, self.harmonics + 1)[:, None]
         two_pairs = self.contact_ratio - 1.0
-        terms = (
-            2.0
-            / (j * np.pi)
-            * np.sin(j * np.pi * two_pairs)
-            * np.cos(j * (self.frequency * t - self.phase))
-        )
+        coefficients = 2.0 / (j * np.pi) * np.sin(j * np.pi * two_pairs)
+        terms = coefficients * np.cos(j * (self.frequency * t - self.phase))
         return self.mean + 2.0 * self.amplitude * terms.sum(axis=0)
