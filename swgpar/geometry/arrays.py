@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 Ints = NDArray[np.int32]
 
 SignedDistance = tuple[Floats, Floats, Floats]

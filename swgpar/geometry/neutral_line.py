@@ -1,9 +1,10 @@
 """The neutral line of a thin ring that a cam bends without extension.
 
 The ring's tangents turn by the tilt L(theta), a series of the harmonics of the lobes in the
-material angle theta. Its curve follows
-exactly: X' = -r exp(i (theta + L)), with the plane's points as complex numbers x + i y and the
-major axis along +y.
+material angle theta. Its curve follows exactly: X' = -r exp(i (theta + L)), with the plane's points
+as complex numbers x + i y and the major axis along +y. Its energy is that of L'^2. It keeps at
+least the distance of the ring's half thickness from the cam: where the ring lies on the cam, the
+line is the cam's exact offset, elsewhere it is an elastica.
 """
 
 from __future__ import annotations
@@ -13,11 +14,12 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from swgpar.geometry.arrays import Floats
+from swgpar.geometry.arrays import Complex, Floats
 from swgpar.geometry.cams import Cam, WaveGenerator, make_cam, taut_length
 
 HARMONICS, POINTS = 16, 1440
-"""Harmonics of the shape, and points around one lobe of the ring that stay outside of the cam."""
+"""Harmonics of the shape of first order, and points around one lobe of the ring that stay outside
+of the cam."""
 
 PENALTY = 1e3 / 9.0
 """Stiffness of the cam at a point, over that of the first harmonic: 9 with two lobes."""
@@ -25,6 +27,19 @@ PENALTY = 1e3 / 9.0
 ROUNDS, MAX_CHANGES = 4, 50
 """Rounds in which the points find their places on the cam as they move around; changes of the
 points that touch."""
+
+LINE_HARMONICS, LINE_POINTS = 32, 2048
+"""The same of the exact line."""
+
+LINE_PENALTY = 1e5
+"""Stiffness of the cam at a point of the exact line, over that of the first harmonic; multipliers
+make the contact exact."""
+
+LINE_ROUNDS, LINE_CHANGE = 12, 1e-8
+"""Most steps of Newton's method, and the change of the tilt, rad, at which it ends."""
+
+SYMMETRY = 1e-9
+"""Amplitudes over the first below which a cam counts as symmetric to its major axis."""
 
 SERIES_POINTS = 1024
 """Points of the Fourier series of the curve, whose terms fall to round-off long before."""
@@ -68,14 +83,97 @@ def bent_ring(cam: Cam, inner_radius: float, radius: float, lobes: int = 2) -> n
 
 
 @dataclass(frozen=True)
+class _RingOnCam:
+    """The ring of least bending energy that keeps clear of the cam.
+
+    inner_radius, radius : mm, of the undeformed ring's inner surface and of its neutral line
+    stretched : mm, radius of the line under the extension that the cam forces on it
+    """
+
+    cam: Cam
+    inner_radius: float
+    radius: float
+    stretched: float
+    lobes: int
+
+    def tilts(self) -> Complex:
+        """Complex amplitudes (LINE_HARMONICS,) rad of the tilt, Im(L_n exp(i lobes n theta)).
+
+        Newton's method on the Lagrangian of the energy and of the distances at points around one
+        lobe, from the shape of first order. The points that touch change until they are those that
+        the cam presses on.
+        """
+        order = float(self.lobes) * np.arange(1, LINE_HARMONICS + 1)
+        angle = np.outer(2.0 * np.pi / self.lobes * np.arange(LINE_POINTS) / LINE_POINTS, order)
+        waves, energy = np.sin(angle), order**2
+        start = bent_ring(self.cam, self.inner_radius, self.radius, self.lobes)[1:]
+        first = np.zeros(LINE_HARMONICS, dtype=complex)
+        # v = -int w, L = (v - w') / r of the radial displacement w: both of the imaginary part
+        first[:HARMONICS] = (order - 1.0 / order)[:HARMONICS] * start / self.radius
+        amplitudes, symmetric = first.real, np.abs(first.imag).max() < SYMMETRY * abs(first[0])
+        if not symmetric:
+            waves, energy = np.hstack([waves, np.cos(angle)]), np.tile(energy, 2)
+            amplitudes = np.append(amplitudes, first.imag)
+        pressure, penalty = np.zeros(LINE_POINTS), LINE_PENALTY * self.lobes**2
+        for _ in range(LINE_ROUNDS):
+            gap, slope, stiffness = self._gaps(waves, amplitudes, pressure)
+            stiffness += np.diag(energy)
+            acting = pressure - penalty * gap
+            for _ in range(MAX_CHANGES):
+                touching = acting > 0.0
+                pressed = slope[touching]
+                force = pressed.T @ (pressure - penalty * gap)[touching] - energy * amplitudes
+                change = np.linalg.solve(stiffness + penalty * pressed.T @ pressed, force)
+                acting = pressure - penalty * (gap + slope @ change)
+                if np.array_equal(acting > 0.0, touching):
+                    break
+            amplitudes, pressure = amplitudes + change, np.maximum(acting, 0.0)
+            if np.abs(change).max() < LINE_CHANGE:
+                break
+        real, imaginary = np.split(amplitudes, 2) if not symmetric else (amplitudes, 0.0)
+        return real + 1j * imaginary
+
+    def _gaps(
+        self, waves: Floats, amplitudes: Floats, pressure: Floats
+    ) -> tuple[Floats, Floats, Floats]:
+        """Gaps (n,) between cam and ring at points around one lobe over the radius, their
+        derivatives (n, k) by the amplitudes (k,), and the second derivatives (k, k) of their sum
+        with the factors -`pressure` (n,).
+
+        waves : (n, k), of the tilt
+        """
+        theta = 2.0 * np.pi / self.lobes * np.arange(len(waves)) / len(waves)
+        around = np.exp(1j * theta)
+        order = 1.0 + self.lobes * np.fft.fftfreq(len(waves), 1.0 / len(waves))
+
+        def integral(along: Complex) -> Complex:
+            """Of along exp(i theta), without a mean."""
+            terms = np.fft.fft(along, axis=0) / (1j * order)[:, None]
+            return around[:, None] * np.fft.ifft(terms, axis=0)
+
+        along = -self.stretched * np.exp(1j * (waves @ amplitudes))[:, None]
+        points = integral(along)[:, 0]
+        distance, xy, hessian = self.cam.evaluate(np.column_stack([points.real, points.imag]))
+        normal = xy @ (1.0, 1j)
+        gap = distance - (self.radius - self.inner_radius)
+        moved = integral(1j * along * waves) * np.conj(normal)[:, None]
+        # the integral's transpose, of the forces
+        back = np.fft.fft(np.fft.ifft(around * np.conj(normal) * pressure) / (1j * order))
+        bent = (back * along[:, 0]).real[:, None]
+        sideways = (hessian * pressure)[:, None] * moved.imag
+        curved = waves.T @ (bent * waves) - moved.imag.T @ sideways
+        return gap / self.radius, moved.real / self.radius, curved / self.radius
+
+
+@dataclass(frozen=True)
 class NeutralLine:
     """A closed curve of given length.
 
     Attributes
     ----------
-    amplitudes : tuple of complex, mm
-        Those of the radial displacement by the harmonics lobes, 2 lobes, …, counted from the major
-        axis counter-clockwise.
+    tilts : tuple of complex, rad
+        Amplitudes of the tilt by the harmonics lobes, 2 lobes, …, counted from the major axis
+        counter-clockwise.
     radius : float, mm
         That of the undeformed line.
     stretched : float, mm
@@ -84,7 +182,7 @@ class NeutralLine:
         Lobes of the cam, 2 or more.
     """
 
-    amplitudes: tuple[complex, ...]
+    tilts: tuple[complex, ...]
     radius: float
     stretched: float
     lobes: int = 2
@@ -92,14 +190,8 @@ class NeutralLine:
     def tilt(self, theta: Floats) -> tuple[Floats, Floats, Floats]:
         """Tilt L (n,) rad of the tangents at material angles `theta` : (n,) rad, and its first two
         derivatives."""
-        order = float(self.lobes) * np.arange(1, len(self.amplitudes) + 1)[:, None]
-        # v = -int w, L = (v - w') / r: both of the imaginary part
-        wave = (
-            (order - 1.0 / order)
-            * np.array(self.amplitudes)[:, None]
-            * np.exp(1j * order * theta)
-            / self.radius
-        )
+        order = float(self.lobes) * np.arange(1, len(self.tilts) + 1)[:, None]
+        wave = np.array(self.tilts)[:, None] * np.exp(1j * order * theta)
         return (
             wave.imag.sum(axis=0),
             (order * wave.real).sum(axis=0),
@@ -136,6 +228,6 @@ def neutral_line(
     share : of the deflection that reaches the section; less than 1 towards the closed end of a cup
     """
     cam, lobes = make_cam(keys, a, b), keys.lobes
-    amplitudes = share * bent_ring(cam, inner_radius, radius, lobes)[1:]
     excess = max(taut_length(cam) / (2.0 * np.pi) - inner_radius, 0.0)
-    return NeutralLine(tuple(map(complex, amplitudes)), radius, radius + share * excess, lobes)
+    tilts = share * _RingOnCam(cam, inner_radius, radius, radius + excess, lobes).tilts()
+    return NeutralLine(tuple(map(complex, tilts)), radius, radius + share * excess, lobes)

@@ -6,6 +6,7 @@ A new profile is a module here, keys in `keys.py`, a branch in `_build` (own_cam
 from __future__ import annotations
 
 from dataclasses import asdict
+from functools import lru_cache
 
 import numpy as np
 
@@ -31,6 +32,7 @@ from swgpar.geometry.profiles.tooth_motion import ToothMotion
 from swgpar.input.quantities import show
 
 
+@lru_cache(maxsize=32)
 def make_profile(
     keys: ExternalProfile | InternalProfile,
     teeth: Teeth,

@@ -20,6 +20,7 @@ from functools import cached_property, lru_cache
 from typing import NoReturn
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
@@ -34,6 +35,9 @@ from swgpar.geometry.profiles.tooth_motion import Pose, ToothMotion
 
 STATIONS = 401
 """Stations on the other flank at which the contact is followed."""
+
+GROUP = 16
+"""Stations whose contacts are found together."""
 
 PIECE_STATIONS = 65
 """Stations on a segment of the other flank between which the angle of contact is interpolated."""
@@ -127,15 +131,17 @@ class Envelope:
         for _ in range(12):
             step = contacts.value / contacts.slope
             contacts = self.contacts(segment, s, contacts.psi - step)
-            if not np.max(np.abs(step), initial=0.0) > 1e-13:
+            if not np.nanmax(np.abs(step), initial=0.0) > 1e-13:
                 break
         return contacts
 
+    def _segment_of(self, s: Floats) -> NDArray[np.intp]:
+        """Segments (n,) of the given flank on which the arc lengths `s` (n,) mm lie."""
+        return np.clip(np.searchsorted(self.given.breaks, s) - 1, 0, len(self.given.segments) - 1)
+
     def _at(self, s: float, psi: float) -> Contacts:
         """The same at one arc length of the whole given flank."""
-        index = int(
-            np.clip(np.searchsorted(self.given.breaks, s) - 1, 0, len(self.given.segments) - 1)
-        )
+        index = int(self._segment_of(np.array([s]))[0])
         return self.solved(
             self.given.segments[index], np.array([s - self.given.breaks[index]]), np.array([psi])
         )
@@ -151,11 +157,7 @@ class Envelope:
         s, middle = np.linspace(0.0, self.given.length, STATIONS), STATIONS // 2
         reach = REACH / self.motion.line.lobes
         psi = np.linspace(-reach, reach, 1601)
-        index = int(
-            np.clip(
-                np.searchsorted(self.given.breaks, s[middle]) - 1, 0, len(self.given.segments) - 1
-            )
-        )
+        index = int(self._segment_of(s[middle : middle + 1])[0])
         local = np.full_like(psi, s[middle] - self.given.breaks[index])
         value = self.contacts(self.given.segments[index], local, psi).value
         changes = np.flatnonzero(np.sign(value[1:]) != np.sign(value[:-1]))
@@ -163,15 +165,34 @@ class Envelope:
             return np.empty(0), np.empty(0)
         start = psi[changes[np.argmin(np.abs(psi[changes]))]]
         psi_of = np.full(STATIONS, np.nan)
-        for indices in (range(middle, STATIONS), range(middle, -1, -1)):
-            before = start
-            for k in indices:
-                contact = self._at(float(s[k]), before)
-                if not contact.speed[0] > 0.0 or not abs(contact.psi[0] - before) < np.radians(5.0):
-                    break
-                psi_of[k] = before = float(contact.psi[0])
+        for indices in (np.arange(middle, STATIONS), np.arange(middle, -1, -1)):
+            psi_of[indices] = self._followed(s[indices], start)
         known = np.isfinite(psi_of)
         return s[known], psi_of[known]
+
+    def _followed(self, s: Floats, start: float) -> Floats:
+        """Angles (n,) rad of the contacts at arc lengths `s` (n,) mm, which lead away from one
+        near the angle `start`; NaN from where the envelope has a cusp or ends."""
+        psi_of, index = np.full(len(s), np.nan), self._segment_of(s)
+        before, rate = start, 0.0
+        # the first station of a group gives the rate by which the others begin
+        firsts = np.flatnonzero(np.diff(index, prepend=-1) | (np.arange(len(s)) % GROUP == 0))
+        for first, end in zip(firsts, np.append(firsts[1:], len(s)), strict=True):
+            for stations in (slice(first, first + 1), slice(first + 1, end)):
+                local = s[stations] - self.given.breaks[index[first]]
+                if not local.size:
+                    continue
+                away = s[stations] - s[max(stations.start - 1, 0)]
+                segment = self.given.segments[index[first]]
+                contacts = self.solved(segment, local, before + rate * away)
+                change = np.abs(np.diff(contacts.psi, prepend=before))
+                good = (contacts.speed > 0.0) & (change < np.radians(5.0))
+                count = len(good) if good.all() else int(np.argmin(good))
+                psi_of[stations][:count] = contacts.psi[:count]
+                if count < len(good):
+                    return psi_of
+                before, rate = float(contacts.psi[-1]), float(contacts.psi_rate[-1])
+        return psi_of
 
     def point(self, s: float) -> tuple[complex, float]:
         """Point, mm, and tangent angle, rad, from tip to root, at the arc length s, mm, of the

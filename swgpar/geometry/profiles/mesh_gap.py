@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from swgpar.geometry.arrays import Floats
+from swgpar.geometry.arrays import Complex, Floats
 from swgpar.geometry.profiles.flank import FlankSegment, Segment, ToothProfile
 from swgpar.geometry.profiles.tooth_motion import Pose, ToothMotion
 
@@ -37,7 +37,6 @@ SPEED_MARGIN = 1.1
 """Largest speed in an interval over that in its middle."""
 
 Indices = NDArray[np.intp]
-Complex = NDArray[np.complex128]
 Array = TypeVar("Array", Floats, Indices)
 
 

@@ -107,21 +107,28 @@ class RigidTeeth:
         reach = self.teeth // (2 * self.lobes)
         psi = pitch * (np.arange(-reach, reach + 1) + np.arange(phases)[:, None] / phases)
 
+        near = np.ones(psi.shape, dtype=bool)
+
         def gaps(rotation: np.ndarray) -> np.ndarray:
-            turned = np.broadcast_to(rotation, psi.shape).ravel()
-            return self._pair.facing_gaps(psi.ravel(), turned, EXACT * self.module).reshape(
-                psi.shape
-            )
+            """Gaps (phases, n) mm of the teeth that are near; inf of the others."""
+            found = np.full(psi.shape, np.inf)
+            turned = np.broadcast_to(rotation, psi.shape)[near]
+            found[near] = self._pair.facing_gaps(psi[near], turned, EXACT * self.module)
+            return found
 
         touching = np.zeros((phases, 1))
         # the second time from where the first pair touches, so that the extrapolation is short
         for _ in range(2):
-            before, after = gaps(touching), gaps(touching - STEP)
+            before = gaps(touching)
+            after = gaps(touching - STEP)
             with np.errstate(divide="ignore", invalid="ignore"):
                 closing = touching - STEP * before / (before - after)
             touching = np.where(after < before, closing, -np.inf).max(axis=1, keepdims=True)
             if not (np.abs(touching) < 0.5 * pitch).all():
                 return np.full_like(touching, -np.inf), before
+            # no gap changes by more than the rotation moves the tips
+            moved = self.spline.r_tip_circle * (np.abs(touching) + STEP)
+            near &= before < EXACT * self.module + 2.0 * moved
         smallest = gaps(touching)
         if np.abs(smallest.min(axis=1)).max() > NEAR:
             touching = np.full_like(touching, -np.inf)

@@ -102,8 +102,8 @@ class ToothMotion:
 
     def mirror_image(self) -> ToothMotion:
         """Motion on the mirror image of the cam, in the plane through its major axis."""
-        amplitudes = tuple(amplitude.conjugate() + 0.0 for amplitude in self.line.amplitudes)
-        return replace(self, line=replace(self.line, amplitudes=amplitudes))
+        tilts = tuple(tilt.conjugate() + 0.0 for tilt in self.line.tilts)
+        return replace(self, line=replace(self.line, tilts=tilts))
 
     def mirrored(self, points: np.ndarray) -> np.ndarray:
         """Points x + i y (n,) mm between the frames of the slot and the tooth clockwise of it.
