@@ -122,8 +122,8 @@ def _clearance(every: Sequence[Clearance]) -> Check:
     least = min(every, key=lambda clearance: clearance.nearest.distance)
     text = (
         f"smallest distance of the undeformed teeth {1000 * least.nearest.distance:.3g} µm, "
-        f"{least.place}; good from {1000 * least.allowed:.2g} µm: the contact takes up an overlap "
-        "of that size"
+        f"{least.place}; good from {1000 * least.allowed:.2g} µm: teeth take up an overlap of "
+        "that size"
     )
     return Check("clearance of the flanks", not least.overlaps, text)
 
