@@ -9,6 +9,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from swgpar.analysis.recorder import Recorder
+from swgpar.checks.clearance import clearances
 from swgpar.drive_results.drive_tables import DriveTables
 from swgpar.drive_results.summary import BodySizes, DriveSummary
 from swgpar.evaluation.bearing_loads import BallLoads, evaluate_bearing
@@ -117,7 +118,7 @@ def evaluate_run(
         fatigue=None if fatigue is None else fatigue.found,
         losses=losses,
         bearing=_bearing(recorder),
-        clearance=rigid_clearance(design),
+        clearance=rigid_clearance(clearances(design)),
         housing=HousingStresses(**record.housing) if record.housing else None,
     )
     tables = DriveTables(losses=losses_table)

@@ -77,14 +77,14 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
     if not options.plain:
         shortcuts = with_shortcuts(design, recipe, levels=options.accuracy is None)
         design, left_out = shortcuts.design, shortcuts.left_out
-    sequence = load_sequence(design)
+    said, sequence = remarks(design), load_sequence(design)
     require_samples(sequence, [name for name in ("fatigue", "losses") if getattr(design, name)])
     needs = forecast(design, recipe)
     require_memory(needs, design.solver.memory_limit, comm)
     resumed = folder is not None and prepare(folder, comm, options.restart, options.overwrite)
     open_log(folder, comm)
     without_windows = design.without_windows if design.output.root_stress else ""
-    _log_remarks(remarks(design), sequence, left_out, without_windows)
+    _log_remarks(said, sequence, left_out, without_windows)
     with reported_memory(needs), limited(design.solver.time_limit):
         kept = StartStates(folder)
         if not options.restart:

@@ -8,20 +8,13 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.load.negligible_torque import negligible_torque
 
 
-def torque_remark(torque: float, negligible: float) -> str | None:
-    """A sentence where a torque counts as none. torque : N·m;  negligible : N·mm"""
-    if not 0.0 < 1000.0 * torque <= negligible:
-        return None
-    return (
-        f"load.torque = {torque:g} N·m counts as none: up to {0.001 * negligible:.3g} N·m it is "
-        f"too small "
-        "beside the bending of the flexible spline"
-    )
-
-
 def remarks(design: DriveDesign) -> list[str]:
     """Sentences about what is allowed and may not be meant."""
-    return [
-        *filter(None, (clearance.remark for clearance in clearances(design))),
-        *filter(None, [torque_remark(design.load.torque, negligible_torque(design))]),
-    ]
+    sentences = [clearance.remark for clearance in clearances(design) if clearance.overlaps]
+    torque, negligible = design.load.torque, negligible_torque(design)
+    if 0.0 < 1000.0 * torque <= negligible:
+        sentences.append(
+            f"load.torque = {torque:g} N·m counts as none: up to {0.001 * negligible:.3g} N·m it "
+            f"is too small beside the bending of the flexible spline"
+        )
+    return sentences

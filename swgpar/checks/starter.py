@@ -9,6 +9,7 @@ and the teeth of a dynamic spline are the thickest of a list.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -339,23 +340,22 @@ def _cam_keys(cam: CamType, table: dict[str, Any]) -> dict[str, float]:
         C = 1.0 if isinstance(keys, Parabolic) else keys.C
         return taut_length(make_cam(keys, major, C * minor), 720) / (2.0 * np.pi * inner) - 1.0
 
-    # the band around the cam is as long as the spline's inner circumference
+    def fitting(
+        keys: Callable[[float], Simplified | Harmonic | Parabolic], *bounds: float
+    ) -> float:
+        """The value of a key with which the band around the cam is as long as the spline's inner
+        circumference."""
+        return float(brentq(lambda value: excess(keys(value)), *bounds, xtol=1e-8))
+
     if cam == "simplified":
-        return {
-            "C": _rounded(
-                brentq(lambda C: excess(Simplified(C=C, face_width=1.0)), 0.5, 1.0, xtol=1e-7)
-            )
-        }
+        return {"C": _rounded(fitting(lambda C: Simplified(C=C, face_width=1.0), 0.5, 1.0))}
     if cam == "harmonic":
-        fitting = brentq(
-            lambda C: excess(Harmonic(C=C, lobes=lobes, face_width=1.0)), 0.5, 1.0, xtol=1e-8
-        )
-        return {"C": _rounded(fitting, 6)}
+        fit = fitting(lambda C: Harmonic(C=C, lobes=lobes, face_width=1.0), 0.5, 1.0)
+        return {"C": _rounded(fit, 6)}
     C_p, r_c = 0.51, _rounded(0.175 * minor)  # that of the improved cam of Table 5.5
     ellipse = 0.5 * major / minor**2
-    bounds = ellipse, 1.08 * ellipse
-    a_p = brentq(
-        lambda a_p: excess(Parabolic(a_p=a_p, C_p=C_p, r_c=r_c, face_width=1.0)), *bounds, xtol=1e-7
+    a_p = fitting(
+        lambda a_p: Parabolic(a_p=a_p, C_p=C_p, r_c=r_c, face_width=1.0), ellipse, 1.08 * ellipse
     )
     return {"C": 1.0, "a_p": _rounded(a_p, 5), "C_p": C_p, "r_c": r_c}
 

@@ -4,7 +4,7 @@ that is followed."""
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -179,18 +179,14 @@ def gear_deviations(deviations: Deviations, gear: str, teeth: Teeth) -> GearDevi
         )
     elif not len(micrometres):
         micrometres = np.zeros(teeth.n_teeth)
-    more: Mapping[str, Any] = {}
-    if isinstance(section, RingDeviations):
-        more = {
-            "tilt": section.lean,
-            "ovality": section.ovality,
-            "oval_angle": float(np.radians(section.ovality_direction)),
-        }
-    return GearDeviations(
+    deviating = GearDeviations(
         r_pitch=teeth.r_pitch,
         pitch=MICRO * micrometres,
         shift=section.shift,
         profile_slope=MICRO * section.profile_slope,
         profile_form=MICRO * section.profile_form,
-        **more,
     )
+    if not isinstance(section, RingDeviations):
+        return deviating
+    angle = float(np.radians(section.ovality_direction))
+    return replace(deviating, tilt=section.lean, ovality=section.ovality, oval_angle=angle)

@@ -260,32 +260,22 @@ class DriveData:
             kinds,
             np.concatenate([part[0] for part in parts]),
         )
-        for name, example in {
-            name: values for *_, fields in parts for name, values in fields.items()
-        }.items():
-            missing = np.nan * np.empty((1, *example.shape[1:]), dtype=example.dtype)
-            grid.point_data[name] = np.concatenate(
-                [
-                    fields.get(name, np.repeat(missing, len(points), axis=0))
-                    for points, _, fields in parts
-                ]
-            )
-        numbers = [
-            np.full(len(part[1]), self.gears.index(name))
-            for name, part in zip(bodies, parts, strict=True)
-        ]
-        grid.cell_data["body"] = np.concatenate(numbers)
+        known = {name: values for *_, fields in parts for name, values in fields.items()}
+        for name, example in known.items():
+            values = [
+                fields.get(name, np.full((len(points), *example.shape[1:]), np.nan, example.dtype))
+                for points, _, fields in parts
+            ]
+            grid.point_data[name] = np.concatenate(values)
+        numbers = np.repeat(list(map(self.gears.index, bodies)), [len(part[1]) for part in parts])
+        grid.cell_data["body"] = numbers
         return grid
 
     def _part(
         self, body: GearName, increment: int
     ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
-        points, cells = self.mesh(body)
-        return (
-            points,
-            cells,
-            {name: self.field(name, increment, body) for name in self.names(body, increment)},
-        )
+        names = self.names(body, increment)
+        return *self.mesh(body), {name: self.field(name, increment, body) for name in names}
 
     def _source(self, body: GearName) -> FieldSource:
         bodies = list(self.summary.bodies)

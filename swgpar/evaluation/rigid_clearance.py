@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from swgpar.checks.clearance import clearances
+from swgpar.checks.clearance import Clearance
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind, answer, evaluation
 
@@ -40,9 +40,9 @@ class RigidClearance(AnswerGroup):
         return iter(self.interference)
 
 
-def rigid_clearance(design: DriveDesign) -> RigidClearance:
-    """Of all ring gears of a drive."""
-    every = {clearance.ring: clearance for clearance in clearances(design)}
+def rigid_clearance(clearances: Sequence[Clearance]) -> RigidClearance:
+    """From those of all ring gears of a drive."""
+    every = {clearance.ring: clearance for clearance in clearances}
     distances = {ring: clearance.nearest.distance for ring, clearance in every.items()}
     return RigidClearance(
         ring_gear=distances["ring_gear"],

@@ -39,7 +39,7 @@ class LoadSequence:
     start : undeformed drive
     states : at the ends of all increments, in order
     points : of the load program; empty without one
-    torque : N·m, `load.torque`;  negligible_torque : N·mm, up to which it counts as none
+    torque : N·m, `load.torque`
     rotation, increment : deg, `steps.rotation` and `steps.increment`
     samples : angles of one period that are computed and continued by symmetry; 0 without
     periods : that are computed with them: two with friction, whose state settles in the first
@@ -51,7 +51,6 @@ class LoadSequence:
     states: tuple[LoadState, ...]
     points: tuple[ProgramPoint, ...]
     torque: float
-    negligible_torque: float
     rotation: float
     increment: float
     samples: int
@@ -66,20 +65,16 @@ class LoadSequence:
     @property
     def from_loaded(self) -> tuple[LoadState, ...]:
         """The states from the fully loaded one on."""
-        loaded = [k for k, state in enumerate(self.states) if state.stage == Stage.LOAD]
-        first = (
-            loaded[-1]
-            if loaded
-            else next(k for k, state in enumerate(self.states) if state.stage == Stage.PROGRAM)
-        )
-        return self.states[first:]
+        stages = [state.stage for state in self.states]
+        if Stage.PROGRAM in stages:
+            return self.states[stages.index(Stage.PROGRAM) :]
+        return self.states[len(stages) - 1 - stages[::-1].index(Stage.LOAD) :]
 
 
 def load_sequence(design: DriveDesign) -> LoadSequence:
     """All load states of a run."""
     kinematics, steps, start = design.kinematics, design.steps, start_state(design)
     points, module = tuple(program_points(design)), design.drive.module
-    negligible = negligible_torque(design)
     states = [
         *_deflection(start, steps.deflect_increments),
         *_engagement(
@@ -92,7 +87,7 @@ def load_sequence(design: DriveDesign) -> LoadSequence:
         torque = kinematics.internal_torque(design.load.torque)
         angles = rotation_angles(steps, kinematics.period_angle, design.periods)
         states += _rotation(
-            torque if abs(torque) > negligible else 0.0,
+            torque if abs(torque) > negligible_torque(design) else 0.0,
             steps.load_increments,
             angles,
             kinematics.ratio,
@@ -105,7 +100,6 @@ def load_sequence(design: DriveDesign) -> LoadSequence:
         states=tuple(states),
         points=points,
         torque=design.load.torque,
-        negligible_torque=negligible,
         rotation=steps.rotation,
         increment=steps.increment,
         samples=steps.samples,

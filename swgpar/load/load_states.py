@@ -98,14 +98,9 @@ class LoadState:
         """Whether a contact is active here that is not in the state `before`; the first state
         switches all on."""
 
-        def active(state: LoadState) -> list[bool]:
-            return [
-                value is not None
-                for value in (state.cam_clearance, state.pin_inset, state.flank_clearance)
-            ]
-
         return before.stage == Stage.START or any(
-            new and not old for new, old in zip(active(self), active(before))
+            getattr(before, name) is None and getattr(self, name) is not None
+            for name in ("cam_clearance", "pin_inset", "flank_clearance")
         )
 
     def continues_period(self, before: LoadState, ratio: float) -> bool:
@@ -143,11 +138,9 @@ class LoadState:
         }
         for key, clearance in starts.items():
             old, new = getattr(self, key), getattr(target, key)
-            values[key] = (
-                None
-                if new is None
-                else (1.0 - share) * (clearance if old is None else old) + share * new
-            )
+            if new is not None:
+                begin = clearance if old is None else old
+                values[key] = (1.0 - share) * begin + share * new
         if self.pin_inset is not None:
             inset = PIN_RETRACTION * deflection if target.pin_inset is None else target.pin_inset
             values["pin_inset"] = self.pin_inset + share * (inset - self.pin_inset)

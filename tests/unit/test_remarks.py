@@ -13,6 +13,7 @@ from support.messages import Messages
 from support.paths import DATA, DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.analysis import run_drive
+from swgpar.checks.clearance import clearances
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.jamming import energy_remark, jamming_remark
 from swgpar.evaluation.rigid_clearance import rigid_clearance
@@ -38,13 +39,13 @@ def test_check_names_interference() -> None:
 
 def test_check_looks_between_the_minor_axes() -> None:
     """Tip over tip at 62 degrees from the lobe, 17 degrees beyond half of the way."""
-    clearance = rigid_clearance(swgpar.load_design(DATA / "tip_clash.toml"))
+    clearance = rigid_clearance(clearances(swgpar.load_design(DATA / "tip_clash.toml")))
     assert clearance.ring_gear == pytest.approx(-0.0645, abs=1e-4)
     (sentence,) = clearance.interference
     assert "62.0° from the tip of a lobe, tip of the flexible spline to flank" in sentence
     (answer,) = clearance.answers()
     assert answer.value == clearance.ring_gear and answer.place in sentence
-    assert not rigid_clearance(swgpar.load_design(DESIGN)).interference
+    assert not rigid_clearance(clearances(swgpar.load_design(DESIGN))).interference
 
 
 def test_a_run_says_it_before_it_computes(monkeypatch: pytest.MonkeyPatch) -> None:
