@@ -103,5 +103,5 @@ def test_no_place_is_nearer(path: Path, values: dict[str, Any], ring: GearName) 
     assert smallest(design, ring, np.array([nearest.psi]))[0] == pytest.approx(
         nearest.distance, abs=allowed
     )
-    every = np.linspace(-1.0, 1.0, 61) * np.pi / design.lobes
+    every = np.linspace(-1.0, 1.0, 61) * np.pi / design.kinematics.lobes
     assert smallest(design, ring, every).min() > nearest.distance - allowed
