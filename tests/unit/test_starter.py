@@ -42,9 +42,10 @@ def test_a_starter_design_needs_no_remarks() -> None:
 
 
 NO_ROOM = {(15.0, "four_roller"), (160.0, "parabolic"), (320.0, "parabolic")}
-"""Ratios and cams with which the flanks of the quadruple arc interfere at any backlash. The parabolas
-with the ratio 160 overlap by 0.02 modules; the motion of first order in the deflection had found
-room."""
+"""Ratios and cams with which the flanks of the quadruple arc interfere at any backlash.
+
+The parabolas with the ratio 160 overlap by 0.02 modules; the motion of first order in the
+deflection had found room."""
 
 
 @pytest.mark.parametrize("cam", get_args(CamType))
