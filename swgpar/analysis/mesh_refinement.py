@@ -145,7 +145,7 @@ class Refinement:
         if not finds_contacts(coarse):
             coarse, recipe = recipe, resized(recipe, RATIO)
         self.recipe = recipe
-        self._load(coarse)
+        self.model = self._solved(coarse)
         try:
             self.coarse = compared_stresses(self.model, self.loaded)
             self.compared = self._compared(size_ratio(coarse, recipe))
@@ -160,20 +160,22 @@ class Refinement:
         places = find_places(self.model, self.loaded, self.model.stresses()[1])
         return CoarseStresses(places, ratio)
 
-    def _load(self, recipe: MeshRecipe, coarse: DriveModel | None = None) -> None:
-        self.model = solve_to_load(self.design, recipe, self.comm, coarse, kept=self.kept)
+    def _solved(self, recipe: MeshRecipe, coarse: DriveModel | None = None) -> DriveModel:
+        """The loaded model on a mesh, from the state of a coarser one if it is given."""
+        return solve_to_load(self.design, recipe, self.comm, coarse, kept=self.kept)
 
     def _replace(self, recipe: MeshRecipe) -> None:
         """Take the model on this mesh, from the present one's state where its path is of no
         account."""
         if self.design.contact.friction:
             self.model.destroy()
-            return self._load(recipe)
+            self.model = self._solved(recipe)
+            return
         try:
-            self._load(recipe, self.model)
+            self.model = self._solved(recipe, self.model)
         except (ConvergenceError, InputError) as error:
             logger.info("the state of another mesh does not lead to that of this one: %s", error)
-            self._load(recipe)
+            self.model = self._solved(recipe)
 
     def _resolve(self, before: float | None = None) -> RootStress:
         """Windows on the present mesh. before : error (MPa) of the mesh before it"""
@@ -224,7 +226,7 @@ class Refinement:
             logger.warning("no finer mesh of the drive: %s", error)
             self.coarse, self.compared, self.found = earlier
             self.model.destroy()
-            self._load(self.recipe)
+            self.model = self._solved(self.recipe)
             return False
         self.recipe = finer
         return True

@@ -295,10 +295,10 @@ def test_other_programs_read_the_tables(folder: Path) -> None:
         assert list(table) == list(getattr(result, name))
         numbers = table.select_dtypes("number")
         assert len(numbers.columns) > 10
-        for column in numbers:
-            assert np.array_equal(table[column], getattr(result, name)[column], equal_nan=True), (
-                column
-            )
+        # an empty column of texts is one of numbers to pandas
+        columns = getattr(result, name)
+        for column in [one for one in numbers if columns[one].dtype.kind != "U"]:
+            assert np.array_equal(table[column], columns[column], equal_nan=True), column
 
 
 @pytest.mark.parametrize("model", [(), PLANE], ids=["solid", "plane"])
