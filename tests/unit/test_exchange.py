@@ -35,7 +35,7 @@ from swgpar.results.table import read_columns
 
 
 def small(**request: object) -> DriveDesign:
-    return swgpar.new(ratio=15.0, diameter=42.0, torque=5.0, **request)
+    return swgpar.new(ratio=20.0, diameter=42.0, torque=5.0, **request)
 
 
 def drive_with(profile: str, cam: str, model: str) -> DriveDesign:
