@@ -42,8 +42,8 @@ def base(model: str) -> tuple[LoadStepper, Row]:
 
 
 def test_the_ratio_is_that_of_the_teeth() -> None:
-    assert small("plane").ratio == -20.0
-    assert small("plane", "drive.layout=spline_fixed").ratio == 21.0
+    assert small("plane").kinematics.ratio == -20.0
+    assert small("plane", "drive.layout=spline_fixed").kinematics.ratio == 21.0
 
 
 def assert_same(a: Row, b: Row) -> None:
