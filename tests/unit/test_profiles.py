@@ -17,6 +17,7 @@ from swgpar.errors import InputError
 from swgpar.geometry.profiles.double_arc import double_arc, straight_length
 from swgpar.geometry.profiles.flank import Segment, ToothProfile, check_flank
 from swgpar.geometry.profiles.involute import Cutter, involute
+from swgpar.geometry.profiles.keys import ProfileKeys
 from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 from swgpar.geometry.profiles.quadruple_arc import quadruple_arc
 
@@ -427,3 +428,14 @@ def test_a_point_over_a_sharp_tip_is_outside(name: str) -> None:
     )
     assert (profile.distance(over)[0] > 0.0).all()
     assert (profile.distance(inside)[0] < 0.0).all()
+
+
+def test_keys_that_are_lists_tell_profiles_apart() -> None:
+    """Profiles are kept by their keys, see `make_profile`."""
+
+    class Points(ProfileKeys):
+        points: list[list[float]]
+
+    one, same, other = (Points(points=[[0.0, y]]) for y in (1.0, 1.0, 2.0))
+    assert one == same and hash(one) == hash(same) and one != other
+    assert len({one, same, other}) == 2

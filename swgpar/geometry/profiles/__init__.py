@@ -131,7 +131,8 @@ def _build(
         check_flank(profile)
     except InputError as error:
         given = [f"{key} = {show(value)}" for key, value in keys if isinstance(value, float)]
-        reason = f"{name} with {', '.join(given)} cannot be built: {error}"
+        values = f" with {', '.join(given)}" if given else ""
+        reason = f"{name}{values} cannot be built: {error}"
         if hasattr(keys, "cutter_radius"):
             reason += "; allowed are cutters that stay inside the tooth"
         raise InputError(reason) from None

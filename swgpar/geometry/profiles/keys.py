@@ -21,6 +21,10 @@ class ProfileKeys(Section):
     typical_lengths: ClassVar[Mapping[str, float]] = {}
     thickness_key: ClassVar[str] = ""
 
+    def __hash__(self) -> int:
+        # profiles are kept by their keys, which may be lists
+        return hash(self.model_dump_json())
+
 
 class QuadrupleArc(ProfileKeys):
     """Section 3.3.3. The typical lengths are those of the reference drive."""
