@@ -14,11 +14,12 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, TypeVar
-
-from filelock import BaseFileLock, FileLock, SoftFileLock, Timeout
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from swgpar.errors import OutputError
+
+if TYPE_CHECKING:
+    from filelock import BaseFileLock
 
 NAME = "swgpar.lock"
 """In the results folder while a run writes there: number and machine of its process."""
@@ -40,6 +41,9 @@ def acquire(folder: Path) -> None:
 
     Raises OutputError when another process holds the lock, OSError when its file cannot be written.
     """
+    # here, so that commands without results start sooner
+    from filelock import FileLock, SoftFileLock, Timeout
+
     name, path, owner = str(folder.resolve()), folder / NAME, folder / OWNER
     if name in _held:
         return

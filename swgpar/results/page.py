@@ -11,10 +11,10 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 RANK = "results/rank.js"
 """Script that orders the rows of ranked tables by the column whose heading is clicked."""
@@ -59,6 +59,8 @@ def page(template: str, title: str, *, scripts: Sequence[str] = (), **values: An
 
     template, scripts : paths below the package;  values : what the template shows
     """
+    from markupsafe import Markup  # as in `_environment`
+
     sources = [_source(name) for name in scripts]
     hashes = [base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in sources]
     allowed = " ".join(f"'sha256-{text}'" for text in hashes) or "'none'"
@@ -77,6 +79,9 @@ def render(template: str, **values: Any) -> str:
 
 @cache
 def _environment() -> Environment:
+    # here, so that commands without pages start sooner
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
     found = Environment(
         loader=PackageLoader("swgpar", ""),
         autoescape=True,
