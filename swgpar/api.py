@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from mpi4py import MPI
 
@@ -24,14 +24,16 @@ from swgpar.input.design import Design
 from swgpar.input.toml_file import Overrides, apply_overrides, read_toml, require_source
 from swgpar.meshing import MeshRecipe, build_sector_meshes
 from swgpar.meshing import load_recipe as _load_recipe
-from swgpar.meshing.drive_mesh import DriveMesh
 from swgpar.meshing.recipe import make_recipe
-from swgpar.presentation.drive_result import DriveResult
 from swgpar.results.atomic import agreed, on_all, raise_first, sentence, write_file, write_from_root
 from swgpar.results.figure_set import save_figures
 from swgpar.results.folder import REPORT, given_folder, read_design
 from swgpar.run_options import RunOptions
 from swgpar.systems import Result, system_of, system_of_table
+
+if TYPE_CHECKING:
+    from swgpar.meshing.drive_mesh import DriveMesh
+    from swgpar.presentation.drive_result import DriveResult
 
 DesignLike = Design | str | Path | Mapping[str, Any]
 """A design, the path of its file, or the content of one."""
@@ -319,6 +321,7 @@ def export(
     >>> swgpar.export("results/stiffness", "results/fmu", ["fmu"], ripple="results/period")
     """
     from swgpar.exchange.export import export_files  # CAD kernels and tables are for this alone
+    from swgpar.presentation.drive_result import DriveResult
 
     drive: Design | Result
     if isinstance(source, (str, Path)) and Path(source).is_dir():
@@ -443,6 +446,8 @@ def mesh(
     --------
     >>> swgpar.mesh("drivers/cup_45deg.toml", "coarse").quality["ring_gear"]["min_scaled_jacobian"]
     """
+
+    from swgpar.meshing.drive_mesh import DriveMesh  # with what writes files of meshes
 
     def make() -> DriveMesh:
         drive = _drive(load_design(design))

@@ -4,7 +4,7 @@ allowed."""
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from swgpar.checks.bearing_checks import check_bearing
 from swgpar.checks.cup_checks import check_cup
@@ -208,7 +208,7 @@ def _check_concave(design: DriveDesign, wave: Harmonic) -> None:
         return 1.0 + (b - 0.5 * order * (a - b)) / b**2 * (bore - b) - UNIQUE
 
     if b < bore and room(b) < 0.0:  # the curvature there is the least one of the cam
-        least = wave.C * brentq(room, b, bore) / b
+        least = wave.C * scipy.optimize.brentq(room, b, bore) / b
         allowed = f"{least:.4g} (a concave cam near the spline) to 1"
         require(False, "wave_generator.C", wave.C, allowed)
 

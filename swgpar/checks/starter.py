@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from swgpar.checks.design_file import make_drive
 from swgpar.design.drive_design import DriveDesign
@@ -345,7 +345,7 @@ def _cam_keys(cam: CamType, table: dict[str, Any]) -> dict[str, float]:
     ) -> float:
         """The value of a key with which the band around the cam is as long as the spline's inner
         circumference."""
-        return float(brentq(lambda value: excess(keys(value)), *bounds, xtol=1e-8))
+        return float(scipy.optimize.brentq(lambda value: excess(keys(value)), *bounds, xtol=1e-8))
 
     if cam == "simplified":
         return {"C": _rounded(fitting(lambda C: Simplified(C=C, face_width=1.0), 0.5, 1.0))}

@@ -15,6 +15,9 @@ __all__ = ["main", "parser"]
 SOLVING = ("run", "study", "optimise")
 """Commands that compute on all ranks, with options of PETSc."""
 
+WITHOUT_PETSC = ("new", "check")
+"""Commands that need no PETSc: it does not start with them."""
+
 
 def _check_rest(rest: Sequence[str], options: Sequence[str], petsc: bool) -> None:
     """Refuse what is neither one of the options nor, where these are allowed, one of PETSc (-name,
@@ -51,8 +54,9 @@ def _main(arguments: Sequence[str] | None) -> int:
         known.overrides = [item for group in getattr(known, "set", []) for item in group]
         from swgpar import petsc, watch
 
-        petsc.start(rest)
-        watch.rearm()
+        if command not in WITHOUT_PETSC:
+            petsc.start(rest)
+            watch.rearm()
         from swgpar.cli.commands import COMMANDS
 
         COMMANDS[command](known)

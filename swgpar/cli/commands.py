@@ -1,4 +1,4 @@
-"""What the subcommands do. This module is imported when PETSc has started."""
+"""What the subcommands do. PETSc has started for those that need it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from swgpar import api, log, petsc, watch
 from swgpar.errors import InputError, StudyError, printable
 from swgpar.input.design import Design
 from swgpar.log import console
-from swgpar.presentation.drive_result import DriveResult
 from swgpar.results.atomic import on_all
 from swgpar.systems import system_of
 
@@ -105,6 +104,8 @@ def _report(arguments: argparse.Namespace) -> None:
 
 
 def _view(arguments: argparse.Namespace) -> None:
+    from swgpar.presentation.drive_result import DriveResult
+
     result = api.open_result(arguments.out)
     if not isinstance(result, DriveResult):
         raise InputError(f"{arguments.out} holds a gear train: view is available for drives")

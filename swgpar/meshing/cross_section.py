@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.profiles.flank import ToothProfile
@@ -55,7 +55,7 @@ def cross_section(
     half = HalfTooth(profile, recipe, interface, free)
     mesh = mapped_mesh(half.blocks(), scale=half.half_pitch * profile.r_tip_circle)
     flank_points = profile.point(half.s)
-    _, flank = cKDTree(mesh.coords).query(flank_points)
+    _, flank = scipy.spatial.cKDTree(mesh.coords).query(flank_points)
     mesh.coords[flank] = flank_points
     edge = np.flatnonzero(
         np.abs(np.arctan2(*mesh.coords.T) - half.half_pitch) < 1e-9 * half.half_pitch

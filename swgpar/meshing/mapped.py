@@ -8,7 +8,7 @@ from itertools import pairwise
 from types import ModuleType
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.meshing.gmsh_session import gmsh_model
@@ -50,7 +50,7 @@ def mapped_mesh(blocks: Sequence[Sides], scale: float) -> QuadMesh:
     """
     sides = [side for block in blocks for side in block]
     given = np.concatenate(sides)
-    near = cKDTree(given).query_ball_point(given, SAME * scale)
+    near = scipy.spatial.cKDTree(given).query_ball_point(given, SAME * scale)
     first, number = np.unique([min(same) for same in near], return_inverse=True)
     ends = np.cumsum([len(side) for side in sides])
     chains = [part.tolist() for part in np.split(number, ends[:-1])]

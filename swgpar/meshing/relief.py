@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.linalg import splu
+import scipy
 
 from swgpar.geometry.arrays import Floats
 from swgpar.geometry.profiles.flank import ToothProfile
@@ -19,7 +18,7 @@ def boundary_nodes(section: CrossSection) -> np.ndarray:
     return np.unique(unique[times == 1])
 
 
-def laplacian(section: CrossSection) -> coo_matrix:
+def laplacian(section: CrossSection) -> scipy.sparse.coo_matrix:
     """Return the finite-element Laplace matrix (n_node, n_node) of the cross-section."""
     natural = shape_gradients(PLANE_CORNERS, GAUSS * PLANE_CORNERS)
     jacobian = jacobian_matrices(section.coords, section.quads, GAUSS)
@@ -28,7 +27,7 @@ def laplacian(section: CrossSection) -> coo_matrix:
     rows = np.repeat(section.quads, 4, axis=1).ravel()
     columns = np.tile(section.quads, (1, 4)).ravel()
     n = len(section.coords)
-    return coo_matrix((stiffness.ravel(), (rows, columns)), shape=(n, n)).tocsc()
+    return scipy.sparse.coo_matrix((stiffness.ravel(), (rows, columns)), shape=(n, n)).tocsc()
 
 
 def relief_field(section: CrossSection, profile: ToothProfile) -> Floats:
@@ -46,5 +45,7 @@ def relief_field(section: CrossSection, profile: ToothProfile) -> Floats:
     free = np.flatnonzero(~given)
     if free.size:
         rows = laplacian(section)[free]
-        field[free] = splu(rows[:, free].tocsc()).solve(-(rows[:, given] @ field[given]))
+        field[free] = scipy.sparse.linalg.splu(rows[:, free].tocsc()).solve(
+            -(rows[:, given] @ field[given])
+        )
     return field

@@ -1,34 +1,37 @@
-"""Strain wave gears on meshes."""
+"""Strain wave gears on meshes.
+
+What only runs and their results need is imported where it is used: a check needs neither PETSc nor
+the evaluations.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mpi4py import MPI
 
 from swgpar.analysis.identity import identity
-from swgpar.analysis.run_drive import run_drive
 from swgpar.checks.derived_geometry import derived_geometry
 from swgpar.checks.design_file import make_drive
 from swgpar.checks.remarks import remarks
 from swgpar.design.drive_design import DriveDesign
-from swgpar.drive_results.drive_data import open_data
 from swgpar.errors import InputError
 from swgpar.evaluation.answers import NO_LIMIT
 from swgpar.input.toml_file import apply_overrides
 from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import MeshRecipe
-from swgpar.presentation.drive_result import DriveResult
-from swgpar.presentation.terminal import print_drive
 from swgpar.results.quantity import Quantity
 from swgpar.run_options import RunOptions
 from swgpar.systems.drive_quantities import describe_names, main_quantities, quantities
 from swgpar.systems.protocol import Measured, System
 
+if TYPE_CHECKING:
+    from swgpar.presentation.drive_result import DriveResult
 
-class Drives(System[DriveDesign, DriveResult]):
+
+class Drives(System[DriveDesign, "DriveResult"]):
     """The drive's adapter to the names that all systems share."""
 
     noun = "a drive"
@@ -44,16 +47,24 @@ class Drives(System[DriveDesign, DriveResult]):
         return remarks(design)
 
     def run(self, design: DriveDesign, options: RunOptions) -> DriveResult:
+        from swgpar.analysis.run_drive import run_drive
+        from swgpar.presentation.drive_result import DriveResult
+
         return DriveResult.of(run_drive(design, options))
 
     def open(self, folder: Path, comm: MPI.Comm) -> DriveResult:
+        from swgpar.drive_results.drive_data import open_data
+        from swgpar.presentation.drive_result import DriveResult
+
         return DriveResult.of(open_data(folder, comm))
 
     def print(self, result: DriveResult) -> None:
+        from swgpar.presentation.terminal import print_drive
+
         print_drive(result.history, result.summary)
 
     def report(self, result: DriveResult) -> bytes:
-        from swgpar.presentation.drive_report import drive_report  # only where a report is written
+        from swgpar.presentation.drive_report import drive_report
 
         return drive_report(result)
 

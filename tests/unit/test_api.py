@@ -58,12 +58,12 @@ def test_the_package_is_light() -> None:
     assert done.stdout.strip() == "[]"
 
 
-def test_a_drive_loads_no_other_system(tmp_path: Path) -> None:
-    """A run needs neither gear trains nor studies."""
+def test_a_check_loads_neither_other_systems_nor_what_runs_need(tmp_path: Path) -> None:
+    """A check of a drive needs neither gear trains nor studies, PETSc, elements or figures."""
     code = (
         f"import swgpar, sys; swgpar.check({str(DESIGN)!r}); "
         "print([m for m in sys.modules if m.startswith(('swgpar.gear_trains', 'swgpar.studies', "
-        "'matplotlib'))])"
+        "'swgpar.fem', 'petsc4py', 'meshio', 'matplotlib'))])"
     )
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from scipy.spatial import ConvexHull
+import scipy
 
 from swgpar.geometry.arrays import SignedDistance
 from swgpar.geometry.cams.arcs import arcs
@@ -80,7 +80,7 @@ def make_cam(
 
 def taut_length(cam: Cam, n: int = 7200) -> float:
     """Length of a band drawn tight around the cam, mm: the perimeter of its convex hull."""
-    return float(ConvexHull(cam.outline(n)).area)
+    return float(scipy.spatial.ConvexHull(cam.outline(n)).area)
 
 
 def pin_travel(cam: Cam, radius: float, lobes: int = 2, n: int = 7200) -> float:

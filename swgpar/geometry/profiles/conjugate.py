@@ -20,9 +20,8 @@ from functools import cached_property, lru_cache
 from typing import NoReturn
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
-from scipy.optimize import brentq
 
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats
@@ -207,7 +206,7 @@ class Envelope:
         s = np.linspace(low, high, PIECE_STATIONS)
         contacts = self.solved(segment, s, np.interp(begin + s, *self.branch))
         # an error of psi moves the point along the envelope, and off it with its square only
-        psi = CubicHermiteSpline(s, contacts.psi, contacts.psi_rate)
+        psi = scipy.interpolate.CubicHermiteSpline(s, contacts.psi, contacts.psi_rate)
 
         def evaluate(t: Floats) -> CurvePoints:
             s = high + (low - high) * t
@@ -273,7 +272,7 @@ class _Maker:
 
         if beyond(low) * beyond(high) > 0.0:
             self.undercut()
-        return float(brentq(beyond, low, high, xtol=1e-13))
+        return float(scipy.optimize.brentq(beyond, low, high, xtol=1e-13))
 
     def build(self, low: float, high: float) -> list[Segment | CurvedSegment]:
         """Segments from tip to root; `low`, `high` : arc lengths of the given flank that may
@@ -338,7 +337,7 @@ class _Maker:
         if missing(low) < 0.0:
             if missing(top) < 0.0:
                 self._refuse_root()
-            bottom = float(brentq(missing, low, top, xtol=1e-13))
+            bottom = float(scipy.optimize.brentq(missing, low, top, xtol=1e-13))
         middle, angle = center(bottom)
         line = _vector(angle)
         if bottom == low:
@@ -385,7 +384,7 @@ class _Maker:
                 continue
             if short(0.0) < 0.0:
                 break
-            cut = float(brentq(short, 0.0, segment.length, xtol=1e-13))
+            cut = float(scipy.optimize.brentq(short, 0.0, segment.length, xtol=1e-13))
             (x, y), angle = (
                 segment.point(np.array([cut]))[0],
                 float(segment.angle(np.array([cut]))[0]),

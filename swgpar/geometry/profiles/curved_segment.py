@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
-from scipy.spatial import cKDTree
+import scipy
 
 from swgpar.geometry.arrays import Floats
 
@@ -64,9 +63,9 @@ class CurvedSegment:
         return ends[panel] + part * (speed.reshape(len(t), -1) @ weight)
 
     @cached_property
-    def _inverse(self) -> CubicHermiteSpline:
+    def _inverse(self) -> scipy.interpolate.CubicHermiteSpline:
         t, ends = np.linspace(0.0, 1.0, PANELS + 1), self._table[1]
-        return CubicHermiteSpline(ends, t, 1.0 / self.evaluate(t).speed)
+        return scipy.interpolate.CubicHermiteSpline(ends, t, 1.0 / self.evaluate(t).speed)
 
     def parameter(self, s: Floats) -> Floats:
         """Parameters (n,) at the arc lengths `s` : (n,) mm, by Newton's method from the table."""
@@ -93,8 +92,8 @@ class CurvedSegment:
         return curve.angle_rate / curve.speed
 
     @cached_property
-    def _samples(self) -> cKDTree:
-        return cKDTree(self.evaluate(np.linspace(0.0, 1.0, 257)).point)
+    def _samples(self) -> scipy.spatial.cKDTree:
+        return scipy.spatial.cKDTree(self.evaluate(np.linspace(0.0, 1.0, 257)).point)
 
     def nearest(self, points: Floats) -> Floats:
         """Local arc lengths (n,), mm, of the points nearest to `points` (n, 2), mm."""

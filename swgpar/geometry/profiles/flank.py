@@ -7,8 +7,8 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats
@@ -228,7 +228,7 @@ class ToothProfile:
         def beyond(s: float) -> float:
             return float(np.hypot(*self.point(s)[0])) - radius
 
-        s = brentq(beyond, 0.0, self.length, xtol=1e-14 * radius)
+        s = scipy.optimize.brentq(beyond, 0.0, self.length, xtol=1e-14 * radius)
         return 2.0 * radius * float(self.polar_angle(s)[0])
 
     @property

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats
@@ -130,7 +130,7 @@ def _shaper_tip(cut: Cutter, name: str) -> tuple[float, float, Center]:
 
     limit = cut.depth
     if margin(limit) < 0.0 < margin(0.0):
-        limit = float(brentq(margin, 0.0, limit, xtol=1e-12 * cut.module))
+        limit = float(scipy.optimize.brentq(margin, 0.0, limit, xtol=1e-12 * cut.module))
     _check_tip(cut, limit if margin(0.0) > 0.0 else 0.0, name)
     offset = np.pi / cut.cutter_teeth - margin(rho)
 

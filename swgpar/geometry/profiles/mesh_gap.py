@@ -13,8 +13,8 @@ from functools import cached_property, lru_cache
 from typing import TypeVar
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from swgpar.geometry.arrays import Complex, Floats
 from swgpar.geometry.profiles.flank import FlankSegment, Segment, ToothProfile
@@ -75,8 +75,8 @@ class Outline:
     flank: slice
 
     @cached_property
-    def _tree(self) -> cKDTree:
-        return cKDTree(np.column_stack([self.point.real, self.point.imag]))
+    def _tree(self) -> scipy.spatial.cKDTree:
+        return scipy.spatial.cKDTree(np.column_stack([self.point.real, self.point.imag]))
 
     @cached_property
     def _neighbours(self) -> tuple[Indices, Indices]:

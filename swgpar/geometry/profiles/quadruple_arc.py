@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from swgpar.errors import InputError
 from swgpar.geometry.profiles.flank import ToothProfile
@@ -29,7 +29,11 @@ def _closing_angle(radius: Callable[[float], float], target: float, refusal: str
     if len(crossed) == 0:
         raise InputError(refusal)
     low, high = angles[crossed[0] : crossed[0] + 2]
-    return float(brentq(lambda angle: radius(angle) - target, low, high, xtol=1e-15, rtol=1e-15))
+    return float(
+        scipy.optimize.brentq(
+            lambda angle: radius(angle) - target, low, high, xtol=1e-15, rtol=1e-15
+        )
+    )
 
 
 def quadruple_arc(
