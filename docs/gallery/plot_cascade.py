@@ -37,7 +37,7 @@ result.plot.load_sharing_dynamic()
 # Print and computation at 120 kN at rest. A share of 0.125 is perfect load sharing.
 
 published = design.published["static_B_120"]
-computed = result.summary["quantities"]["static_B_120"]
+computed = result.summary.quantities["static_B_120"]
 pinions = range(1, 9)
 figure, panel = plt.subplots(figsize=(7.0, 3.8), layout="constrained")
 panel.bar([k - 0.2 for k in pinions], published, 0.4, label="published")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,25 @@ from swgpar.results.quantity import Quantity
 
 STATISTICS = {"mean": "mean", "deviation": "standard deviation"}
 """Of results that vary at random: part of the names of quantities -> meaning."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A published value beside the computed one.
+
+    quantity : its name;  meaning : with its unit
+    difference_percent : in % of the published value, None where that is 0
+    """
+
+    quantity: str
+    meaning: str
+    published: float
+    computed: float
+    difference_percent: float | None
+
+
+SAMPLING_ERROR = Quantity("standard error of a deviation by Monte Carlo", "%", detail=True)
+"""Of normal samples, in % of the deviation."""
 
 
 def numbered(name: str, count: int) -> list[str]:
@@ -50,17 +70,16 @@ def compare(
     published: Mapping[str, Any],
     computed: Mapping[str, float | Sequence[float]],
     known: Mapping[str, Quantity],
-) -> list[dict[str, Any]]:
-    """Rows of published.csv; the difference is in % of the published value, empty where it is
-    0."""
+) -> list[Comparison]:
+    """Rows of published.csv."""
     return [
-        {
-            "quantity": title,
-            "meaning": known[name].text,
-            "published": float(old),
-            "computed": float(new),
-            "difference_percent": float(100.0 * (new - old) / abs(old)) if old else None,
-        }
+        Comparison(
+            title,
+            known[name].text,
+            float(old),
+            float(new),
+            float(100.0 * (new - old) / abs(old)) if old else None,
+        )
         for name, given in published.items()
         for title, old, new in zip(
             numbered(name, np.size(given)),

@@ -1,50 +1,64 @@
-"""What a person sees of the run of a gear train: report.html, the comparison on the terminal."""
+"""What a person sees of the run of a gear train: report.html, answers on the terminal."""
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import asdict
 
 import numpy as np
 from rich import box
 from rich import table as terminal
 
-from swgpar.gear_trains.published import numbered
-from swgpar.gear_trains.result import TrainResult
+from swgpar.gear_trains.published import Comparison
+from swgpar.gear_trains.result import TrainResult, TrainSummary
 from swgpar.log import console
+from swgpar.presentation.answer_text import answer_table, detail_table, value_text
 from swgpar.results.page import Row, Table
 from swgpar.results.result_page import RunFacts, result_page
 
 
 def train_report(result: TrainResult) -> bytes:
     """The whole page; reads the figures in the results folder. Call it on one rank."""
-    summary, design = result.summary, result.design_table
-    rows = [
-        Row([name, float(value)])
-        for key, numbers in result.quantities.items()
-        for name, value in zip(numbered(key, np.size(numbers)), np.ravel(numbers), strict=True)
-    ]
-    compared = [Row(list(row.values())) for row in result.compared]
+    summary = result.summary
+    compared = [asdict(row) for row in result.compared]
+    rows = [Row(list(row.values())) for row in compared]
     return result_page(
         "gear_trains/train_report.html.j2",
-        f"Gear train: {str(design['gear_train']['model']).replace('_', ' ')}",
-        RunFacts(design, summary["versions"], summary.get("ranks"), summary.get("wall_s")),
+        f"Gear train: {result.design_table['gear_train']['model'].replace('_', ' ')}",
+        RunFacts(result.design_table, summary.versions, summary.ranks, summary.wall_s),
         result.folder,
         result.plot.names,
-        answers=Table(["quantity", "value"], rows),
-        compared=Table(list(result.compared[0]), compared) if compared else None,
+        answers=answer_table(answer for answer in summary.values() if not answer.detail),
+        details=detail_table(summary),
+        compared=Table(list(compared[0]), rows) if compared else None,
     )
 
 
-def print_compared(rows: list[dict[str, Any]]) -> None:
-    """The table of published against computed values; call it on one rank."""
-    if not rows:
-        return
+def print_train(result: TrainResult) -> None:
+    """Print the answers and the published values beside them; call it on one rank."""
+    _print_answers(result.summary)
+    if result.compared:
+        _print_compared(result.compared)
+
+
+def _print_answers(summary: TrainSummary) -> None:
+    """A row for each quantity, its numbers beside each other."""
+    table = terminal.Table(title="answers", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for name in ("", "value", "unit"):
+        table.add_column(name, overflow="fold")
+    for name, found in summary.quantities.items():
+        if not (kind := summary.known[name]).detail:
+            numbers = [value_text(v if np.isfinite(v) else None) for v in np.atleast_1d(found)]
+            table.add_row(kind.meaning, ", ".join(numbers), kind.unit)
+    console.print(table)
+
+
+def _print_compared(rows: list[Comparison]) -> None:
     title = "published against computed"
     table = terminal.Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
     for name in ("quantity", "published", "computed", "difference"):
         table.add_column(name, justify="left" if name == "quantity" else "right", no_wrap=True)
     for row in rows:
-        percent = row["difference_percent"]
-        numbers = f"{row['published']:.6g}", f"{row['computed']:.6g}"
-        table.add_row(row["quantity"], *numbers, "" if percent is None else f"{percent:+.2f} %")
+        percent = row.difference_percent
+        numbers = f"{row.published:.6g}", f"{row.computed:.6g}"
+        table.add_row(row.quantity, *numbers, "" if percent is None else f"{percent:+.2f} %")
     console.print(table)

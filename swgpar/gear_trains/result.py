@@ -3,28 +3,101 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.evaluation.answers import NO_ESTIMATE, Answer
+from swgpar.gear_trains.common_sections import TrainDesign
+from swgpar.gear_trains.published import Comparison, numbered
 from swgpar.results import history
 from swgpar.results.atomic import agreed, to_json, write_from_root
 from swgpar.results.figure_set import NamedFigures
-from swgpar.results.folder import SUMMARY, TABLES, read_summary
+from swgpar.results.folder import SUMMARY, TABLES
+from swgpar.results.quantity import Quantity
 from swgpar.results.table import format_columns, format_csv, read_columns
+from swgpar.vibration.sampling import TaskSeconds
 
 Table = Mapping[str, np.ndarray]
 """Columns by name, with their unit at the end of the name; all of one length."""
 
 PUBLISHED = "published.csv"
 
+D = TypeVar("D", bound=TrainDesign, covariant=True)
+
 
 @dataclass(frozen=True)
-class TrainResult:
+class Computed:
+    """What the equations of a gear train give.
+
+    history, tables : as those of a `TrainResult`
+    quantities : a number or a list of numbers by name, NaN for what there is not
+    task_s : times of the tasks of each kind
+    """
+
+    history: Table
+    tables: Mapping[str, Table]
+    quantities: Mapping[str, float | list[float]]
+    task_s: Mapping[str, TaskSeconds]
+
+
+@dataclass(frozen=True)
+class TrainSummary(Mapping[str, Answer], Generic[D]):
+    """What a whole run of a gear train gives: a mapping of answers by name.
+
+    A quantity of several numbers has an answer for each: ``braked_B[1]``, ``braked_B[2]``.
+
+    quantities : number or list of numbers by name, NaN for what there is not
+    ranks : MPI ranks;  versions : of swgpar, Python, NumPy and SciPy
+    wall_s : wall time of the run, s;  task_s : times of the tasks of each kind
+    design : the whole design, defaults included
+    known : meaning and unit of the quantities, by name
+    """
+
+    quantities: Mapping[str, float | list[float]]
+    ranks: int
+    versions: Mapping[str, str]
+    wall_s: float
+    task_s: Mapping[str, TaskSeconds]
+    design: D
+    known: Mapping[str, Quantity]
+
+    @cached_property
+    def _answers(self) -> dict[str, Answer]:
+        return {
+            answer.name: answer
+            for name, found in self.quantities.items()
+            for answer in _answers_of(name, self.known[name], np.atleast_1d(found).tolist())
+        }
+
+    def __getitem__(self, name: str) -> Answer:
+        return self._answers[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._answers)
+
+    def __len__(self) -> int:
+        return len(self._answers)
+
+
+def _answers_of(name: str, kind: Quantity, numbers: list[float]) -> Iterator[Answer]:
+    for position, (title, value) in enumerate(zip(numbered(name, len(numbers)), numbers), start=1):
+        text = kind.meaning if title == name else f"{kind.meaning}, {position} of {len(numbers)}"
+        if math.isfinite(value):
+            yield Answer(title, value, kind.unit, text, no_error=NO_ESTIMATE, detail=kind.detail)
+        else:
+            remark = "there is none"
+            yield Answer(title, None, kind.unit, text, remark=remark, detail=kind.detail)
+
+
+@dataclass(frozen=True)
+class TrainResult(Generic[D]):
     """What a run of a gear train gives; the same on every rank.
 
     Attributes
@@ -33,11 +106,10 @@ class TrainResult:
         Columns of history.csv; their names end with the unit. ``pandas.DataFrame(result.history)``
         makes a table of it.
     tables : dict of tables like the history, by name
-    quantities : dict
-        What can be compared with published values: a number or a list of numbers by name.
-    summary : dict
-        Content of summary.json.
-    compared : list of dict
+    summary : TrainSummary
+        A mapping of all answers by name: ``summary["out_of_contact"].value``.
+        ``summary.quantities`` has lists where a quantity has several numbers.
+    compared : list of Comparison
         Published values of the design file beside the computed ones: rows of published.csv.
     folder : Path or None
         The results folder; None when the run was in memory.
@@ -47,16 +119,15 @@ class TrainResult:
 
     history: Table
     tables: Mapping[str, Table]
-    quantities: Mapping[str, float | list[float]]
-    summary: dict[str, Any] = field(default_factory=dict)
-    compared: list[dict[str, Any]] = field(default_factory=list)
+    summary: TrainSummary[D]
+    compared: list[Comparison] = field(default_factory=list)
     folder: Path | None = None
     plot: NamedFigures = field(default_factory=lambda: NamedFigures({}, MPI.COMM_SELF), repr=False)
 
     @property
     def design_table(self) -> Mapping[str, Any]:
         """The whole design, defaults included."""
-        return self.summary["design"]
+        return self.summary.design.model_dump()
 
 
 def write(result: TrainResult, out: Path, comm: MPI.Comm) -> None:
@@ -67,28 +138,54 @@ def write(result: TrainResult, out: Path, comm: MPI.Comm) -> None:
     for name, table in result.tables.items():
         write_from_root(comm, out / TABLES / f"{name}.csv", format_columns(table))
     if result.compared:
-        write_from_root(comm, out / PUBLISHED, format_csv(result.compared))
+        write_from_root(comm, out / PUBLISHED, format_csv([asdict(row) for row in result.compared]))
     write_from_root(comm, out / history.NAME, format_columns(result.history))
-    write_from_root(comm, out / SUMMARY, to_json(result.summary))
+    summary = result.summary
+    content = {
+        "answers": [asdict(answer) for answer in summary.values()],
+        "quantities": summary.quantities,
+        "ranks": summary.ranks,
+        "versions": summary.versions,
+        "wall_s": summary.wall_s,
+        "task_s": {name: asdict(times) for name, times in summary.task_s.items()},
+        "design": result.design_table,
+    }
+    write_from_root(comm, out / SUMMARY, to_json(content))
 
 
-def read(out: Path) -> TrainResult:
+def summary_from(
+    content: Mapping[str, Any], design: TrainDesign, known: Mapping[str, Quantity]
+) -> TrainSummary:
+    """The summary from the content of summary.json, its design and what is known of its
+    quantities."""
+    given = content | content["quantities"]  # some stood beside the others in earlier versions
+    return TrainSummary(
+        # null is a number that is not finite
+        {name: np.array(given[name], dtype=float).tolist() for name in known if name in given},
+        content["ranks"],
+        content["versions"],
+        content["wall_s"],
+        {
+            name: TaskSeconds(**times)
+            for name, times in content.get("task_s", {}).items()
+            if isinstance(times, Mapping)  # lists and sums in earlier versions
+        },
+        design,
+        known,
+    )
+
+
+def read(out: Path, summary: TrainSummary) -> TrainResult:
     """Result of a finished run from its folder, without figures; every rank reads the files."""
-    summary = read_summary(out)
     tables = {path.stem: read_columns(path) for path in sorted((out / TABLES).glob("*.csv"))}
     compared = _read_compared(out / PUBLISHED) if (out / PUBLISHED).exists() else []
-    quantities = {
-        name: np.array(found, dtype=float).tolist()  # null is a number that is not finite
-        for name, found in summary["quantities"].items()
-    }
-    return TrainResult(read_columns(out / history.NAME), tables, quantities, summary, compared, out)
+    return TrainResult(read_columns(out / history.NAME), tables, summary, compared, out)
 
 
-def _read_compared(path: Path) -> list[dict[str, Any]]:
-    texts = ("quantity", "meaning")
+def _read_compared(path: Path) -> list[Comparison]:
     with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+        _, *rows = csv.reader(file)
     return [
-        {n: value if n in texts else float(value) if value else None for n, value in row.items()}
-        for row in rows
+        Comparison(name, meaning, float(old), float(new), float(percent) if percent else None)
+        for name, meaning, old, new, percent in rows
     ]

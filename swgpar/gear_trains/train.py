@@ -14,17 +14,24 @@ import numpy as np
 import scipy
 from mpi4py import MPI
 
-from swgpar.errors import InputError
+from swgpar.errors import InputError, OutputError
 from swgpar.gear_trains import cascade, gear_pair, planetary, ring
 from swgpar.gear_trains.common_sections import TrainDesign
 from swgpar.gear_trains.published import check_published, compare
-from swgpar.gear_trains.result import TrainResult, read, write
+from swgpar.gear_trains.result import (
+    Computed,
+    TrainResult,
+    TrainSummary,
+    read,
+    summary_from,
+    write,
+)
 from swgpar.input.quantities import show
 from swgpar.input.toml_file import validate
 from swgpar.log import logger
 from swgpar.results.atomic import agreed, sentence
 from swgpar.results.figure_set import Drawings, NamedFigures
-from swgpar.results.folder import open_log, prepare
+from swgpar.results.folder import SUMMARY, open_log, prepare, read_summary
 from swgpar.results.lock import releasing
 from swgpar.results.quantity import Quantity
 from swgpar.run_options import RunOptions
@@ -50,7 +57,7 @@ class TrainModel(Protocol[D]):
     def check_fit(self, design: D) -> None: ...
     def quantities(self, design: D) -> Mapping[str, Quantity]: ...
     def derived(self, design: D) -> dict[str, float]: ...
-    def compute(self, design: D, comm: MPI.Comm) -> TrainResult: ...
+    def compute(self, design: D, comm: MPI.Comm) -> Computed: ...
     def drawings(self, result: TrainResult) -> Drawings: ...
 
 
@@ -101,18 +108,13 @@ def run_train(design: TrainDesign, options: RunOptions) -> TrainResult:
         computed = model.compute(design, comm)
     require_finite(computed.quantities)
     seconds = comm.bcast(time.perf_counter() - begin)
-    result = replace(
-        computed,
-        summary={
-            "quantities": dict(computed.quantities),
-            **computed.summary,
-            "ranks": comm.size,
-            "versions": _versions(),
-            "wall_s": seconds,
-            "design": design.model_dump(),
-        },
-        compared=compare(design.published, computed.quantities, model.quantities(design)),
-        folder=None if folder is None else folder.absolute(),
+    values, known = computed.quantities, model.quantities(design)
+    result = TrainResult(
+        computed.history,
+        computed.tables,
+        TrainSummary(values, comm.size, _versions(), seconds, computed.task_s, design, known),
+        compare(design.published, values, known),
+        None if folder is None else folder.absolute(),
     )
     if folder is not None:
         write(result, folder, comm)
@@ -142,15 +144,28 @@ def require_finite(values: Mapping[str, float | list[float]]) -> None:
 
 
 def open_train(folder: Path, comm: MPI.Comm) -> TrainResult:
-    """Result of a finished run from its folder; collective, every rank reads the files."""
+    """Result of a finished run from its folder; collective, every rank reads the files.
+
+    Raises OutputError for a summary.json that this version does not read.
+    """
     with agreed(comm, folder, "read"):
-        result = read(folder.absolute())
+        content = read_summary(folder)
+        try:
+            design = make_train(content["design"])
+            summary = summary_from(content, design, model_of(design).quantities(design))
+        except (InputError, KeyError, TypeError, ValueError):
+            by = content.get("versions", {}).get("swgpar", "of unknown number")
+            raise OutputError(
+                f"{folder / SUMMARY} of swgpar {by} is not the summary of a gear train that "
+                f"swgpar {__version__} reads"
+            ) from None
+        result = read(folder.absolute(), summary)
     return _with_figures(result, comm)
 
 
 def _with_figures(result: TrainResult, comm: MPI.Comm) -> TrainResult:
-    model = MODELS[result.summary["design"][SECTION]["model"]]
-    return replace(result, plot=NamedFigures(model.drawings(result), comm))
+    drawings = model_of(result.summary.design).drawings(result)
+    return replace(result, plot=NamedFigures(drawings, comm))
 
 
 def _versions() -> dict[str, str]:

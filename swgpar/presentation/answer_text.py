@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+
 import numpy as np
 
 from swgpar.evaluation.answers import Answer
-from swgpar.results.page import number
+from swgpar.results.page import Row, Table, number
 
 NOTHING = 1e-9
 """Size below which a value is round-off and 0 is shown."""
@@ -33,3 +35,18 @@ def remark_text(answer: Answer) -> str:
     """What to know about an answer, with its limit."""
     limit = "" if answer.limit is None else f"good up to {number(answer.limit)}"
     return "; ".join(filter(None, (answer.remark, limit)))
+
+
+def answer_table(answers: Iterable[Answer]) -> Table:
+    """A row of the report for each answer."""
+    rows = []
+    for answer in answers:
+        numbers = ["—" if answer.value is None else answer.value, answer.unit, error_text(answer)]
+        rows.append(Row([answer.text, *numbers, answer.place, remark_text(answer), answer.name]))
+    return Table(["", "value", "unit", "error", "where", "remark", "name"], rows)
+
+
+def detail_table(summary: Mapping[str, Answer]) -> Table | None:
+    """The answers that are details, None without any."""
+    details = [answer for answer in summary.values() if answer.detail]
+    return answer_table(details) if details else None

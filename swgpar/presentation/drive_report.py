@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 from swgpar.drive_results.report_checks import checks
 from swgpar.drive_results.summary import DriveSummary
-from swgpar.evaluation.answers import Answer
-from swgpar.presentation.answer_text import error_text, remark_text
+from swgpar.presentation.answer_text import answer_table, detail_table
 from swgpar.presentation.drive_drawing import draw_drive
 from swgpar.presentation.drive_result import DriveResult
 from swgpar.presentation.scene import SCRIPT, scene
-from swgpar.results.page import Row, Table
+from swgpar.results.page import Table
 from swgpar.results.result_page import RunFacts, result_page
 
 WIDE = ("contact_pattern", "deformed_drive", "loaded_teeth", "cup_section", "safety")
@@ -41,7 +39,6 @@ def drive_report(result: DriveResult) -> bytes:
     design, drive = summary.design, summary.design.drive
     judged = checks(summary, result.history)
     memory = summary.peak_memory_MB_per_rank
-    details = [answer for answer in summary.values() if answer.detail]
     return result_page(
         "presentation/drive_report.html.j2",
         f"Strain wave gear {drive.teeth_fs}/{drive.teeth_rg}, {design.load.torque:g} N·m",
@@ -54,7 +51,7 @@ def drive_report(result: DriveResult) -> bytes:
         look=[check.name for check in judged if check.good is False],
         drawings=draw_drive(design),
         groups=_groups(summary),
-        details=_table(details) if details else None,
+        details=detail_table(summary),
         not_asked=[f"{kind.TITLE} ({kind.ASKED_BY})" for kind in summary.not_asked_for()],
         checks=judged,
         scene=view,
@@ -78,13 +75,5 @@ def _groups(summary: DriveSummary) -> list[Group]:
     for evaluation in summary.groups():
         shown = [answer for answer in evaluation.answers() if not answer.detail]
         if shown:
-            groups.append(Group(evaluation.TITLE, _table(shown), list(evaluation.remarks())))
+            groups.append(Group(evaluation.TITLE, answer_table(shown), list(evaluation.remarks())))
     return groups
-
-
-def _table(answers: Iterable[Answer]) -> Table:
-    rows = []
-    for answer in answers:
-        numbers = ["—" if answer.value is None else answer.value, answer.unit, error_text(answer)]
-        rows.append(Row([answer.text, *numbers, answer.place, remark_text(answer), answer.name]))
-    return Table(["", "value", "unit", "error", "where", "remark", "name"], rows)

@@ -15,11 +15,13 @@ class Quantity:
     """A number that a run gives, or a list of `count` numbers.
 
     meaning : without its unit;  unit : empty for a pure number
+    detail : whether tables of the main quantities leave it out
     """
 
     meaning: str
     unit: str = ""
     count: int = 1
+    detail: bool = False
 
     @property
     def text(self) -> str:

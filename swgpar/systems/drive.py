@@ -18,7 +18,6 @@ from swgpar.checks.design_file import make_drive
 from swgpar.checks.remarks import remarks
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
-from swgpar.evaluation.answers import NO_LIMIT
 from swgpar.input.toml_file import apply_overrides
 from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import MeshRecipe
@@ -111,14 +110,9 @@ class Drives(System[DriveDesign, "DriveResult"]):
 
     def measure(self, result: DriveResult) -> Measured:
         summary = result.summary
-        return Measured(
-            values={
-                name: answer.value for name, answer in summary.items() if answer.value is not None
-            },
-            unbounded=frozenset(
-                name for name, answer in summary.items() if answer.no_error == NO_LIMIT
-            ),
-            wall_s=summary.wall_s,
+        return Measured.of(
+            summary,
+            summary.wall_s,
             elements=summary.elements,
             newton_mean=summary.rotation.newton_iterations_mean,
             history=result.history,

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from mpi4py import MPI
 
 from swgpar.gear_trains.common_sections import TrainDesign
@@ -53,9 +51,9 @@ class GearTrains(System[TrainDesign, TrainResult]):
         return open_train(folder, comm)
 
     def print(self, result: TrainResult) -> None:
-        from swgpar.gear_trains.report import print_compared  # loads what pages need
+        from swgpar.gear_trains.report import print_train  # loads what pages need
 
-        print_compared(result.compared)
+        print_train(result)
 
     def report(self, result: TrainResult) -> bytes:
         from swgpar.gear_trains.report import train_report  # only where a report is written
@@ -79,7 +77,7 @@ class GearTrains(System[TrainDesign, TrainResult]):
         }
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
-        return tuple(known)
+        return tuple(name for name, quantity in known.items() if not quantity.detail)
 
     def describe_names(self, known: Mapping[str, Quantity]) -> str:
         return ", ".join(dict.fromkeys(name.partition("[")[0] for name in known))
@@ -98,12 +96,7 @@ class GearTrains(System[TrainDesign, TrainResult]):
         return {"identity": hashlib.sha256(to_json(content)).hexdigest()}
 
     def measure(self, result: TrainResult) -> Measured:
-        values: dict[str, float] = {}
-        for name, found in result.quantities.items():
-            numbers = np.atleast_1d(found).tolist()
-            finite = zip(numbered(name, len(numbers)), numbers, strict=True)
-            values |= {number: value for number, value in finite if math.isfinite(value)}
-        return Measured(values, result.summary["wall_s"])
+        return Measured.of(result.summary, result.summary.wall_s)
 
 
 GEAR_TRAIN = GearTrains()

@@ -11,6 +11,7 @@ from typing import Any, Generic, Protocol, TypeVar
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.evaluation.answers import NO_LIMIT, Answer
 from swgpar.input.design import Design
 from swgpar.meshing import MeshRecipe
 from swgpar.results.figure_set import FigureSet
@@ -26,8 +27,8 @@ class Result(Protocol):
         """Columns of history.csv, each (n,)."""
 
     @property
-    def summary(self) -> Mapping[str, Any]:
-        """What the run gives, by name."""
+    def summary(self) -> Mapping[str, Answer]:
+        """The answers of the run, by name."""
 
     @property
     def design_table(self) -> Mapping[str, Any]:
@@ -60,6 +61,16 @@ class Measured:
     elements: int | None = None
     newton_mean: float | None = None
     history: Mapping[str, np.ndarray] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, answers: Mapping[str, Answer], wall_s: float, **more: Any) -> Measured:
+        """The answers that have a value. more : further fields"""
+        return cls(
+            {name: answer.value for name, answer in answers.items() if answer.value is not None},
+            wall_s,
+            frozenset(name for name, answer in answers.items() if answer.no_error == NO_LIMIT),
+            **more,
+        )
 
 
 D = TypeVar("D", bound=Design)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,14 @@ Tasks = Mapping[str, Sequence[Callable[[], Any]]]
 """Groups of tasks by name."""
 
 
+@dataclass(frozen=True)
+class TaskSeconds:
+    """Times of the tasks of a group, s. total : together;  largest : of the slowest"""
+
+    total: float
+    largest: float
+
+
 def random_stream(seed: int, *key: int) -> np.random.Generator:
     """The stream of a seed and a key, such as the number of a block."""
     return np.random.Generator(np.random.Philox(np.random.SeedSequence(seed, spawn_key=key)))
@@ -30,8 +39,8 @@ def block_sizes(count: int, size: int) -> list[int]:
     return [min(size, count - first) for first in range(0, count, size)]
 
 
-def run_tasks(comm: MPI.Comm, groups: Tasks) -> tuple[dict[str, list[Any]], dict[str, list[float]]]:
-    """Results and seconds of all tasks by group, on every rank; each task runs on one. Collective.
+def run_tasks(comm: MPI.Comm, groups: Tasks) -> tuple[dict[str, list[Any]], dict[str, TaskSeconds]]:
+    """Results and times of all tasks by group, on every rank; each task runs on one. Collective.
 
     A ConvergenceError of a task is raised on all ranks.
     """
@@ -56,4 +65,5 @@ def run_tasks(comm: MPI.Comm, groups: Tasks) -> tuple[dict[str, list[Any]], dict
             raise result
         results[name].append(result)
         seconds[name].append(taken)
-    return results, seconds
+    times = {name: TaskSeconds(sum(each), max(each, default=0.0)) for name, each in seconds.items()}
+    return results, times

@@ -10,6 +10,8 @@ import pytest
 from support.commands import execute, on_ranks, succeed, swgpar
 from support.paths import DRIVERS
 from support.small_trains import SMALL
+from swgpar import open_result
+from swgpar.errors import OutputError
 from swgpar.results.table import read_columns
 
 FILES = {
@@ -73,3 +75,22 @@ def test_refused_on_all_ranks(arguments: tuple[str, ...], reason: str, tmp_path:
     )
     assert done.returncode == 2 and reason in done.stderr and len(done.stderr.splitlines()) == 1
     assert not out.exists()
+
+
+def test_folders_of_earlier_versions_open(tmp_path: Path) -> None:
+    """Their summary has no answers, and some quantities beside the others."""
+    out = tmp_path / "run"
+    succeed(run("planetary", out))
+    now = open_result(out).summary
+    content = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    assert {row["name"] for row in content.pop("answers")} == set(now)
+    aside = ("sampling_error_percent", "least_eigenvalue_over_largest", "asymmetry_of_correlations")
+    content |= {name: content["quantities"].pop(name) for name in aside}
+    content["task_s"] = {"linearised": [1.0, 2.0], "monte_carlo": 3.0}
+    (out / "summary.json").write_text(json.dumps(content), encoding="utf-8")
+    earlier = open_result(out).summary
+    assert dict(earlier) == dict(now) and now["out_of_contact"].value is not None
+    del content["ranks"]
+    (out / "summary.json").write_text(json.dumps(content), encoding="utf-8")
+    with pytest.raises(OutputError, match="is not the summary of a gear train"):
+        open_result(out)

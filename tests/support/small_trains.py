@@ -1,7 +1,18 @@
-"""Overrides that make the gear trains of drivers/ small; samples do not divide evenly between two
-ranks."""
+"""Gear trains of drivers/ with overrides that make them small, and results with numbers of one's
+own.
+
+Samples do not divide evenly between two ranks.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
+
+from support.paths import DRIVERS
+from swgpar import load_design
+from swgpar.gear_trains.common_sections import TrainDesign
+from swgpar.gear_trains.result import Table, TrainResult, TrainSummary
+from swgpar.results.quantity import Quantity
 
 SMALL = {
     "cascade": (
@@ -25,3 +36,13 @@ SMALL = {
     ),
 }
 """By the name of the design file."""
+
+
+def result_with(
+    quantities: Mapping[str, float | list[float]], history: Table
+) -> TrainResult[TrainDesign]:
+    """A result of a ring with these quantities, that took 2 s."""
+    design = load_design(DRIVERS / "ring_moving_load.toml")
+    assert isinstance(design, TrainDesign)
+    known = {name: Quantity(name) for name in quantities}
+    return TrainResult(history, {}, TrainSummary(quantities, 1, {}, 2.0, {}, design, known))

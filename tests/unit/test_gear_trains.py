@@ -215,8 +215,8 @@ def test_published_beside_computed() -> None:
     published = {"share": [0.5, 0.25], "count": 0}
     check_published(published, known)
     rows = compare(published, {"share": [0.55, 0.25], "count": 1.0}, known)
-    assert [row["quantity"] for row in rows] == ["share[1]", "share[2]", "count"]
-    assert [row["difference_percent"] for row in rows] == [pytest.approx(10.0), 0.0, None]
+    assert [row.quantity for row in rows] == ["share[1]", "share[2]", "count"]
+    assert [row.difference_percent for row in rows] == [pytest.approx(10.0), 0.0, None]
 
 
 def test_streams_are_independent_of_the_order_of_their_use() -> None:
@@ -234,7 +234,8 @@ def test_tasks_come_back_in_order_and_their_errors_too() -> None:
 
     squares = {"odd": [lambda: 1, lambda: 9], "even": [lambda k=k: k * k for k in (0, 2, 4)]}
     results, seconds = run_tasks(MPI.COMM_WORLD, squares)
-    assert results == {"odd": [1, 9], "even": [0, 4, 16]} and len(seconds["even"]) == 3
+    assert results == {"odd": [1, 9], "even": [0, 4, 16]} and seconds.keys() == squares.keys()
+    assert 0.0 <= seconds["even"].largest <= seconds["even"].total
     with pytest.raises(ConvergenceError, match="no"):
         run_tasks(MPI.COMM_WORLD, {"tasks": [lambda: 1, fail]})
 

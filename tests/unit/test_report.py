@@ -214,5 +214,5 @@ def test_the_report_of_a_gear_train(tmp_path: Path) -> None:
     result = swgpar.run(DRIVERS / "ring_supported.toml", out=tmp_path / "ring")
     text = (tmp_path / "ring" / "report.html").read_text(encoding="utf-8")
     assert_needs_nothing_else(text)
-    name, value = next((name, float(np.ravel(v)[0])) for name, v in result.quantities.items())
-    assert name in text and f"{value:.5g}" in text
+    answer = next(iter(result.summary.values()))
+    assert answer.name in text and answer.text in text and f"{answer.value:.5g}" in text

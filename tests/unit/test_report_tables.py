@@ -110,6 +110,7 @@ def report(heading: str, text: str) -> str:
         "inputs": text,
         "versions": empty,
         "answers": answers,
+        "details": None,
         "compared": None,
     }
     return page("gear_trains/train_report.html.j2", text, scripts=(RANK,), **values).decode()

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from support.paths import DRIVERS, ROOT
+from support.small_trains import result_with
 from support.study_files import assert_refused, jobs_of
-from swgpar.gear_trains.result import TrainResult
 from swgpar.results.table import format_csv
 from swgpar.studies.case import Outcome
 from swgpar.studies.cases import labels
@@ -68,7 +68,8 @@ def test_quantities_are_those_of_the_train(
     (job,) = jobs_of(study_file(design))
     # rank 0 reads the study, and sends the jobs to the others
     assert pickle.loads(pickle.dumps(job)).case.design == job.case.design
-    assert job.case.name == design and job.case.shown == tuple(job.case.known)
+    main = [title for title, quantity in job.case.known.items() if not quantity.detail]
+    assert job.case.name == design and list(job.case.shown) == main
     assert job.case.known[name].unit == unit
     assert "(" not in job.case.known[name].meaning.replace("2 pi sqrt(density A R⁴ / (E I))", "")
 
@@ -234,7 +235,7 @@ def test_what_a_train_does_not_have_is_left_out(study_file: Write) -> None:
     """Peaks of the ring that are not there are NaN in its summary: no values."""
     (job,) = jobs_of(study_file("ring_moving_load"))
     quantities = {"critical_speeds": [30.0, float("nan")], "dominant_cycles_moving_point": 6.0}
-    found = job.case.system.measure(TrainResult({}, {}, quantities, {"wall_s": 2.0}))
+    found = job.case.system.measure(result_with(quantities, {}))
     assert (
         found.values == {"critical_speeds[1]": 30.0, "dominant_cycles_moving_point": 6.0}
         and found.wall_s == 2.0

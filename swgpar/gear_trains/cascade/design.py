@@ -129,6 +129,11 @@ class Load(Section):
     )
     overload: float = quantity(text="allowed excess of a load share over 1/8", ge=0.0, lt=0.875)
 
+    @property
+    def largest_share(self) -> float:
+        """Load share above which a pinion is overloaded."""
+        return 1.0 / PINIONS + self.overload
+
 
 class Tolerances(Section):
     samples: int = quantity(text="samples of the tolerance stack-up", ge=10, le=10_000_000)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from swgpar.gear_trains.cascade.design import PINIONS
+from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
 from swgpar.gear_trains.drawing import axes
 from swgpar.gear_trains.result import TrainResult
 from swgpar.results.figure_set import Drawings
@@ -23,9 +23,9 @@ STYLES = ("-", "--")
 LARGEST_DRAWN = 0.3
 
 
-def drawings(result: TrainResult) -> Drawings:
+def drawings(result: TrainResult[CascadeDesign]) -> Drawings:
     """All figures of a run."""
-    static, limit = result.tables["static"], result.summary["overload_limit"]
+    static, limit = result.tables["static"], result.summary.design.load.largest_share
     at_rest = {
         f"load_sharing_static_{side}": partial(
             _against_force,

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
+from swgpar.gear_trains.cascade.design import CascadeDesign
 from swgpar.gear_trains.cascade.dynamics import natural_frequencies
 from swgpar.gear_trains.cascade.flex_unit import FlexUnits
 from swgpar.gear_trains.cascade.layout import DOFS
@@ -23,7 +23,7 @@ from swgpar.gear_trains.cascade.static_sharing import (
 )
 from swgpar.gear_trains.cascade.tolerance_stack_up import contributions, sample_stack_up
 from swgpar.gear_trains.published import number_label
-from swgpar.gear_trains.result import Table, TrainResult
+from swgpar.gear_trains.result import Computed, Table
 from swgpar.log import logger
 from swgpar.vibration.sampling import Tasks, block_sizes, run_tasks
 
@@ -33,7 +33,7 @@ CURVE_END = 2.5
 """End of the table of the flexible units, over the deformation above which they are linear."""
 
 
-def compute(design: CascadeDesign, comm: MPI.Comm) -> TrainResult:
+def compute(design: CascadeDesign, comm: MPI.Comm) -> Computed:
     """All results of a design, the same on all ranks; collective."""
     logger.info(
         "cascade gearbox: %d degrees of freedom, %d tolerance samples, %d gearboxes with errors; "
@@ -50,7 +50,7 @@ def compute(design: CascadeDesign, comm: MPI.Comm) -> TrainResult:
         "stack_up": [partial(sample_stack_up, design, kind) for kind in MESH_COUNTS],
         "population": [partial(block_shares, design, block, size) for block, size in blocks],
     }
-    done, _ = run_tasks(comm, groups)
+    done, seconds = run_tasks(comm, groups)
     cycle, stacks = done["cycle"][0], dict(zip(MESH_COUNTS, done["stack_up"], strict=True))
     shares = PopulationShares(
         *(
@@ -58,7 +58,7 @@ def compute(design: CascadeDesign, comm: MPI.Comm) -> TrainResult:
             for kind in ("static", "mean", "largest")
         )
     )
-    limit = 1.0 / PINIONS + design.load.overload
+    limit = design.load.largest_share
     at_rest = first_crossing(static_sharing(design, "B"), 1e3 * design.load.peak)
     values: dict[str, float | list[float]] = {
         "spearman_rack_pinion": [stacks["rack_pinion"][1][name] for name in RANKED_TOLERANCES],
@@ -87,7 +87,7 @@ def compute(design: CascadeDesign, comm: MPI.Comm) -> TrainResult:
         },
     }
     values |= _shares_at_forces(design, cycle)
-    return TrainResult(_history(cycle), tables, values, {"overload_limit": limit})
+    return Computed(_history(cycle), tables, values, seconds)
 
 
 def _by_pinion(name: str, values: np.ndarray, unit: str = "") -> dict[str, np.ndarray]:

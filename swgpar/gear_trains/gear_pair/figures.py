@@ -7,6 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from swgpar.gear_trains.drawing import MomentCurve, axes, draw_moments
+from swgpar.gear_trains.gear_pair.design import GearPairDesign
 from swgpar.gear_trains.gear_pair.quantities import VALUES
 from swgpar.gear_trains.result import TrainResult
 from swgpar.results.figure_set import Drawings
@@ -22,10 +23,10 @@ STYLES = {
 }
 
 
-def drawings(result: TrainResult) -> Drawings:
+def drawings(result: TrainResult[GearPairDesign]) -> Drawings:
     """All figures of a run."""
     figures: dict[str, Callable[[], Figure]] = {}
-    for case, torque in enumerate(result.design_table["load"]["input"], start=1):
+    for case, torque in enumerate(result.summary.design.load.input, start=1):
         load = f"input torque {torque:g} N·m"
         figures |= {
             f"case_{case}_{value}": partial(_moments, result, case, load, value) for value in VALUES
@@ -50,8 +51,8 @@ def _moments(result: TrainResult, case: int, load: str, value: str) -> Figure:
     return draw_moments(f"{VALUES[value]}, {load}", "time (s)", curves)
 
 
-def _density(result: TrainResult, case: int, load: str) -> Figure:
-    table, half = result.tables[f"density_{case}"], result.summary["half_backlash_um"]
+def _density(result: TrainResult[GearPairDesign], case: int, load: str) -> Figure:
+    table, half = result.tables[f"density_{case}"], result.summary.design.mesh.half_backlash
     deflection = table["mesh_deflection_um"]
     title = f"density of the mesh deflection at the end, {load}"
     figure, (axis,) = axes(title, "mesh deflection (µm)", "density (1/µm)")

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial, reduce
 from itertools import product
-from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -20,17 +19,17 @@ from swgpar.gear_trains.gear_pair.model import (
 )
 from swgpar.gear_trains.gear_pair.monte_carlo import BLOCK_SIZE, simulate
 from swgpar.gear_trains.gear_pair.quantities import VALUES
-from swgpar.gear_trains.result import Table, TrainResult
+from swgpar.gear_trains.result import Computed, Table
 from swgpar.log import logger
 from swgpar.vibration.linearisation import EQUIVALENT, Criterion, linearise
-from swgpar.vibration.moments import Moments, SampleMoments, columns, percent_errors
-from swgpar.vibration.sampling import block_sizes, random_stream, run_tasks
+from swgpar.vibration.moments import Moments, SampleMoments, columns, percent_errors, sampling_error
+from swgpar.vibration.sampling import Tasks, block_sizes, random_stream, run_tasks
 
 BINS = 120
 """Of the histograms of the mesh deflection."""
 
 
-def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
+def compute(design: GearPairDesign, comm: MPI.Comm) -> Computed:
     """All results of a design, the same on all ranks; collective."""
     cases, seed = range(len(design.load.input)), design.gear_train.seed
     steps = design.step, design.steps, design.every
@@ -45,20 +44,26 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
     pairs = [(gear_pair_system(design, case), static_equilibrium(design, case)) for case in cases]
     keys = list(product(cases, EQUIVALENT))
     sizes = list(enumerate(block_sizes(design.monte_carlo.samples, BLOCK_SIZE)))
-    groups: dict[str, list[Callable[[], Any]]] = {"linearised": []}
-    for case, criterion in keys:
-        system, start = pairs[case]
-        groups["linearised"].append(partial(linearise, system, start, *steps, criterion))
-    for case, (system, start) in enumerate(pairs):
-        groups[f"case {case}"] = [
+    groups: Tasks = {
+        "linearised": [
+            partial(linearise, system, start, *steps, criterion)
+            for case, criterion in keys
+            for system, start in [pairs[case]]
+        ],
+        "monte_carlo": [
             partial(simulate, system, start, *steps, size, random_stream(seed, case, block))
+            for case, (system, start) in enumerate(pairs)
             for block, size in sizes
-        ]
+        ],
+    }
     done, seconds = run_tasks(comm, groups)
     rows = np.vstack([np.eye(len(COORDINATES)), DEFLECTION_ROW])
     moments = {key: part.of(rows) for key, part in zip(keys, done["linearised"], strict=True)}
-    samples = [reduce(SampleMoments.merged_with, done[f"case {case}"]) for case in cases]
-    values: dict[str, float | list[float]] = {}
+    blocks = [done["monte_carlo"][case * len(sizes) :][: len(sizes)] for case in cases]
+    samples = [reduce(SampleMoments.merged_with, parts) for parts in blocks]
+    values: dict[str, float | list[float]] = {
+        "sampling_error_percent": sampling_error(design.monte_carlo.samples)
+    }
     tables = {}
     for case in cases:
         final, half_backlash = samples[case].final, 1e-6 * design.mesh.half_backlash
@@ -78,13 +83,7 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
         parts = [moments[case, method] for case in cases]
         history |= columns(parts, VALUES, "um", f"{method}_")
     history |= columns(samples, VALUES, "um", "monte_carlo_")
-    linearised = seconds.pop("linearised")
-    summary = {
-        "sampling_error_percent": 100.0 / np.sqrt(2.0 * design.monte_carlo.samples),
-        "task_s": {"linearised": linearised, "monte_carlo": sum(map(sum, seconds.values()))},
-        "half_backlash_um": design.mesh.half_backlash,
-    }
-    return TrainResult(history, tables, values, summary)
+    return Computed(history, tables, values, seconds)
 
 
 def _density(final: np.ndarray, ends: Mapping[Criterion, Moments]) -> Table:

@@ -11,7 +11,7 @@ from swgpar.gear_trains.planetary.model import PlanetaryModel, radii
 from swgpar.gear_trains.planetary.monitored import MONITORED
 from swgpar.gear_trains.planetary.time_stepping import TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
-from swgpar.gear_trains.published import STATISTICS, number_label
+from swgpar.gear_trains.published import SAMPLING_ERROR, STATISTICS, number_label
 from swgpar.results.quantity import Quantity
 from swgpar.vibration.backlash import force
 
@@ -20,6 +20,15 @@ def quantities(design: PlanetaryDesign) -> dict[str, Quantity]:
     """Results that can be compared with published values."""
     harmonic = "largest slow harmonic, in cycles per carrier revolution, of the"
     known = {
+        "sampling_error_percent": SAMPLING_ERROR,
+        "least_eigenvalue_over_largest": Quantity(
+            "least eigenvalue of the linearised covariance over the largest, worst of the checks",
+            detail=True,
+        ),
+        "asymmetry_of_correlations": Quantity(
+            "largest difference of the scaled covariance from its transpose, worst of the checks",
+            detail=True,
+        ),
         "dominant_cycles_ring_contact": Quantity(
             f"{harmonic} outward ring displacement at planet 1"
         ),

@@ -15,10 +15,16 @@ from swgpar.gear_trains.planetary.monte_carlo import BLOCK_SIZE, simulate
 from swgpar.gear_trains.planetary.time_stepping import TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
 from swgpar.gear_trains.published import number_label
-from swgpar.gear_trains.result import Table, TrainResult
+from swgpar.gear_trains.result import Computed, Table
 from swgpar.log import logger
 from swgpar.vibration.dominant_cycles import dominant_cycles
-from swgpar.vibration.moments import SampleMoments, columns, largest, percent_errors
+from swgpar.vibration.moments import (
+    SampleMoments,
+    columns,
+    largest,
+    percent_errors,
+    sampling_error,
+)
 from swgpar.vibration.sampling import Tasks, block_sizes, random_stream, run_tasks
 
 DOMINANT = {"ring_contact": "ring_contact_radial", "ring_node": "ring_node_tangential"}
@@ -48,7 +54,7 @@ class _Case:
         return simulate(*self.steps, self.every, size, random)
 
 
-def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
+def compute(design: PlanetaryDesign, comm: MPI.Comm) -> Computed:
     """All results of a design, the same on all ranks; collective."""
     rims = list(dict.fromkeys([design.ring.rim, *design.ring.rims]))
     logger.info(
@@ -71,12 +77,6 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
     moments: dict[float, TrainMoments] = dict(zip(rims, done["linearised"], strict=True))
     simulated, separated = zip(*done["monte_carlo"], strict=True)
     samples, own = reduce(SampleMoments.merged_with, simulated), moments[design.ring.rim]
-    summary = {
-        "sampling_error_percent": 100.0 / np.sqrt(2.0 * samples.count),
-        "least_eigenvalue_over_largest": own.smallest_eigenvalue,
-        "asymmetry_of_correlations": own.asymmetry,
-        "task_s": seconds | {"monte_carlo": sum(seconds["monte_carlo"])},
-    }
     history = {
         "time_s": _times(design),
         **columns([own], MONITORED, "um", "linearised_"),
@@ -84,7 +84,7 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
     }
     tables = {"rims": _rims(design, moments), "mesh_forces": _forces(design, own)}
     values = _values(design, moments, samples, sum(separated))
-    return TrainResult(history, tables, values, summary)
+    return Computed(history, tables, values, seconds)
 
 
 def _values(
@@ -95,7 +95,11 @@ def _values(
 ) -> dict[str, float | list[float]]:
     """The quantities. separated : steps of samples with a mesh that was off its loaded flank"""
     own, revolutions = moments[design.ring.rim], design.time.revolutions
-    values: dict[str, float | list[float]] = {}
+    values: dict[str, float | list[float]] = {
+        "sampling_error_percent": sampling_error(samples.count),
+        "least_eigenvalue_over_largest": own.smallest_eigenvalue,
+        "asymmetry_of_correlations": own.asymmetry,
+    }
     for name, column in DOMINANT.items():
         mean = own.mean[:, MONITORED_NAMES.index(column)]
         values[f"dominant_cycles_{name}"] = dominant_cycles(mean, revolutions)

@@ -9,6 +9,7 @@ import numpy as np
 
 from swgpar.gear_trains.drawing import MomentCurve, axes, draw_moments
 from swgpar.gear_trains.result import Table, TrainResult
+from swgpar.gear_trains.ring.design import RingDesign
 from swgpar.gear_trains.ring.quantities import POINTS
 from swgpar.results.figure_set import Drawings
 
@@ -21,10 +22,10 @@ SCALE = 0.15
 """Largest displacement of a drawn mode over the radius."""
 
 
-def drawings(result: TrainResult) -> Drawings:
+def drawings(result: TrainResult[RingDesign]) -> Drawings:
     """All figures of a run."""
     figures = {"mode_shapes": partial(_shapes, result)}
-    if result.design_table["moving_load"] is not None:
+    if result.summary.design.moving_load is not None:
         figures |= {f"speeds_{name}": partial(_speeds, result, name) for name in POINTS}
         figures |= {f"monte_carlo_{name}": partial(_monte_carlo, result, name) for name in POINTS}
         figures["critical_speeds"] = partial(_critical, result)

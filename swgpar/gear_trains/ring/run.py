@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial, reduce
 
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.gear_trains.published import number_label
-from swgpar.gear_trains.result import Table, TrainResult
+from swgpar.gear_trains.result import Computed, Table
 from swgpar.gear_trains.ring.design import MovingLoad, RingDesign
 from swgpar.gear_trains.ring.moving_load import MovingLoads, Response
 from swgpar.gear_trains.ring.natural_frequencies import distinct_frequencies
@@ -17,7 +18,7 @@ from swgpar.log import logger
 from swgpar.vibration.curved_beam import free_frequencies
 from swgpar.vibration.dominant_cycles import dominant_cycles
 from swgpar.vibration.moments import HasMoments, Moments, SampleMoments, columns, largest
-from swgpar.vibration.sampling import Tasks, block_sizes, random_stream, run_tasks
+from swgpar.vibration.sampling import Tasks, TaskSeconds, block_sizes, random_stream, run_tasks
 
 ROWS = 400
 """Of the history of each speed."""
@@ -31,7 +32,7 @@ SHAPES, AROUND = 6, 361
 BLOCK_SIZE = 50
 
 
-def compute(design: RingDesign, comm: MPI.Comm) -> TrainResult:
+def compute(design: RingDesign, comm: MPI.Comm) -> Computed:
     """All results of a design, the same on all ranks; collective."""
     logger.info("elastic ring: %d elements; %d ranks", design.ring.elements, comm.size)
     frequencies, shapes = distinct_frequencies(design, design.ring.modes)
@@ -46,19 +47,22 @@ def compute(design: RingDesign, comm: MPI.Comm) -> TrainResult:
     modes = {"mode": number, "frequency_Hz": frequencies, "free_ring_Hz": free}
     tables = {"modes": modes, "mode_shapes": _shapes(design, shapes[:, :SHAPES])}
     if design.moving_load is None:
-        return TrainResult(modes, tables, values)
-    responses, curve, simulated = _moving(design, comm)
+        return Computed(modes, tables, values, {})
+    responses, curve, simulated, seconds = _moving(design, comm)
     for speed, response in zip(design.moving_load.speeds, responses, strict=True):
         values |= largest(response, [f"{point}_{number_label(speed)}" for point in POINTS])
     values["critical_speeds"] = _peaks(curve)
     for point, mean in zip(POINTS, responses[0].mean.T, strict=True):
         values[f"dominant_cycles_{point}"] = dominant_cycles(mean)
     tables |= {"critical_speeds": curve, "monte_carlo": simulated}
-    return TrainResult(_history(design, responses), tables, values)
+    return Computed(_history(design, responses), tables, values, seconds)
 
 
-def _moving(design: RingDesign, comm: MPI.Comm) -> tuple[list[Response], Table, Table]:
-    """Responses at all speeds, the curve of critical speeds, and Monte Carlo at the first speed."""
+def _moving(
+    design: RingDesign, comm: MPI.Comm
+) -> tuple[list[Response], Table, Table, Mapping[str, TaskSeconds]]:
+    """Responses at all speeds, the curve of critical speeds, Monte Carlo at the first speed, and
+    the times of all tasks."""
     load, loads, seed = design.moving_load, MovingLoads(design), design.gear_train.seed
     sweep = np.linspace(load.sweep[0], load.sweep[1], load.sweep_speeds)
     groups: Tasks = {
@@ -69,7 +73,7 @@ def _moving(design: RingDesign, comm: MPI.Comm) -> tuple[list[Response], Table, 
             for block, size in enumerate(block_sizes(load.samples, BLOCK_SIZE))
         ],
     }
-    done, _ = run_tasks(comm, groups)
+    done, seconds = run_tasks(comm, groups)
     still = np.array([np.abs(loads.quasi_static(speed)).max(axis=0) for speed in sweep])
     mean = np.array([np.abs(part.mean).max(axis=0) for part in done["sweep"]])
     deviation = np.array([part.deviation.max(axis=0) for part in done["sweep"]])
@@ -81,7 +85,7 @@ def _moving(design: RingDesign, comm: MPI.Comm) -> tuple[list[Response], Table, 
     responses = done["speeds"]
     samples = _thinned(load, reduce(SampleMoments.merged_with, done["monte_carlo"]))
     simulated = {"angle_rad": responses[0].angle[_rows(load)], **columns([samples], POINTS, "m")}
-    return responses, curve, simulated
+    return responses, curve, simulated, seconds
 
 
 def _peaks(curve: Table) -> list[float]:
