@@ -1,10 +1,11 @@
-"""One drive of the effectivity benchmark in its loaded state, in a process of its own.
+"""One drive of the effectivity benchmark on one mesh, in a process of its own.
 
-The argument is the case as JSON: `design` and `overrides`, `mesh`, `times` (elements in every
-direction over those of the mesh), `further` (windows beyond the usual ones; None for a usual run,
-whose errors are estimated). The output is JSON: largest tension at the teeth, its errors by the
-windows and by the mesh of the drive, the stress on every window, largest nodal averages by column
-of the history and their errors by a coarser mesh, pressure of the flanks, elements and seconds.
+The argument is the case as JSON: `part`, `table` (content of the design file), `mesh`, `times`
+(elements in every direction over those of the mesh; 1 for the usual run) and `samples` (angles of
+the period over the usual ones). The output is JSON: by quantity the value, the error that the run
+states, why there is none, and the place; what the run says of itself; elements and seconds.
+
+A reference has one window more than the usual run, with smaller elements than the last usual one.
 """
 
 from __future__ import annotations
@@ -12,69 +13,84 @@ from __future__ import annotations
 import json
 import sys
 import time
+from collections.abc import Mapping
 from typing import Any
 
 from mpi4py import MPI
 
 import swgpar
-from swgpar.analysis.coarse_start import solve_to_load
-from swgpar.analysis.mesh_refinement import Refinement
-from swgpar.analysis.shortcuts import with_shortcuts
-from swgpar.evaluation.place_errors import with_errors
-from swgpar.evaluation.places import find_places
-from swgpar.evaluation.windows.root_stress import LEVELS, resolve_root_stress
-from swgpar.half_space.pair_contact import pair_contacts
-from swgpar.load.load_sequence import load_sequence
+from swgpar.analysis.shortcuts import SAMPLES
+from swgpar.errors import SwgparError
+from swgpar.evaluation.answers import Answer
+from swgpar.evaluation.windows import root_stress
 from swgpar.meshing.recipe_counts import resized
 
-LARGEST = 10_000_000
+PARTS: dict[str, tuple[str, ...]] = {
+    "loaded": (
+        "root.s1",
+        "largest.fs_s1",
+        "largest.fs_vm_apart",
+        "largest.rg_s1",
+        "largest.rg_vm_apart",
+        "contact.pressure",
+    ),
+    "period": ("rotation.transmission_error", "rotation.torque_ripple", "mean.wg_torque_Nmm"),
+    "stiffness": ("stiffness.K1", "stiffness.K3", "stiffness.lost_motion"),
+}
+"""Answers of a run up to the load, over a period without windows, and of a stiffness loop at one
+angle of the wave generator."""
+
+DESIGNS: dict[str, dict[str, Any]] = {
+    "loaded": {"steps.rotation": 0.0},
+    "period": {"output.root_stress": False},
+    "stiffness": {"stiffness.positions": 1, "output.root_stress": False},
+}
+"""Values of the design by part."""
+
+
+def found(answers: Mapping[str, Answer], names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
+    """Values, errors and places by quantity."""
+    return {
+        name: {
+            "value": answers[name].value,
+            "error": answers[name].error,
+            "no_error": answers[name].no_error,
+            "place": answers[name].place,
+        }
+        for name in names
+        if name in answers and answers[name].value is not None
+    }
 
 
 def solve(case: dict[str, Any]) -> dict[str, Any]:
     """The case's numbers; collective."""
+    part, model = case["part"], case["table"]["drive"]["model"]
+    recipe, values = swgpar.load_mesh(case["mesh"]), DESIGNS[part]
+    if case["times"] != 1.0:
+        recipe = resized(recipe, case["times"])
+        root_stress.LEVELS[model] += 1
+    if part == "period":
+        values = {**values, "steps.samples": case["samples"] * SAMPLES[model]}
+    design = swgpar.load_design(case["table"]).with_values(values)
     begin = time.perf_counter()
-    recipe = resized(swgpar.load_mesh(case["mesh"]), case["times"])
-    design = with_shortcuts(
-        swgpar.load_design(case["design"], case["overrides"]), recipe, levels=False
-    ).design
-    loaded = load_sequence(design).loaded
-    coarse = None
-    if case["further"] is None:
-        usual = Refinement(design, recipe, MPI.COMM_WORLD, LARGEST)
-        model, found, coarse = usual.model, usual.found, usual.compared
-    else:
-        model = solve_to_load(design, recipe, MPI.COMM_WORLD)
-        found = resolve_root_stress(model, loaded, LEVELS[design.drive.model] + case["further"])
-    pairs = pair_contacts(model, loaded)
-    edge = any(pair.edge for pair in pairs)
-    places = find_places(model, loaded, model.stresses()[1], on_edge=edge)
-    if coarse is not None:
-        places = with_errors(places, coarse.errors(places), found)
-    result = {
-        "s1": found.s1,
-        "error": found.error,
-        "drive_error": found.drive_error,
-        "levels": found.levels,
-        "by_part": found.by_part,
-        "region": found.region,
-        "pressure": max((pair.pressure_MPa for pair in pairs if not pair.edge), default=0.0),
-        "edge": edge,
-        "nodal": {name: place.value for name, place in places.items() if not place.warning},
-        "nodal_errors": {
-            name: place.error for name, place in places.items() if place.error is not None
-        },
-        "regions": {name: place.region for name, place in places.items()},
-        "elements": model.n_elements(),
+    summary = swgpar.run(design, recipe, progress=False).summary
+    said = (summary.rotation.jammed, summary.rotation.energy)
+    return {
+        "answers": found(summary, PARTS[part]),
+        "remarks": [text for text in said if text],
+        "edge": bool(summary.contact and summary.contact.on_edge),
+        "elements": summary.elements,
         "wall_s": time.perf_counter() - begin,
     }
-    model.destroy()
-    return result
 
 
 def main() -> None:
-    found = solve(json.loads(sys.argv[1]))
+    try:
+        result = solve(json.loads(sys.argv[1]))
+    except SwgparError as error:
+        result = {"failed": str(error)}
     if MPI.COMM_WORLD.rank == 0:
-        print(json.dumps(found))
+        print(json.dumps(result))
 
 
 if __name__ == "__main__":

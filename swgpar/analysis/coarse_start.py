@@ -14,9 +14,9 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.bent_start import bend
+from swgpar.analysis.drive_mesh_error import coarser_recipes, with_finer_flanks
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.saved_state import StartStates
-from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.fem.vectors import read_field, write_field
@@ -24,7 +24,7 @@ from swgpar.geometry.rotation import rotated
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.interpolation import interpolation
-from swgpar.meshing.recipe_counts import RATIO, coarser, resized
+from swgpar.meshing.recipe_counts import coarser
 from swgpar.model.drive_model import DriveModel, build_drive_model
 from swgpar.petsc import PETSc
 
@@ -149,19 +149,21 @@ def start_at_load(
 
     recipe : of the stepper's mesh;  for the others see `start_loaded`
     """
-    coarser_ones = levels(stepper.design, recipe)
-    ways = [coarser_ones] if coarser_ones else []
+    coarser_ones, compares = levels(stepper.design, recipe), stepper.design.resolves_root_stress
+    ways: list[tuple[list[MeshRecipe], list[MeshRecipe]]] = []
+    if coarser_ones:
+        last = coarser_ones.pop()
+        ways.append((coarser_ones, with_finer_flanks(last, recipe) if compares else [last]))
     if starts_bent(stepper.design):
-        compared = resized(recipe, 1.0 / RATIO)
-        if stepper.design.resolves_root_stress and not ways and finds_contacts(compared):
-            ways.append([compared])
-        ways.append([])
-    for recipes in ways:
+        if compares and not ways and (compared := coarser_recipes(recipe)):
+            ways.append(([], compared))
+        ways.append(([], []))
+    for recipes, compared in ways:
         try:
-            start_loaded(stepper, recipes, on_coarse, kept)
+            start_loaded(stepper, recipes + compared, on_coarse, kept, len(compared))
             return True
         except (ConvergenceError, InputError) as error:
-            what = "on coarser meshes" if recipes else "from the bent shape"
+            what = "on coarser meshes" if compared else "from the bent shape"
             logger.info("no start %s: %s", what, error)
             stepper.reset()
     return False
@@ -172,12 +174,13 @@ def start_loaded(
     recipes: list[MeshRecipe],
     on_coarse: Callable[[DriveModel, MeshRecipe], None] = lambda model, recipe: None,
     kept: StartStates | None = None,
+    compared: int = 0,
 ) -> None:
     """Bring `stepper` to the loaded state by way of coarser meshes, the coarsest of `recipes`
     first, or bent at once.
 
-    on_coarse : called with the model on the last of the coarser meshes, and its recipe; it raises
-        nothing
+    on_coarse : called with the model on each of the last `compared` ones of the coarser meshes, and
+        its recipe; it raises nothing
     kept : see `solve_to_load`
 
     Raises ConvergenceError or InputError where a mesh does not allow it; `stepper` is then to be
@@ -188,9 +191,10 @@ def start_loaded(
         if not recipes:
             _jump(stepper)
             return
-        for recipe in recipes:
+        for left, recipe in zip(range(len(recipes), 0, -1), recipes):
             coarse = solve_to_load(target.design, recipe, target.comm, coarse, kept=kept)
-        on_coarse(coarse, recipes[-1])
+            if left <= compared:
+                on_coarse(coarse, recipe)
         take_over(coarse, stepper)
 
 

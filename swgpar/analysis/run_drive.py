@@ -4,25 +4,20 @@ is resolved at each, evaluation."""
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from swgpar.analysis.accuracy import require_refinable, with_accuracy
 from swgpar.analysis.coarse_start import start_at_load
+from swgpar.analysis.drive_mesh_error import CoarserMesh, coarser_mesh, drive_error, least_error
 from swgpar.analysis.evaluate_run import evaluate_run
 from swgpar.analysis.follow_turns import follow_turns
 from swgpar.analysis.forecast import forecast, reported_memory, require_memory
 from swgpar.analysis.identity import identity
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.analysis.mesh_refinement import (
-    choose_mesh,
-    compared_stresses,
-    drive_error,
-    least_error,
-    size_ratio,
-)
+from swgpar.analysis.mesh_refinement import choose_mesh
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.saved_state import StartStates
 from swgpar.analysis.shortcuts import MESHES, with_shortcuts
@@ -42,6 +37,7 @@ from swgpar.load.load_sequence import LoadSequence, load_sequence
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
+from swgpar.meshing.recipe_counts import body_ratio
 from swgpar.model.drive_model import DriveModel, build_drive_model
 from swgpar.petsc import warn_of_unused_options
 from swgpar.results.atomic import on_all
@@ -159,7 +155,7 @@ class DriveRun:
         self.recorder, self.stepper, self.model = recorder, recorder.stepper, recorder.model
         self.recipe, self.kept, self.options, self.begin = recipe, kept, options, begin
         self.earlier_seconds, self.ended_early = 0.0, False
-        self.coarse: tuple[MeshRecipe, Mapping[str, Sequence[float]]] | None = None
+        self.coarser: list[CoarserMesh | None] = []
         counts = self.model.counts()
         logger.info(
             "%d elements, %d nodes in the whole drive; %d unknowns modelled%s; %d ranks",
@@ -200,15 +196,20 @@ class DriveRun:
         return sequence.from_loaded if record.starts_loaded else sequence.states
 
     def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
-        """Keep the largest stresses of a coarser mesh, to see what the mesh changes."""
+        """Keep what the meshes give that this one is compared with: the coarsest one, and that with
+        the finer flanks."""
         loaded = self.stepper.sequence.loaded
-        places = find_places(model, loaded, model.stresses()[1])
-        self.recorder.record.coarse = CoarseStresses(places, size_ratio(recipe, self.recipe))
+        ratio = body_ratio(recipe, self.recipe)
+        if not self.coarser and ratio is not None:
+            places = find_places(model, loaded, model.stresses()[1])
+            self.recorder.record.coarse = CoarseStresses(places, ratio)
+        found = None
         if model.design.resolves_root_stress:
             try:
-                self.coarse = recipe, compared_stresses(model, loaded)
+                found = coarser_mesh(model, recipe, loaded)
             except (ConvergenceError, InputError) as error:
                 logger.info("the error by the mesh of the drive is not known: %s", error)
+        self.coarser.append(found)
 
     def go_through(self, states: Sequence[LoadState]) -> None:
         """Compute and record the increments that are left."""
@@ -279,11 +280,11 @@ class DriveRun:
 
     def _resolve_loaded(self, state: LoadState) -> RootStress:
         found = resolve_root_stress(self.model, state)
-        if self.coarse is None:
+        known = [one for one in self.coarser if one is not None]
+        if len(known) < len(self.coarser):
             return found
-        coarse, levels = self.coarse
-        least, ratio = least_error(self.model, state), size_ratio(coarse, self.recipe)
-        return replace(found, drive_error=drive_error(levels, found, ratio, least))
+        least = least_error(self.model, state)
+        return replace(found, drive_error=drive_error(known, self.recipe, found, least))
 
     def finish(self, recipe_name: str) -> DriveData:
         """Summarise the run."""

@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from mpi4py import MPI
 
 from swgpar.analysis.coarse_start import solve_to_load
+from swgpar.analysis.drive_mesh_error import ORDER, SAFETY, coarser_recipes
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.analysis.mesh_refinement import ORDER, size_ratio
-from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.evaluation.program_results import PointRow, point_rows
@@ -17,7 +16,7 @@ from swgpar.evaluation.stiffness import NAMES, Stiffness, by_position
 from swgpar.load.load_program import stiffness_program
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
-from swgpar.meshing.recipe_counts import RATIO, resized
+from swgpar.meshing.recipe_counts import body_ratio
 
 
 def stiffness_error(
@@ -27,8 +26,9 @@ def stiffness_error(
 
     rows : of program.csv on that mesh. Collective.
     """
-    coarse = resized(recipe, 1.0 / RATIO)
-    if not finds_contacts(coarse):
+    coarser = coarser_recipes(recipe)
+    ratio = body_ratio(coarser[0], recipe) if coarser else None
+    if ratio is None:
         logger.info(
             "the error of the stiffness by the mesh is not known: a coarser one would not find the "
             "contacts"
@@ -36,15 +36,14 @@ def stiffness_error(
         return None
     first = _first_position(design)
     try:
-        found = _stiffness_on(first, coarse, comm)
+        found = _stiffness_on(first, coarser[0], comm)
     except (ConvergenceError, InputError) as error:
         logger.info("the error of the stiffness by the mesh is not known: %s", error)
         return None
     fine = by_position(stiffness_program(first), rows)[0.0]
-    remaining = size_ratio(coarse, recipe) ** ORDER - 1.0
     both = {name: (getattr(fine, name), getattr(found, name)) for name in NAMES}
     return {
-        name: abs(values[0] - values[1]) / remaining
+        name: SAFETY * abs(values[0] - values[1]) / (ratio**ORDER - 1.0)
         for name, values in both.items()
         if None not in values
     }

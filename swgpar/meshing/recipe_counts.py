@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping, Sequence
 
 from swgpar.input.toml_file import validate
 from swgpar.meshing.recipe import MeshRecipe
+
+ROUND_OFF = 1e-9
+"""Of a product of a count and a ratio."""
 
 SMALLEST = {"tip": 2, "root": 2}
 """Smallest counts of a recipe by name; all others reach 1, along the face width 2 or 3."""
 
 RATIO = 1.5
-"""Elements in every direction of a mesh over those of the one before it, but for rounding."""
+"""Elements in every direction of a mesh over those of the one before it, at least."""
+
+CONTACT = {"flexible_spline": ("flank",), "ring_gear": ("flank",), "face_width": ("elements",)}
+"""Counts that decide about the contact of the flanks, by section. All others decide about the
+stiffness of teeth and rim."""
+
+BODY = ("root", "under", "rim")
+"""Counts of the flexible spline that decide most about its stiffness."""
 
 
 def with_counts(recipe: MeshRecipe, count: Callable[[str, str, int], int]) -> MeshRecipe:
@@ -41,6 +52,50 @@ def with_counts(recipe: MeshRecipe, count: Callable[[str, str, int], int]) -> Me
 def coarser(recipe: MeshRecipe) -> MeshRecipe:
     """The recipe with half of every count, rounded up."""
     return with_counts(recipe, lambda _, name, value: max(SMALLEST.get(name, 1), -(-value // 2)))
+
+
+def coarsened(recipe: MeshRecipe) -> MeshRecipe:
+    """The recipe with 1/RATIO of every count, rounded down, so that no ratio is smaller; counts
+    that are the smallest already stay."""
+    return with_counts(
+        recipe, lambda _, name, count: max(SMALLEST.get(name, 1), int(count / RATIO + ROUND_OFF))
+    )
+
+
+def refined(recipe: MeshRecipe) -> MeshRecipe:
+    """The recipe with RATIO times every count, rounded up; InputError if too many."""
+    return with_counts(recipe, lambda _, name, count: math.ceil(RATIO * count - ROUND_OFF))
+
+
+def with_contact_of(body: MeshRecipe, contact: MeshRecipe) -> MeshRecipe:
+    """The recipe `body` with the counts of `contact` for the contact of the flanks."""
+
+    def count(section: str, name: str, own: int) -> int:
+        return getattr(getattr(contact, section), name) if name in CONTACT.get(section, ()) else own
+
+    return with_counts(body, count)
+
+
+def contact_ratio(coarse: MeshRecipe, fine: MeshRecipe) -> float | None:
+    """Smallest ratio of the counts for the contact of the flanks that differ; None if none do."""
+    return _smallest_ratio(coarse, fine, CONTACT)
+
+
+def body_ratio(coarse: MeshRecipe, fine: MeshRecipe) -> float | None:
+    """Smallest ratio of the counts `BODY` that differ; None if none do."""
+    return _smallest_ratio(coarse, fine, {"flexible_spline": BODY})
+
+
+def _smallest_ratio(
+    coarse: MeshRecipe, fine: MeshRecipe, names: Mapping[str, Sequence[str]]
+) -> float | None:
+    ratios = [
+        getattr(getattr(fine, section), name) / getattr(getattr(coarse, section), name)
+        for section, counts in names.items()
+        if getattr(fine, section) is not None
+        for name in counts
+    ]
+    return min((ratio for ratio in ratios if ratio > 1.0), default=None)
 
 
 def resized(recipe: MeshRecipe, ratio: float) -> MeshRecipe:

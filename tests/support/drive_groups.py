@@ -6,13 +6,14 @@ Groups serve `tests/stability` and `scripts/bench/stability`. All run on the sma
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from support.drawn_drive import CAMS, Case, draw
 from support.paths import DATA, DESIGN, DRIVERS, RECIPE, REFERENCE
 from support.small_drive import PLANE as SMALL_PLANE
 from swgpar.checks.design_file import make_drive
@@ -24,10 +25,6 @@ PLANE, SMALL, CUP = DRIVERS / "plane_half_turn.toml", DESIGN, REFERENCE
 """The plane reference drive, the small cup drive of 40 teeth, and the cup reference drive."""
 
 MESH = RECIPE
-
-Case = dict[str, Any]
-"""Values of the design file that a case replaces: by "section.key", or by "section" for a whole
-one."""
 
 Cases = dict[str, Case]
 """Cases by name."""
@@ -196,7 +193,7 @@ def random_designs(count: int, seed: int, model: str = "plane") -> Cases:
     recipe, drawn = load_recipe(MESH), 0
     while len(cases) < count:
         drawn += 1
-        case = _draw(rng, model)
+        case = draw(rng, model)
         try:
             build_sector_meshes(make_drive(table_of(PLANE, case)).geometry, recipe)
         except InputError:
@@ -220,7 +217,7 @@ def sensible_designs(count: int, seed: int, model: str = "plane") -> Cases:
     for k in range(count):
         teeth = int(rng.integers(60, 241))
         radius = float(np.exp(rng.uniform(np.log(8.0), np.log(100.0))))
-        case = _draw(rng, model, teeth, round(2.0 * radius / teeth, 4), CAMS)
+        case = draw(rng, model, teeth, round(2.0 * radius / teeth, 4), CAMS)
         pitch = 360.0 / (teeth + 2 if case["drive.layout"] == "ring_fixed" else teeth)
         case |= {"steps.increment": 0.25 * pitch, "steps.rotation": 1.25 * pitch}
         cases[f"s{k:04d}"] = {**case, "steps.bent_start": case["contact.friction"] == 0.0}
@@ -230,101 +227,6 @@ def sensible_designs(count: int, seed: int, model: str = "plane") -> Cases:
 def from_number(first: int, cases: Cases) -> Cases:
     """The cases behind the first ones."""
     return dict(list(cases.items())[first:])
-
-
-FIRST_CAMS = ("elliptical", "simplified", "parabolic", "four_roller")
-CAMS = (*FIRST_CAMS, "asymmetric_parabolic")
-
-
-def _draw(
-    rng: np.random.Generator,
-    model: str,
-    teeth: int | None = None,
-    module: float | None = None,
-    cams: Sequence[str] = FIRST_CAMS,
-) -> Case:
-    """A drive at random, without teeth and module also these."""
-
-    def number(low: float, high: float) -> float:
-        return round(float(rng.uniform(low, high)), 4)
-
-    def side() -> Case:
-        return {"a_p": number(0.4, 0.6) / a, "C_p": number(0.3, 0.55), "r_c": 0.17 * a}
-
-    teeth = 2 * int(rng.integers(10, 60)) if teeth is None else teeth
-    module = float(rng.choice([0.3, 0.5, 1.0, 2.0])) if module is None else module
-    kind = rng.choice(["quadruple_arc", "double_arc", "involute"], p=[0.6, 0.2, 0.2])
-    profile = {
-        "quadruple_arc": lambda: {
-            "type": "quadruple_arc",
-            "r_tip": number(0.2, 0.5) * module,
-            "r_addendum": number(0.9, 2.0) * module,
-            "straight_l": number(0.0, 0.3) * module,
-            "r_dedendum": number(0.8, 20.0) * module,
-            "r_root": number(0.2, 0.6) * module,
-        },
-        "double_arc": lambda: {
-            "type": "double_arc",
-            "r_addendum": number(0.9, 2.0) * module,
-            "r_dedendum": number(0.3, 0.7) * module,
-        },
-        "involute": lambda: {"type": "involute", "cutter_radius": number(0.1, 0.25) * module},
-    }[kind]()
-    ring = {**profile, "cutter_teeth": teeth // 2} if kind == "involute" else profile
-    width = 10.0 * module
-    a = 0.5 * teeth * module
-    cam = {
-        "elliptical": lambda: {"C": number(0.9, 1.0)},
-        "simplified": lambda: {"C": number(0.85, 0.98)},
-        "parabolic": lambda: {"C": 1.0, **side()},
-        "four_roller": lambda: {"beta": number(10.0, 25.0), "r_4": number(0.1, 0.16) * a},
-        "asymmetric_parabolic": lambda: {
-            "C": 1.0,
-            "rotational_angle": number(-0.5, 0.5),
-            "right": side(),
-            "left": side(),
-        },
-    }
-    cam_kind = str(rng.choice(cams))
-    wave = {"type": cam_kind, **cam[cam_kind](), "face_width": width}
-    c_l = 0.0 if kind == "double_arc" else 0.5
-    rim, torque = (
-        number(0.5, 1.6) * module * teeth / 120,
-        number(0.0, 4.0) * module**3 * teeth / 120,
-    )
-    cup: Case = {}
-    if model == "cup":
-        torque *= 10.0
-        cup["cup"] = {
-            "length": number(0.5, 1.5) * a,
-            "thickness_coef": number(0.5, 0.95),
-            "fillet_radius": number(1.0, 3.0) * rim,
-            "inner_radius": number(0.2, 0.5) * a,
-        }
-        cup["micro_geometry"] = {
-            "wg_crowning": number(0.0, 0.1) * module,
-            "wg_slope": number(0.0, 0.1) * module,
-            "fs_crowning": number(0.0, 0.05) * module,
-        }
-    return {
-        **cup,
-        "drive.model": model,
-        "drive.teeth_fs": teeth,
-        "drive.teeth_rg": teeth + 2,
-        "drive.module": module,
-        "drive.face_width": width,
-        "drive.layout": str(rng.choice(["ring_fixed", "spline_fixed"])),
-        "flexible_spline.rim": rim,
-        "ring_gear.rim": 2.0 * module,
-        "ring_gear.c_P": 1.0 if kind == "involute" else number(0.85, 1.0),
-        "flexible_spline.profile": profile,
-        "ring_gear.profile": ring,
-        "flexible_spline.c_l": c_l,
-        "ring_gear.c_l": c_l,
-        "wave_generator": wave,
-        "load.torque": torque,
-        "contact.friction": float(rng.choice([0.0, 0.0, 0.1, 0.3])),
-    }
 
 
 REPEATED = {"fs_s1": 1e-300, "fs_s3": 1e-300, "fs_vm": 1e-300, "wg_torque_Nmm": 1.0}

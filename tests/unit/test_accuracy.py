@@ -13,15 +13,17 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.analysis.accuracy import with_accuracy
 from swgpar.analysis.coarse_start import solve_to_load
-from swgpar.analysis.mesh_refinement import (
+from swgpar.analysis.drive_mesh_error import (
     LEAST,
     LEAST_WITH_EDGES,
     ORDER,
-    ChosenMesh,
-    choose_mesh,
+    SAFETY,
+    CoarserMesh,
+    coarser_recipes,
     drive_error,
     least_error,
 )
+from swgpar.analysis.mesh_refinement import ChosenMesh, choose_mesh
 from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
@@ -35,7 +37,15 @@ from swgpar.evaluation.windows.root_stress import (
 from swgpar.input.toml_file import to_toml
 from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import load_recipe
-from swgpar.meshing.recipe_counts import RATIO, resized
+from swgpar.meshing.recipe_counts import (
+    RATIO,
+    body_ratio,
+    coarsened,
+    contact_ratio,
+    refined,
+    resized,
+    with_contact_of,
+)
 
 LOADED = ["steps.rotation=0", "steps.bent_start=true"]
 
@@ -106,27 +116,87 @@ def windows(levels: list[float], part: str = BETWEEN) -> RootStress:
     )
 
 
-def test_the_error_of_the_drive_s_mesh_follows_from_two_meshes() -> None:
-    """Errors of the displacements' order are found; the windows' own, which both share, cancel."""
-    coarse = [260.0 + 9.0, 290.0 + 9.0]
-    fine = windows([260.0 + 9.0 / RATIO**ORDER, 290.0 + 9.0 / RATIO**ORDER, 300.0])
-    expected = 9.0 / RATIO**ORDER * fine.s1 / fine.levels[1]
-    assert drive_error({BETWEEN: coarse}, fine, RATIO, 0.004) == pytest.approx(expected)
-    # the first was not computed
-    assert drive_error({BETWEEN: [float("nan"), coarse[1]]}, fine, RATIO, 0.004) == pytest.approx(
-        expected
+def compared(*stresses: list[float], part: str = BETWEEN) -> list[CoarserMesh]:
+    """The meshes that plane_coarse is compared with, with these stresses on their windows."""
+    recipes = coarser_recipes(load_recipe("plane_coarse"))
+    return [
+        CoarserMesh(recipe, {part: levels})
+        for recipe, levels in zip(recipes, stresses, strict=True)
+    ]
+
+
+def test_ratios_are_those_of_the_counts() -> None:
+    """No count of the mesh of a plane run is rounded, but for the smallest ones."""
+    fine = load_recipe("plane_coarse")
+    coarse, between = coarser_recipes(fine)
+    assert body_ratio(coarse, fine) == body_ratio(between, fine) == RATIO
+    assert contact_ratio(coarse, fine) == contact_ratio(coarse, between) == RATIO
+    assert contact_ratio(between, fine) is body_ratio(coarse, between) is None
+    for name in ("root", "under", "rim", "flank"):
+        counts = [getattr(one.flexible_spline, name) for one in (fine, coarse)]
+        assert counts[0] == RATIO * counts[1], name
+
+
+@pytest.mark.parametrize("name", ["coarse", "forces", "medium", "full", "plane", "plane_fine"])
+def test_no_ratio_is_below_the_one_that_is_meant(name: str) -> None:
+    """Rounding makes meshes coarser, or finer, than that ratio."""
+    recipe = load_recipe(name)
+    for coarse, fine in ((coarsened(recipe), recipe), (recipe, refined(recipe))):
+        ratio = body_ratio(coarse, fine)
+        assert ratio is None or ratio >= RATIO
+        assert contact_ratio(coarse, fine) > 1.0
+        between = with_contact_of(coarse, fine)
+        assert contact_ratio(between, fine) is None and body_ratio(coarse, between) is None
+
+
+def test_without_fewer_elements_in_root_and_rim_there_is_no_estimate() -> None:
+    """The recipe `coarse` has the fewest already: a coarser one would show no error there."""
+    recipe = load_recipe("coarse")
+    coarser = [CoarserMesh(coarsened(recipe), {BETWEEN: [250.0, 280.0]})]
+    assert drive_error(coarser, recipe, windows([252.0, 282.0, 290.0]), 0.004) is None
+    assert drive_error([], recipe, windows([252.0, 282.0, 290.0]), 0.004) is None
+
+
+def test_the_error_of_the_drive_s_mesh_follows_from_coarser_ones() -> None:
+    """Errors of the displacements' order are found by groups of counts; the windows' own, which all
+    share, cancel."""
+    recipe, left = load_recipe("plane_coarse"), 1.0 / RATIO**ORDER
+    contact, body = -4.0, 9.0  # of the coarsest mesh
+
+    def levels(of_contact: float, of_body: float) -> list[float]:
+        return [260.0 + of_contact + of_body, 290.0 + of_contact + of_body]
+
+    fine = windows([*levels(left * contact, left * body), 300.0])
+    found = drive_error(
+        compared(levels(contact, body), levels(left * contact, body)), recipe, fine, 0.004
     )
+    # of opposite signs, they do not cancel
+    expected = SAFETY * left * (abs(contact) + abs(body)) * fine.s1 / fine.levels[1]
+    assert found == pytest.approx(expected)
+    # the first window was not computed
+    nan = float("nan")
+    coarser = compared([nan, levels(contact, body)[1]], [nan, levels(left * contact, body)[1]])
+    assert drive_error(coarser, recipe, fine, 0.004) == pytest.approx(expected)
     # changes that are small by chance
-    same, fine = {BETWEEN: [270.0, 290.0]}, windows([270.0, 290.0, 300.0])
-    assert drive_error(same, fine, RATIO, 0.004) == pytest.approx(0.004 * 300.0)
-    assert drive_error(same, fine, RATIO, 0.004, before=9.0) == pytest.approx(9.0 / RATIO**ORDER)
+    same, fine = compared([270.0, 290.0], [270.0, 290.0]), windows([270.0, 290.0, 300.0])
+    assert drive_error(same, recipe, fine, 0.004) == pytest.approx(0.004 * 300.0)
+    assert drive_error(same, recipe, fine, 0.004, before=9.0) == pytest.approx(9.0 * left)
 
 
-def test_the_same_part_of_the_teeth_is_compared_between_two_meshes() -> None:
+def test_the_same_part_of_the_teeth_is_compared_between_meshes() -> None:
     """At the ends the second window gives too much, on either mesh."""
-    coarse = {BETWEEN: [260.0, 280.0], ENDS: [265.0, 295.0]}
-    assert drive_error(coarse, windows([262.0, 281.25]), RATIO, 0.0) == pytest.approx(1.0)
-    assert drive_error(coarse, windows([267.0, 297.5], ENDS), RATIO, 0.0) == pytest.approx(2.0)
+    recipe, shown = load_recipe("plane_coarse"), SAFETY / (RATIO**ORDER - 1.0)
+    coarser = [
+        CoarserMesh(one, {BETWEEN: [260.0, 280.0], ENDS: [265.0, 295.0]})
+        for one in coarser_recipes(recipe)
+    ]
+    between, ends = windows([262.0, 281.25]), windows([267.0, 297.5], ENDS)
+    assert drive_error(coarser, recipe, between, 0.0) == pytest.approx(1.25 * shown)
+    assert drive_error(coarser, recipe, ends, 0.0) == pytest.approx(2.5 * shown)
+    # an end that was followed on no window which all meshes have
+    alone = windows([267.0], ENDS)
+    unknown = [CoarserMesh(one.recipe, {ENDS: [float("nan"), 295.0]}) for one in coarser]
+    assert drive_error(unknown, recipe, alone, 0.0) is None
 
 
 def test_contacts_on_edges_leave_more_of_an_error() -> None:

@@ -1,0 +1,125 @@
+"""Error of the largest tension at the teeth by the mesh of the drive (docs/theory/windows.md).
+
+The drive is loaded on a coarser mesh, in the plane on one that has only the finer flanks, and on
+its own mesh. The changes of the stress in a window between them show two errors: that of the
+contact, and that of the stiffness of teeth and rim. They may have different signs, so their sizes
+are added.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from swgpar.analysis.shortcuts import finds_contacts
+from swgpar.evaluation.windows.root_stress import RootStress, resolve_root_stress
+from swgpar.half_space.pair_contact import pair_contacts
+from swgpar.load.load_states import LoadState
+from swgpar.meshing import MeshRecipe
+from swgpar.meshing.recipe_counts import body_ratio, coarsened, contact_ratio, with_contact_of
+from swgpar.model.drive_model import DriveModel
+
+ORDER = 2
+"""Order of the displacements of a mesh."""
+
+SAFETY = 2.0
+"""Factor on the errors that two meshes show. The counts across the tooth can be too small to be
+coarsened: they leave up to half of the error of a plane drive, and the orders that are seen are 1.3
+to 2 (docs/verification/effectivity.md)."""
+
+COMPARED_LEVELS = 2
+"""Windows of which the last one shows what the mesh of the drive changes."""
+
+LEAST = {"plane": 0.004, "cup": 0.01}
+"""Least error by the mesh of the drive that meshes can show, as a share of the stress: contact
+points move between nodes."""
+
+LEAST_WITH_EDGES = 0.02
+"""The same where a contact lies on an edge. The forces of the teeth move with the mesh: on
+plane_coarse by 0.7 to 2.7 % of the stress."""
+
+
+@dataclass(frozen=True)
+class CoarserMesh:
+    """A coarser mesh of the drive.
+
+    stresses : s1 (MPa) on windows, coarse to fine, by part of the teeth
+    """
+
+    recipe: MeshRecipe
+    stresses: Mapping[str, Sequence[float]]
+
+
+def coarser_recipes(recipe: MeshRecipe) -> list[MeshRecipe]:
+    """Recipes with which a mesh is compared, the coarsest first; none where the coarser one would
+    not find the contacts."""
+    coarse = coarsened(recipe)
+    if not finds_contacts(coarse):
+        return []
+    return with_finer_flanks(coarse, recipe)
+
+
+def with_finer_flanks(coarse: MeshRecipe, recipe: MeshRecipe) -> list[MeshRecipe]:
+    """The coarser recipe, and in the plane, where it is another one, that between both with the
+    finer flanks. In a cup drive it has nearly all elements, and would cost a quarter of a run."""
+    between = with_contact_of(coarse, recipe)
+    plane = recipe.face_width is None
+    return [coarse, between] if plane and between not in (coarse, recipe) else [coarse]
+
+
+def coarser_mesh(model: DriveModel, recipe: MeshRecipe, state: LoadState) -> CoarserMesh:
+    """What the loaded model on a coarser mesh gives in windows; collective.
+
+    Raises ConvergenceError or InputError where a window cannot be computed.
+    """
+    found = resolve_root_stress(model, state, COMPARED_LEVELS, COMPARED_LEVELS - 1)
+    return CoarserMesh(recipe, found.by_part)
+
+
+def drive_error(
+    coarser: Sequence[CoarserMesh],
+    recipe: MeshRecipe,
+    fine: RootStress,
+    least: float,
+    before: float | None = None,
+) -> float | None:
+    """Error (MPa) by the mesh of the drive; None where no coarser mesh shows it.
+
+    coarser : of the same windows, the coarsest first;  recipe, fine : the mesh itself
+    least : share of the stress, see `least_error`
+    before : error on the coarsest mesh, if it is known
+
+    A change that is small by chance is no convergence: the error is at least what remains of that
+    before, and `least` of the stress.
+    """
+    if not coarser:
+        return None
+    ratio = body_ratio(coarser[0].recipe, recipe)
+    if ratio is None:
+        return None
+    shared = min(len(fine.levels), *(len(one.stresses[fine.part]) for one in coarser)) - 1
+    meshes = [(one.recipe, one.stresses[fine.part][shared]) for one in coarser]
+    meshes.append((recipe, fine.levels[shared]))
+    if any(math.isnan(s1) for _, s1 in meshes):  # a part that was followed on no shared window
+        return None
+    shown = sum(
+        abs(s1 - s1_coarse) / (_ratio(one, finer) ** ORDER - 1.0)
+        for (one, s1_coarse), (finer, s1) in pairwise(meshes)
+    )
+    error = SAFETY * shown * abs(fine.s1 / fine.levels[shared])
+    remains = 0.0 if before is None else before / ratio**ORDER
+    return max(error, remains, least * abs(fine.s1))
+
+
+def _ratio(coarse: MeshRecipe, fine: MeshRecipe) -> float:
+    """The smallest ratio of counts that differ, one of which does."""
+    ratios = body_ratio(coarse, fine), contact_ratio(coarse, fine)
+    return min(ratio for ratio in ratios if ratio is not None)
+
+
+def least_error(model: DriveModel, state: LoadState) -> float:
+    """Least error that two meshes of the drive can show, as a share of the stress; collective."""
+    edge = any(pair.edge for pair in pair_contacts(model, state))
+    return LEAST_WITH_EDGES if edge else LEAST[model.design.drive.model]

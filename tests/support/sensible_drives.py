@@ -1,0 +1,160 @@
+"""Drives that a designer might draw up, at random: they can be built, their teeth clear each other,
+and their torque is one that they can carry.
+
+They serve `scripts/bench/effectivity`. Of every kind of profile, cam and shape some are drawn. A
+seed and a number give the same drive whatever else is drawn.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from support.drawn_drive import CAMS, Case, draw
+from support.paths import DRIVERS
+from swgpar.checks.clearance import clearances
+from swgpar.checks.design_file import make_drive
+from swgpar.errors import InputError
+from swgpar.input.toml_file import read_toml, with_value
+from swgpar.meshing import build_sector_meshes, load_recipe
+
+BASE = DRIVERS / "plane_half_turn.toml"
+"""Design whose values a drawn drive replaces."""
+
+MESHES = {"plane": "plane_coarse", "cup": "forces", "pancake": "forces"}
+
+TEETH = (40, 240)
+MODULES = (0.15, 1.5)
+"""mm"""
+
+TORQUE = (0.2, 1.0)
+"""Torque over the one that the design allows."""
+
+RIM_TENSION = {"plane": 20.0, "cup": 60.0, "pancake": 20.0}
+"""MPa: mean tension in the rim by the torque that a design allows. The plane reference drive then
+has 24 N·m, the cup reference drive 72 N·m."""
+
+KINDS = (*CAMS, "harmonic", "arcs")
+"""Cams that are drawn."""
+
+BACKLASH = (0.0, 0.01, 0.02, 0.03, 0.05, 0.08, 0.12, 0.2)
+"""Thinner teeth of the ring gear that are tried, of the tooth's thickness; for involutes their
+profile shift, for conjugate teeth the backlash over half of the pitch."""
+
+CONJUGATE, THREE_LOBES = 0.1, 0.1
+"""Shares of drives with conjugate teeth of the ring gear, and with three lobes."""
+
+SHAPES = ("cup", "cup", "short", "hat")
+"""Shapes of the flexible spline of a cup drive."""
+
+
+@dataclass(frozen=True)
+class SensibleDrive:
+    """A drive that has been drawn.
+
+    name : "p" (plane) or "c" (cup) and a number;  model : "plane" or "cup"
+    table : content of the design file;  kind : profile, cam, lobes, layout and shape in words
+    """
+
+    name: str
+    model: str
+    table: dict[str, Any]
+    kind: str
+
+
+def sensible_drives(count: int, seed: int, model: str = "plane") -> list[SensibleDrive]:
+    """The first `count` drives of a seed."""
+    found: list[SensibleDrive] = []
+    number = 0
+    while len(found) < count:
+        drive = _drive(seed, number, model)
+        number += 1
+        if drive is not None:
+            found.append(drive)
+    return found
+
+
+def _drive(seed: int, number: int, model: str) -> SensibleDrive | None:
+    """The drive of a number; None where its teeth overlap whatever their backlash, or where it
+    cannot be built."""
+    rng = np.random.default_rng((seed, number, len(model)))
+    case = _case(rng, model)
+    table = read_toml(BASE)
+    for key, value in case.items():
+        table = with_value(table, key, value)
+    for backlash in BACKLASH:
+        try:
+            thinner = _with_backlash(table, backlash)
+            design = make_drive(thinner)
+            if any(one.overlaps for one in clearances(design)):
+                continue
+            build_sector_meshes(design.geometry, load_recipe(MESHES[model]))
+        except InputError:
+            continue
+        return SensibleDrive(f"{model[0]}{number:03d}", model, thinner, _words(thinner))
+    return None
+
+
+def _words(table: dict[str, Any]) -> str:
+    """Kinds of profile, cam, lobes, layout and shape."""
+    drive, wave = table["drive"], table["wave_generator"]
+    profile = table["flexible_spline"]["profile"]["type"]
+    if table["ring_gear"]["profile"]["type"] != profile:
+        profile += " and " + table["ring_gear"]["profile"]["type"]
+    words = [profile, wave["type"], f"{wave.get('lobes', 2)} lobes", drive["layout"]]
+    if "cup" in table:
+        words.append(table["cup"].get("shape", "cup"))
+    return ", ".join(words).replace("_", " ")
+
+
+def _case(rng: np.random.Generator, model: str) -> Case:
+    """Values of the design file."""
+    teeth = int(rng.integers(TEETH[0], TEETH[1] + 1))
+    module = round(float(np.exp(rng.uniform(*np.log(MODULES)))), 3)
+    three = rng.uniform() < THREE_LOBES
+    case = draw(rng, model, teeth, module, ("harmonic",) if three else KINDS)
+    case["contact.friction"] = 0.0
+    rim, width = case["flexible_spline.rim"], case["drive.face_width"]
+    if three:
+        case["drive.teeth_rg"] = teeth + 3
+        case["wave_generator"]["lobes"] = 3
+        case |= {"drive.pressure_angle": 14.0, "flexible_spline.rim": 0.5 * rim}
+        # a taut band of three lobes: it is longer than the circle by 4 times as much
+        case["wave_generator"]["C"] = 1.0 - (1.0 - case["wave_generator"]["C"]) * 0.3
+    if rng.uniform() < CONJUGATE:
+        case["ring_gear.profile"] = {"type": "conjugate", "r_root": 0.2 * module}
+        case |= {"ring_gear.c_P": 1.0, "ring_gear.c_l": 0.5}
+    radius = 0.5 * teeth * module
+    allowed = 2.0 * RIM_TENSION[model] * width * case["flexible_spline.rim"] * radius
+    allowed *= 1.5 if three else 1.0
+    case["load.torque"] = round(1e-3 * allowed * float(rng.uniform(*TORQUE)), 6)
+    if model == "cup":
+        case["cup"] |= _shape(rng, str(rng.choice(SHAPES)), case, radius)
+    return case
+
+
+def _shape(rng: np.random.Generator, shape: str, case: Case, radius: float) -> Case:
+    """Keys of the cup's shape. radius : mm, of the pitch circle"""
+    cup = case["cup"]
+    if shape == "short":
+        return {"length": 0.5 * cup["length"]}
+    if shape == "hat":
+        del cup["inner_radius"]
+        thickness = round(float(rng.uniform(0.025, 0.04)) * radius, 4)
+        return {"shape": "hat", "flange_radius": 1.36 * radius, "end_thickness": thickness}
+    return {}
+
+
+def _with_backlash(table: dict[str, Any], backlash: float) -> dict[str, Any]:
+    """The design with a backlash of the ring gear."""
+    ring = table["ring_gear"]
+    kind = ring["profile"]["type"]
+    if kind == "involute":
+        return with_value(table, "ring_gear.profile", {**ring["profile"], "shift": backlash})
+    if kind == "conjugate":
+        half = 0.5 * np.pi * table["drive"]["module"]
+        content = {**ring["profile"], "backlash": round(float(backlash * half), 6)}
+        return with_value(table, "ring_gear.profile", content)
+    return with_value(table, "ring_gear.c_P", round(ring["c_P"] - backlash, 6))
