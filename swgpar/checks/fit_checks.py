@@ -302,10 +302,8 @@ def _check_outline(design: DriveDesign) -> None:
     if bulge > clearance:
         raise InputError(
             f"wave_generator ({design.wave_generator.type}) bulges {bulge:.3g} mm beyond its major "
-            f"semi-axis: "
-            f"allowed up to {clearance:.3g} mm, where the flexible spline's teeth meet the ring "
-            f"gear's root circle; "
-            f"its shape follows from {_shape_keys(design)}"
+            f"semi-axis: allowed up to {clearance:.3g} mm, where the flexible spline's teeth meet "
+            f"the ring gear's root circle; its shape follows from {_shape_keys(design)}"
         )
 
 

@@ -161,8 +161,7 @@ def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
         raise refusal
     raise InputError(
         f"ratio = {request.ratio:g} with profile = {request.profile} and cam = {request.cam} "
-        f"leaves no clearance "
-        "between the flanks: allowed are other ratios, profiles or cams"
+        "leaves no clearance between the flanks: allowed are other ratios, profiles or cams"
     )
 
 
@@ -217,8 +216,7 @@ def _check(request: Request) -> None:
     if not LEAST_RATIO <= request.ratio <= LARGEST_RATIO or request.ratio % step:
         raise InputError(
             f"ratio = {request.ratio:g} is out of range: allowed {LEAST_RATIO:g} to "
-            f"{LARGEST_RATIO:g} in steps of "
-            f"{step:g}"
+            f"{LARGEST_RATIO:g} in steps of {step:g}"
         )
 
 
@@ -376,8 +374,7 @@ def as_toml(request: Request, design: DriveDesign, table: dict[str, Any], name: 
         "# These are given, with the kinds of profile and cam. All other values are assumptions to "
         "start from: sizes",
         f"# of the blank are shares of the pitch diameter, {drive.module * drive.teeth_fs:.5g} mm, "
-        f"those of the teeth "
-        "multiples of the module.",
+        "those of the teeth multiples of the module.",
         f"#   swgpar check {name}",
         f"#   mpirun -n 2 swgpar run {name} --out results/{name.removesuffix('.toml')}",
     ]

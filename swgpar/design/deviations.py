@@ -92,8 +92,7 @@ class ToothDeviations(Section):
         if values.get("pitch_errors") or values.get("pitch_grade"):
             raise InputError(
                 f"pitch_file = {show(values['pitch_file'])} stands beside pitch_errors or "
-                f"pitch_grade: allowed is one "
-                "of the three"
+                "pitch_grade: allowed is one of the three"
             )
         others = {k: v for k, v in values.items() if k not in ("pitch_file", "pitch_column")}
         return {

@@ -55,8 +55,7 @@ def summary_from(
         by = content.get("versions", {}).get("swgpar", "of unknown number")
         raise OutputError(
             f"{path} of swgpar {by} has the format {number}, and not a content that swgpar "
-            f"{__version__} reads: "
-            f"allowed are results of formats 1 to {FORMAT}"
+            f"{__version__} reads: allowed are results of formats 1 to {FORMAT}"
         ) from None
     found.design.made_by(make_drive)
     return found

@@ -44,9 +44,8 @@ def jamming_remark(
         return None
     return (
         f"the mean input torque of {mean:.4g} N·mm is far from the {expected:.4g} N·mm of the "
-        f"energy balance: the "
-        "teeth may jam, and the results are not those of a running drive; swgpar check shows where "
-        "teeth overlap"
+        "energy balance: the teeth may jam, and the results are not those of a running drive; "
+        "swgpar check shows where teeth overlap"
     )
 
 

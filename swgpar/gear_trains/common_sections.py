@@ -6,9 +6,9 @@ from typing import Annotated, Any
 
 from annotated_types import Gt
 
-from swgpar.errors import InputError
 from swgpar.input.design import Design
-from swgpar.input.quantities import Section, quantity, show
+from swgpar.input.quantities import Section, quantity
+from swgpar.input.require import require
 
 Positive = Annotated[float, Gt(0.0)]
 
@@ -18,11 +18,9 @@ MAX_STEPS = 10_000_000
 
 def require_steps(key: str, step: float, duration: float) -> None:
     """Refuse a time step (s) that is longer than the simulation, or of which there are too many."""
-    if not duration / MAX_STEPS <= step <= duration:
-        raise InputError(
-            f"{key} = {show(step)} is out of range: allowed {duration / MAX_STEPS:.6g} to "
-            f"{duration:g} s (at most {MAX_STEPS} steps)"
-        )
+    least = duration / MAX_STEPS
+    allowed = f"{least:.6g} to {duration:g} s (at most {MAX_STEPS} steps)"
+    require(least <= step <= duration, key, step, allowed)
 
 
 class GearTrain(Section):

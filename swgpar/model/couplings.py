@@ -23,8 +23,7 @@ def spline_attachment(
     if cup.attachment == "bolted" and longest > cup.washer_diameter:
         logger.warning(
             "elements of the closed end or flange are up to %.3g mm long, a washer is %.3g mm "
-            "wide: a mesh with "
-            "shorter elements there holds the bolts better",
+            "wide: a mesh with shorter elements there holds the bolts better",
             longest,
             cup.washer_diameter,
         )

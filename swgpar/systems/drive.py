@@ -91,8 +91,7 @@ class Drives(System[DriveDesign, "DriveResult"]):
             if (steps.start_levels or steps.bent_start) and name.startswith(("step1.", "step2.")):
                 raise InputError(
                     f"steps.start_levels = {steps.start_levels} or steps.bent_start leaves out "
-                    f"{name}: allowed 0 and "
-                    "false with it"
+                    f"{name}: allowed 0 and false with it"
                 )
 
     def increments(self, design: DriveDesign) -> int:

@@ -7,9 +7,9 @@ from typing import Annotated, Any, Literal
 
 from annotated_types import Len
 
-from swgpar.errors import InputError
 from swgpar.gear_trains.common_sections import GearTrain, Positive, TrainDesign, require_steps
 from swgpar.input.quantities import Section, quantity
+from swgpar.input.require import require
 
 PINIONS = 8
 Ratios = Annotated[list[Positive], Len(PINIONS, PINIONS)]
@@ -198,21 +198,11 @@ MODULE_OF = {"pinion": "rack_pinion", "g1": "g1_g2", "g2": "g1_g2", "g3": "g3_g4
 
 def check_fit(design: CascadeDesign) -> None:
     """Refuse values that do not fit each other."""
-    if design.g1_g1.module != design.g1_g2.module:
-        raise InputError(
-            f"g1_g1.module = {design.g1_g1.module:g} is out of range: allowed "
-            f"{design.g1_g2.module:g} mm (g1_g2.module)"
-        )
+    module, other = design.g1_g1.module, design.g1_g2.module
+    require(module == other, "g1_g1.module", module, f"{other:g} mm (g1_g2.module)")
+    peak, section = design.load.peak, design.population
     for force in design.load.forces:
-        if force > design.load.peak:
-            raise InputError(
-                f"load.forces = {force:g} is out of range: allowed above 0 to {design.load.peak:g} "
-                f"kN (load.peak)"
-            )
-    section = design.population
-    if section.step > section.hold:
-        raise InputError(
-            f"population.step = {section.step:g} is out of range: allowed above 0 to "
-            f"{section.hold:g} s (population.hold)"
-        )
+        require(force <= peak, "load.forces", force, f"above 0 to {peak:g} kN (load.peak)")
+    allowed = f"above 0 to {section.hold:g} s (population.hold)"
+    require(section.step <= section.hold, "population.step", section.step, allowed)
     require_steps("population.step", section.step, section.ramp + section.hold)

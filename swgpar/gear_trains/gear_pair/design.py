@@ -6,7 +6,6 @@ from typing import Annotated, Literal
 
 from annotated_types import Len
 
-from swgpar.errors import InputError
 from swgpar.gear_trains.common_sections import (
     Damping,
     GearTrain,
@@ -15,7 +14,8 @@ from swgpar.gear_trains.common_sections import (
     TrainDesign,
     require_steps,
 )
-from swgpar.input.quantities import Section, quantity, show
+from swgpar.input.quantities import Section, quantity
+from swgpar.input.require import require
 
 Torques = Annotated[list[Positive], Len(1)]
 
@@ -95,10 +95,6 @@ class GearPairDesign(TrainDesign):
 
 def check_fit(design: GearPairDesign) -> None:
     """Refuse values that do not fit each other."""
-    cases = len(design.load.input)
-    if len(design.load.output) != cases:
-        raise InputError(
-            f"load.output = {show(design.load.output)} is out of range: allowed {cases} torques "
-            f"(load.input)"
-        )
+    torques, cases = design.load.output, len(design.load.input)
+    require(len(torques) == cases, "load.output", torques, f"{cases} torques (load.input)")
     require_steps("time.step", design.time.step, design.time.end)

@@ -7,7 +7,6 @@ from typing import Annotated, Literal
 
 from annotated_types import Len
 
-from swgpar.errors import InputError
 from swgpar.gear_trains.common_sections import (
     Damping,
     GearTrain,
@@ -16,6 +15,7 @@ from swgpar.gear_trains.common_sections import (
     TrainDesign,
 )
 from swgpar.input.quantities import Section, quantity
+from swgpar.input.require import require
 from swgpar.vibration.curved_beam import BeamSection, Ring, supports_restrain_ring
 
 Thicknesses = Annotated[list[Positive], Len(1)]
@@ -139,38 +139,24 @@ class PlanetaryDesign(TrainDesign):
 def check_fit(design: PlanetaryDesign) -> None:
     """Refuse values that do not fit each other."""
     ring, time, sun = design.ring, design.time, design.sun
-    if (ring.teeth - sun.teeth) % 2 or ring.teeth <= sun.teeth:
-        raise InputError(
-            f"ring.teeth = {ring.teeth} is out of range: allowed {sun.teeth} (sun.teeth) and twice "
-            f"a planet's teeth"
-        )
-    if (ring.teeth + sun.teeth) % design.planet.count:
-        raise InputError(
-            f"planet.count = {design.planet.count} is out of range: allowed divisors of "
-            f"{ring.teeth + sun.teeth} (sun.teeth + ring.teeth), or equally spaced planets do not "
-            "fit in"
-        )
-    fitting = sun.pitch_diameter * (ring.teeth - sun.teeth) / (2.0 * sun.teeth)
-    if abs(design.planet.pitch_diameter / fitting - 1.0) > 1e-3:
-        raise InputError(
-            f"planet.pitch_diameter = {design.planet.pitch_diameter:g} is out of range: allowed "
-            f"{fitting:g} mm within 0.1 % (module of the sun, and teeth between sun and ring)"
-        )
-    if ring.elements % ring.supports:
-        raise InputError(
-            f"ring.supports = {ring.supports} is out of range: allowed divisors of {ring.elements} "
-            f"(ring.elements)"
-        )
+    between, both, planet = ring.teeth - sun.teeth, ring.teeth + sun.teeth, design.planet
+    allowed = f"{sun.teeth} (sun.teeth) and twice a planet's teeth"
+    require(between % 2 == 0 and between > 0, "ring.teeth", ring.teeth, allowed)
+    fits_in = "or equally spaced planets do not fit in"
+    allowed = f"divisors of {both} (sun.teeth + ring.teeth), {fits_in}"
+    require(both % planet.count == 0, "planet.count", planet.count, allowed)
+    diameter, fitting = planet.pitch_diameter, sun.pitch_diameter * between / (2.0 * sun.teeth)
+    allowed = f"{fitting:g} mm within 0.1 % (module of the sun, and teeth between sun and ring)"
+    fits = abs(diameter / fitting - 1.0) <= 1e-3
+    require(fits, "planet.pitch_diameter", diameter, allowed)
+    allowed = f"divisors of {ring.elements} (ring.elements)"
+    require(ring.elements % ring.supports == 0, "ring.supports", ring.supports, allowed)
     springs = ring.radial, ring.tangential, ring.torsional
     radius = 1e-3 * (ring.root_radius + 0.5 * ring.rim)
-    if not supports_restrain_ring(ring.supports, *springs, radius):
-        raise InputError(
-            f"ring.supports = {ring.supports} is out of range: allowed supports whose stiffnesses "
-            "hold the ring against rigid translation and rotation"
-        )
+    held = supports_restrain_ring(ring.supports, *springs, radius)
+    against = "against rigid translation and rotation"
+    allowed = f"supports whose stiffnesses hold the ring {against}"
+    require(held, "ring.supports", ring.supports, allowed)
     for name in ("steps", "linearised_steps"):
-        if getattr(time, name) % time.rows:
-            raise InputError(
-                f"time.{name} = {getattr(time, name)} is out of range: allowed multiples of "
-                f"{time.rows} (time.rows)"
-            )
+        count, allowed = getattr(time, name), f"multiples of {time.rows} (time.rows)"
+        require(count % time.rows == 0, f"time.{name}", count, allowed)

@@ -9,6 +9,7 @@ from annotated_types import Len
 from swgpar.errors import InputError
 from swgpar.gear_trains.common_sections import GearTrain, Positive, TrainDesign
 from swgpar.input.quantities import Section, quantity
+from swgpar.input.require import require
 from swgpar.vibration.curved_beam import BeamSection, Ring, supports_restrain_ring
 
 Speeds = Annotated[list[Positive], Len(1)]
@@ -97,55 +98,37 @@ class RingDesign(TrainDesign):
 def check_fit(design: RingDesign) -> None:
     """Refuse values that do not fit each other."""
     body, load = design.ring, design.moving_load
-    if body.inner_radius >= body.outer_radius:
-        raise InputError(
-            f"ring.inner_radius = {body.inner_radius:g} is out of range: "
-            f"allowed above 0 to below {body.outer_radius:g} mm (ring.outer_radius)"
-        )
+    inner, outer, elements = body.inner_radius, body.outer_radius, body.elements
+    allowed = f"above 0 to below {outer:g} mm (ring.outer_radius)"
+    require(inner < outer, "ring.inner_radius", inner, allowed)
+    allowed = f"divisors of {elements} (ring.elements)"
     for name in ("supports", "teeth"):
         section = getattr(design, name)
-        if section is not None and body.elements % section.count:
-            raise InputError(
-                f"{name}.count = {section.count} is out of range: allowed divisors of "
-                f"{body.elements} (ring.elements)"
-            )
-    if body.modes > body.elements:
-        raise InputError(
-            f"ring.modes = {body.modes} is out of range: allowed 1 to {body.elements} "
-            f"(ring.elements)"
-        )
-    if load is None:
-        return
-    if design.supports is None:
+        if section is not None:
+            require(elements % section.count == 0, f"{name}.count", section.count, allowed)
+    allowed = f"1 to {elements} (ring.elements)"
+    require(body.modes <= elements, "ring.modes", body.modes, allowed)
+    if load is not None:
+        _check_load(design, load)
+
+
+def _check_load(design: RingDesign, load: MovingLoad) -> None:
+    s, body, damping = design.supports, design.ring, load.damping_stiffness
+    if s is None:
         raise InputError(
             "supports is missing: allowed only without moving_load, which would carry the ring away"
         )
-    s, radius = design.supports, 0.5e-3 * (body.inner_radius + body.outer_radius)
-    if not supports_restrain_ring(s.count, s.radial, s.tangential, s.torsional, radius):
-        raise InputError(
-            f"supports.tangential = {s.tangential:g} is out of range: allowed stiffnesses of the "
-            f"supports that "
-            "hold the ring under moving_load against rigid translation and rotation"
-        )
-    if load.damping_mass + load.damping_stiffness <= 0.0:
-        raise InputError(
-            f"moving_load.damping_stiffness = {load.damping_stiffness:g} is out of range: allowed "
-            f"above 0 to inf s "
-            "without moving_load.damping_mass, or noise would add up for ever"
-        )
-    if body.elements // design.supports.count < 2:
-        raise InputError(
-            f"ring.elements = {body.elements} is out of range: allowed at least "
-            f"{2 * design.supports.count}, "
-            "for a node between two supports"
-        )
-    if load.steps % load.loads:
-        raise InputError(
-            f"moving_load.steps = {load.steps} is out of range: allowed multiples of {load.loads} "
-            f"(moving_load.loads)"
-        )
-    if len(load.sweep) != 2 or load.sweep[0] >= load.sweep[1]:
-        raise InputError(
-            f"moving_load.sweep = {load.sweep} is out of range: allowed two speeds, the lower one "
-            f"first"
-        )
+    radius = 0.5e-3 * (body.inner_radius + body.outer_radius)
+    held = supports_restrain_ring(s.count, s.radial, s.tangential, s.torsional, radius)
+    what = "the ring under moving_load against rigid translation and rotation"
+    allowed = f"stiffnesses of the supports that hold {what}"
+    require(held, "supports.tangential", s.tangential, allowed)
+    why = "without moving_load.damping_mass, or noise would add up for ever"
+    fits = load.damping_mass + damping > 0.0
+    require(fits, "moving_load.damping_stiffness", damping, f"above 0 to inf s {why}")
+    allowed = f"at least {2 * s.count}, for a node between two supports"
+    require(body.elements // s.count >= 2, "ring.elements", body.elements, allowed)
+    allowed = f"multiples of {load.loads} (moving_load.loads)"
+    require(load.steps % load.loads == 0, "moving_load.steps", load.steps, allowed)
+    fits = len(load.sweep) == 2 and load.sweep[0] < load.sweep[1]
+    require(fits, "moving_load.sweep", load.sweep, "two speeds, the lower one first")

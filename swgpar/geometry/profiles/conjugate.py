@@ -258,10 +258,8 @@ class _Maker:
     def undercut(self) -> NoReturn:
         raise InputError(
             f"{self.name}: the envelope of the other gear's flank ends in an undercut before it "
-            f"reaches from the tip "
-            "to the root: allowed are larger pressure angles and other profiles of the other gear, "
-            "whose whole "
-            "flank comes into contact"
+            "reaches from the tip to the root: allowed are larger pressure angles and other "
+            "profiles of the other gear, whose whole flank comes into contact"
         )
 
     def crossing(self, radius: float, low: float, high: float) -> float:
@@ -298,8 +296,7 @@ class _Maker:
             raise InputError(
                 f"{self.name}.relief = {self.keys.relief:g} is out of range with relief_height = "
                 f"{self.keys.relief_height:g}: allowed are other values, for which an arc bends "
-                f"from the flank into "
-                "the tooth"
+                "from the flank into the tooth"
             )
         curvature = -2.0 * np.sin(half) / abs(chord)
         return begin, Segment(
@@ -361,8 +358,7 @@ class _Maker:
     def _refuse_root(self) -> NoReturn:
         raise InputError(
             f"{self.name}.r_root = {self.keys.r_root:g} is out of range: allowed are smaller "
-            f"radii, whose arc reaches "
-            "the dedendum circle from the flank"
+            "radii, whose arc reaches the dedendum circle from the flank"
         )
 
     def _rounded(self, base: list[Segment | CurvedSegment]) -> list[Segment | CurvedSegment]:
@@ -398,8 +394,7 @@ class _Maker:
             ]
         raise InputError(
             f"{self.name}.r_tip = {radius:g} is out of range: allowed are smaller radii, whose arc "
-            f"touches the flank "
-            "and the addendum circle"
+            "touches the flank and the addendum circle"
         )
 
 
