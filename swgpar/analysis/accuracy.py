@@ -6,6 +6,7 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
+from swgpar.input.require import require
 
 LOWEST, HIGHEST = 1e-3, 0.2
 """Accuracies that may be asked for."""
@@ -39,10 +40,8 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
 
     Raises InputError where the accuracy is out of range.
     """
-    if not LOWEST <= accuracy <= HIGHEST:
-        raise InputError(
-            f"--accuracy {accuracy:g} is out of range: allowed {LOWEST:g} to {HIGHEST:g}"
-        )
+    fits = LOWEST <= accuracy <= HIGHEST
+    require(fits, "--accuracy", accuracy, f"{LOWEST:g} to {HIGHEST:g}")
     whole_period = design.steps.rotation >= 0.999999 * design.periods * np.degrees(
         design.kinematics.period_angle
     )

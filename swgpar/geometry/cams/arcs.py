@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.errors import InputError
 from swgpar.geometry.cams.piecewise import Circle, PiecewiseCam
+from swgpar.input.require import require
 
 
 def arcs(a: float, b: float, beta: float, name: str) -> PiecewiseCam:
@@ -22,12 +22,8 @@ def arcs(a: float, b: float, beta: float, name: str) -> PiecewiseCam:
     sine, cosine = np.sin(beta), np.cos(beta)
     offset = (a - b) / (1.0 - (1.0 - sine) / cosine)
     radius, outer = a - offset, a - offset + offset / cosine
-    if radius <= 0.0:
-        least = np.degrees(0.5 * np.pi - 2.0 * np.arctan(b / a))
-        raise InputError(
-            f"{name} = {np.degrees(beta):g} is out of range: allowed above {least:.3g} to below 90 "
-            f"deg"
-        )
+    least = np.degrees(0.5 * np.pi - 2.0 * np.arctan(b / a))
+    require(radius > 0.0, name, np.degrees(beta), f"above {least:.3g} to below 90 deg")
     joint = np.array([radius * sine, offset + radius * cosine])
     return PiecewiseCam(
         pieces=(

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.errors import InputError
 from swgpar.geometry.arrays import SignedDistance
 from swgpar.geometry.cams.piecewise import Circle
+from swgpar.input.require import require
 
 
 @dataclass(frozen=True)
@@ -47,9 +47,6 @@ def four_roller(a: float, beta: float, radius: float, name: str = "r_4") -> Four
     # neighbours at +-beta: (a - r) sin beta > r, and r < a / 2 keeps the opposite pairs apart
     small = min(beta, 0.5 * np.pi - beta)
     limit = a * np.sin(small) / (1.0 + np.sin(small))
-    if radius >= limit:
-        raise InputError(
-            f"{name} = {radius:g} is out of range: allowed above 0 to below {limit:.6g} mm, where "
-            f"the rollers touch"
-        )
+    allowed = f"above 0 to below {limit:.6g} mm, where the rollers touch"
+    require(radius < limit, name, radius, allowed)
     return FourRollerCam(a, beta, radius)

@@ -21,6 +21,7 @@ import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.geometry.cams.piecewise import Circle, Parabola, PiecewiseCam
+from swgpar.input.require import require
 
 
 @dataclass(frozen=True)
@@ -62,11 +63,8 @@ def solve_quarter(parabola: Parabola, b: float, side: Side) -> Quarter:
             "connector's reach and inside b"
         )
     limit = (b - end[0]) / (1.0 - np.cos(theta))
-    if r_c >= limit:
-        raise InputError(
-            f"{name}.r_c = {r_c:g} is out of range: allowed above 0 to below {limit:.6g} mm, where "
-            "the connector arc passes the minor semi-axis"
-        )
+    where = "where the connector arc passes the minor semi-axis"
+    require(r_c < limit, f"{name}.r_c", r_c, f"above 0 to below {limit:.6g} mm, {where}")
     center = end - r_c * normal
     alpha = float(2.0 * np.arctan2(b - r_c - center[0], center[1]))
     radius = r_c + center[1] / np.sin(alpha)

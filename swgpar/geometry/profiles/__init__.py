@@ -30,6 +30,7 @@ from swgpar.geometry.profiles.quadruple_arc import quadruple_arc
 from swgpar.geometry.profiles.teeth import Teeth
 from swgpar.geometry.profiles.tooth_motion import ToothMotion
 from swgpar.input.quantities import show
+from swgpar.input.require import require
 
 
 @lru_cache(maxsize=32)
@@ -148,11 +149,8 @@ def _refuse_direct_keys(
         ("c_P", c_P, 1.0, thickness),
         ("c_l", c_l, 0.5, "which does not use it"),
     ):
-        if value != allowed:
-            raise InputError(
-                f"{gear}.{key} = {value:g} is out of range: allowed {allowed:g} with "
-                f'{gear}.profile.type = "{keys.type}", {reason}'
-            )
+        profile = f'{allowed:g} with {gear}.profile.type = "{keys.type}"'
+        require(value == allowed, f"{gear}.{key}", value, f"{profile}, {reason}")
 
 
 def _cutter(keys: RackInvolute | ShaperInvolute, teeth: Teeth) -> Cutter:

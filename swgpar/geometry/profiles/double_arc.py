@@ -12,17 +12,15 @@ import numpy as np
 from swgpar.errors import InputError
 from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.geometry.profiles.pitch_point import PitchPointFrame
+from swgpar.input.require import require
 
 
 def straight_length(
     frame: PitchPointFrame, c_l: float, r_dedendum: float, name: str = "profile"
 ) -> float:
     """Length l of the straight segment, mm; refuses radii that leave none."""
-    if c_l >= 1.0:
-        raise InputError(
-            f"{name.rpartition('.')[0]}.c_l = {c_l:g} is out of range: allowed 0 to below 1 with a "
-            f"double_arc profile"
-        )
+    key = f"{name.rpartition('.')[0]}.c_l"
+    require(c_l < 1.0, key, c_l, "0 to below 1 with a double_arc profile")
     s = frame.sign
     center = frame.pitch_point + r_dedendum * frame.normal(frame.base_angle)
     along = float(center @ frame.towards_tip)

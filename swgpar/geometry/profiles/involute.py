@@ -29,6 +29,7 @@ from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints
 from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.geometry.profiles.teeth import Teeth
 from swgpar.geometry.rotation import rotated
+from swgpar.input.require import require
 
 Center = Callable[[Floats], tuple[Floats, Floats]]
 """Centre C (n, 2) mm of the cutter's rounded tip, and dC/dpsi (n, 2), at psi (n,)."""
@@ -86,16 +87,11 @@ class Cutter(Teeth):
 
 def _check_tip(cut: Cutter, limit: float, name: str) -> None:
     """The rounding must leave the cutter's tooth a flat tip: below `limit`, mm."""
-    if limit <= 0.0:
-        raise InputError(
-            f"{name}.pressure_angle = {np.degrees(cut.pressure_angle):g} is out of range: allowed "
-            "are smaller angles, for which the cutter's tooth does not end in a point"
-        )
-    if cut.tip_radius >= limit:
-        raise InputError(
-            f"{name}.cutter_radius = {cut.tip_radius:g} is out of range: allowed above 0 to below "
-            f"{limit:.6g} mm, where the cutter's tooth has no flat tip left"
-        )
+    angle, radius = np.degrees(cut.pressure_angle), cut.tip_radius
+    allowed = "are smaller angles, for which the cutter's tooth does not end in a point"
+    require(limit > 0.0, f"{name}.pressure_angle", angle, allowed)
+    allowed = f"above 0 to below {limit:.6g} mm, where the cutter's tooth has no flat tip left"
+    require(radius < limit, f"{name}.cutter_radius", radius, allowed)
 
 
 def _rack_tip(cut: Cutter, name: str) -> tuple[float, float, Center]:
@@ -214,31 +210,26 @@ def involute(cut: Cutter, name: str = "profile") -> ToothProfile:
 
 def _check_sizes(cut: Cutter, name: str) -> None:
     """The base circle must lie inside the teeth, and the pitch circle must cross them."""
-    if cut.r_tip_circle <= cut.r_base:
-        raise InputError(
-            f"{name}.pressure_angle = {np.degrees(cut.pressure_angle):g} is out of range: allowed "
-            f"are angles whose base circle ({cut.r_base:.6g} mm) lies inside the addendum circle "
-            f"({cut.r_tip_circle:.6g} mm)"
-        )
-    if cut.depth <= 0.0 or cut.addendum + cut.sign * cut.shift * cut.module <= 0.0:
-        low, high = sorted(
-            (-cut.sign * cut.addendum / cut.module, cut.sign * cut.dedendum / cut.module)
-        )
-        raise InputError(
-            f"{name}.shift = {cut.shift:g} is out of range: allowed above {low:g} to below "
-            f"{high:g} modules, where the pitch circle crosses the teeth"
-        )
+    inside = f"lies inside the addendum circle ({cut.r_tip_circle:.6g} mm)"
+    allowed = f"are angles whose base circle ({cut.r_base:.6g} mm) {inside}"
+    angle = np.degrees(cut.pressure_angle)
+    require(cut.r_tip_circle > cut.r_base, f"{name}.pressure_angle", angle, allowed)
+    low, high = sorted(
+        (-cut.sign * cut.addendum / cut.module, cut.sign * cut.dedendum / cut.module)
+    )
+    fits = cut.depth > 0.0 and cut.addendum + cut.sign * cut.shift * cut.module > 0.0
+    where = "where the pitch circle crosses the teeth"
+    allowed = f"above {low:g} to below {high:g} modules, {where}"
+    require(fits, f"{name}.shift", cut.shift, allowed)
 
 
 def _check_shaper(cut: Cutter, w_tip: float, name: str) -> None:
     """The shaper's involute must exist where it cuts the ring's tips: above its base circle."""
     least = int(np.ceil(2.0 * w_tip / (cut.module * np.sin(cut.pressure_angle)) + 1e-9))
-    if not least <= cut.cutter_teeth < cut.n_teeth:
-        raise InputError(
-            f"{name}.cutter_teeth = {cut.cutter_teeth} is out of range: allowed {least} to "
-            f"{cut.n_teeth - 1} "
-            "(an involute down to the ring's tips, and a shaper smaller than the ring)"
-        )
+    why = "an involute down to the ring's tips, and a shaper smaller than the ring"
+    fits = least <= cut.cutter_teeth < cut.n_teeth
+    allowed = f"{least} to {cut.n_teeth - 1} ({why})"
+    require(fits, f"{name}.cutter_teeth", cut.cutter_teeth, allowed)
 
 
 def _check_trimming(cut: Cutter, profile: ToothProfile, center: Center, name: str) -> None:
@@ -253,8 +244,6 @@ def _check_trimming(cut: Cutter, profile: ToothProfile, center: Center, name: st
     # short of the addendum circle only the edge of the top land can be met
     to_edge = np.linalg.norm(points - profile.point(0.0), axis=1)
     clear = np.where(reach[near] > cut.r_tip_circle, profile.distance(points)[0], to_edge)
-    if clear.min(initial=np.inf) < cut.tip_radius - 1e-6 * cut.module:
-        raise InputError(
-            f"{name}.cutter_teeth = {cut.cutter_teeth} is out of range: allowed are fewer teeth, "
-            "so that the shaper does not trim the tips of the ring's teeth"
-        )
+    passes = clear.min(initial=np.inf) >= cut.tip_radius - 1e-6 * cut.module
+    allowed = "are fewer teeth, so that the shaper does not trim the tips of the ring's teeth"
+    require(passes, f"{name}.cutter_teeth", cut.cutter_teeth, allowed)
