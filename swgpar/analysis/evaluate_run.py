@@ -123,7 +123,7 @@ def evaluate_run(
     )
     tables = DriveTables(losses=losses_table)
     if fatigue is not None:
-        tables = DriveTables(losses=losses_table, cycle=fatigue.cycle, sector=fatigue.sector)
+        tables.fatigue_cycle, tables.fatigue = fatigue.cycle, fatigue.sector
     return summary, tables
 
 

@@ -15,7 +15,7 @@ from swgpar.analysis.mesh_refinement import ChosenMesh
 from swgpar.analysis.restart import resume_run, save_run
 from swgpar.analysis.run_record import RunRecord
 from swgpar.drive_results.drive_data import DriveData, open_fields
-from swgpar.drive_results.drive_tables import DriveTables
+from swgpar.drive_results.drive_tables import DriveTables, write_tables
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.drive_results.summary_file import summary_from, summary_to_json
 from swgpar.evaluation.bearing_loads import ball_rows
@@ -41,18 +41,11 @@ from swgpar.results import history
 from swgpar.results.atomic import agreed, on_root, write_from_root
 from swgpar.results.field_sources import FieldParts
 from swgpar.results.fields import BodyPart, FieldWriter, FlankGrids
-from swgpar.results.folder import (
-    BALLS,
-    CONTACT_LINES,
-    PAIRS,
-    PROGRAM,
-    RECIPE,
-    STIFFNESS,
-    SUMMARY,
-    TRANSMISSION_ERROR,
-)
+from swgpar.results.folder import RECIPE, SUMMARY
 from swgpar.results.history import Row
 from swgpar.results.table import as_columns, as_rows, format_csv, read_columns
+
+TURNS = "transmission_error.csv"
 
 NodalFields = dict[str, dict[str, np.ndarray]]
 """Body -> name of the field -> values (n_sectors, n_local[, n_components]) of the owned sectors."""
@@ -185,7 +178,7 @@ class Recorder(ABC):
                 pairs=as_columns(self.record.pairs),
                 contact_lines=as_columns(self.record.contact_lines),
                 program=as_columns(self.program_rows()),
-                turns=as_columns(self.record.turns),
+                transmission_error=as_columns(self.record.turns),
                 balls=as_columns(self.record.balls),
             )
             summary = summary_from(json.loads(summary_to_json(summary)), rows, tables.pairs)
@@ -269,10 +262,10 @@ class FolderRecorder(Recorder):
     def keep_turns(self, rows: list[Row]) -> None:
         super().keep_turns(rows)
         if rows:
-            write_from_root(self.comm, self.out / TRANSMISSION_ERROR, format_csv(rows))
+            write_from_root(self.comm, self.out / TURNS, format_csv(rows))
 
     def known_turns(self) -> list[Row]:
-        path = self.out / TRANSMISSION_ERROR
+        path = self.out / TURNS
         present = on_root(self.comm, path.exists)
         with agreed(self.comm, path, "read"):
             columns = read_columns(path) if present else {}
@@ -291,20 +284,21 @@ class FolderRecorder(Recorder):
         shown = history_rows(self.sequence.kinematics, record.rows)
         write_from_root(self.comm, self.out / history.NAME, history.format_rows(shown))
         program = self.program_rows()
-        for name, rows in (
-            (PAIRS, record.pairs),
-            (CONTACT_LINES, record.contact_lines),  # none where all contacts lie on edges
-            (PROGRAM, program),
-            (STIFFNESS, loop_rows(program) if self.model.design.stiffness else []),
-            (BALLS, record.balls),
-        ):
+        tables = {
+            "pairs": record.pairs,
+            "contact_lines": record.contact_lines,  # none where all contacts lie on edges
+            "program": program,
+            "stiffness": loop_rows(program) if self.model.design.stiffness else [],
+            "balls": record.balls,
+        }
+        for name, rows in tables.items():
             if rows:
-                write_from_root(self.comm, self.out / name, format_csv(rows))
+                write_from_root(self.comm, self.out / f"{name}.csv", format_csv(rows))
 
     def finish(self, rows: list[Row], summary: DriveSummary, tables: DriveTables) -> DriveData:
         if len(rows) > len(self.record.rows):
             write_from_root(self.comm, self.out / history.NAME, history.format_rows(rows))
-        tables.write(self.out, self.comm)
+        write_tables(self.out, self.comm, tables)
         write_from_root(self.comm, self.out / SUMMARY, summary_to_json(summary))
         folder = self.out.absolute()  # the fields are read later
         fields = open_fields(folder, self.comm)

@@ -4,6 +4,7 @@ run."""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields as fields_of
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
@@ -22,7 +23,6 @@ from swgpar.results.field_sources import BodyMesh, FieldFiles, FieldSource, chos
 from swgpar.results.fields import INDEX
 from swgpar.results.folder import SUMMARY, read_summary
 from swgpar.results.history import Curves, Row
-from swgpar.results.sector_fields import SectorFields
 
 if TYPE_CHECKING:
     import pyvista
@@ -45,7 +45,7 @@ class FlankPressure(NamedTuple):
     pressure: np.ndarray
 
 
-class DriveData:
+class DriveData(DriveTables):
     """What a run of a drive gives, without figures; the same on every rank.
 
     Every rank calls the methods together: fields that are in memory are gathered.
@@ -97,16 +97,9 @@ class DriveData:
         comm: MPI.Comm,
         folder: Path | None = None,
     ) -> None:
-        self.rows, self.tables = rows, tables
+        super().__init__(*(getattr(tables, one.name) for one in fields_of(DriveTables)))
+        self.rows, self.summary, self.folder = rows, summary, folder
         self.history: dict[str, np.ndarray] = history.columns(rows)
-        self.summary = summary
-        self.pairs, self.contact_lines = dict(tables.pairs), dict(tables.contact_lines)
-        self.program: dict[str, np.ndarray] = dict(tables.program)
-        self.fatigue: SectorFields | None = tables.sector
-        self.fatigue_cycle, self.losses = dict(tables.cycle), dict(tables.losses)
-        self.transmission_error: dict[str, np.ndarray] = dict(tables.turns)
-        self.balls: dict[str, np.ndarray] = dict(tables.balls)
-        self.folder = folder
         self.fields, self.comm = fields, comm
 
     def __repr__(self) -> str:

@@ -4,71 +4,49 @@ in files."""
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.results.atomic import write_from_root
-from swgpar.results.folder import (
-    BALLS,
-    CONTACT_LINES,
-    CYCLE,
-    LOSSES,
-    PAIRS,
-    PROGRAM,
-    TRANSMISSION_ERROR,
-)
+from swgpar.results.folder import DRIVE_TABLES
 from swgpar.results.sector_fields import SectorFields, read_sector, write_sector
 from swgpar.results.table import format_columns, read_columns
 
 Columns = Mapping[str, np.ndarray]
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class DriveTables:
-    """Columns of the tables, empty where there are none.
+    """Columns of the tables that `DRIVE_TABLES` describes, empty where there are none.
 
-    pairs, contact_lines : contacts of the flanks under load;  program : points of a load program
-    turns : transmission error over the sampled period or whole turns;  balls : loads of a bearing's
-    balls
-    cycle : stress where the safety is the least
-    losses : at the angles of the sampled period;  sector : safety factors at the nodes of a sector,
-    None without
+    fatigue : safety factors, amplitude and mean at the nodes of a sector, None without
     """
 
     pairs: Columns = field(default_factory=dict)
     contact_lines: Columns = field(default_factory=dict)
     program: Columns = field(default_factory=dict)
-    turns: Columns = field(default_factory=dict)
+    transmission_error: Columns = field(default_factory=dict)
     balls: Columns = field(default_factory=dict)
-    cycle: Columns = field(default_factory=dict)
+    fatigue_cycle: Columns = field(default_factory=dict)
     losses: Columns = field(default_factory=dict)
-    sector: SectorFields | None = None
+    fatigue: SectorFields | None = None
 
-    def write(self, folder: Path, comm: MPI.Comm) -> None:
-        """Write what is evaluated at the end of a run; collective."""
-        for name, columns in ((CYCLE, self.cycle), (LOSSES, self.losses)):
-            if columns:
-                write_from_root(comm, folder / name, format_columns(columns))
-        if self.sector is not None:
-            write_sector(folder, comm, self.sector)
+
+def write_tables(folder: Path, comm: MPI.Comm, tables: DriveTables) -> None:
+    """Write what is evaluated at the end of a run; collective."""
+    for name in ("fatigue_cycle", "losses"):
+        if columns := getattr(tables, name):
+            write_from_root(comm, folder / f"{name}.csv", format_columns(columns))
+    if tables.fatigue is not None:
+        write_sector(folder, comm, tables.fatigue)
 
 
 def read_tables(folder: Path) -> DriveTables:
     """The tables in a results folder."""
-
-    def columns(name: str) -> Columns:
-        return read_columns(folder / name) if (folder / name).exists() else {}
-
-    return DriveTables(
-        pairs=columns(PAIRS),
-        contact_lines=columns(CONTACT_LINES),
-        program=columns(PROGRAM),
-        turns=columns(TRANSMISSION_ERROR),
-        balls=columns(BALLS),
-        cycle=columns(CYCLE),
-        losses=columns(LOSSES),
-        sector=read_sector(folder),
-    )
+    names = DRIVE_TABLES.keys() & {each.name for each in fields(DriveTables)}
+    paths = {name: folder / f"{name}.csv" for name in names}
+    found = {name: read_columns(path) for name, path in paths.items() if path.exists()}
+    return DriveTables(**found, fatigue=read_sector(folder))

@@ -3,6 +3,7 @@ programs."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -89,7 +90,7 @@ def spring_table(result: DriveData) -> dict[str, np.ndarray]:
     }
 
 
-def ripple_table(transmission_error: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def ripple_table(transmission_error: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Columns of ripple.csv from those of transmission_error.csv: the error less its mean."""
     error = transmission_error["transmission_error_arcsec"]
     return {

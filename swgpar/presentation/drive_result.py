@@ -23,7 +23,7 @@ class DriveResult(DriveData):
     @classmethod
     def of(cls, data: DriveData) -> DriveResult:
         """The data of a run, with figures."""
-        return cls(data.rows, data.summary, data.tables, data.fields, data.comm, data.folder)
+        return cls(data.rows, data.summary, data, data.fields, data.comm, data.folder)
 
     @property
     def plot(self) -> DriveFigures:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +20,7 @@ SHOWN = (0.5, 20.0)
 
 
 def draw_haigh(
-    sector: SectorFields, cycle: dict[str, np.ndarray], summary: DriveSummary, angle: str
+    sector: SectorFields, cycle: Mapping[str, np.ndarray], summary: DriveSummary, angle: str
 ) -> Figure:
     """Amplitude over mean (MPa) of all nodes by region with the lines of Goodman and of yield,
     above the worst cycle.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
@@ -191,7 +191,7 @@ class DriveFigures(FigureSet):
         """One sector of the flexible spline, coloured by Goodman's safety factor."""
         return _as_figure(sector_picture(self._fatigue(), self._result.is_plane))
 
-    def _pairs(self) -> dict[str, np.ndarray]:
+    def _pairs(self) -> Mapping[str, np.ndarray]:
         return _needed(self._result.pairs, "flanks in contact under load", "load.torque above 0")
 
     def _fatigue(self) -> SectorFields:

@@ -21,30 +21,20 @@ RECIPE = "recipe.toml"
 TABLES = "tables"
 """Folder of the tables that a gear train adds to its history."""
 
-PAIRS = "pairs.csv"
-"""Contacts of the flanks under load."""
-
-TRANSMISSION_ERROR = "transmission_error.csv"
-"""Transmission error and input torque over a period, or with deviations over whole turns."""
-
-CONTACT_LINES = "contact_lines.csv"
-"""The same along the face width."""
+DRIVE_TABLES = {
+    "pairs": "contacts of the flanks under load",
+    "contact_lines": "the same along the face width",
+    "program": "torque and rotation of the output at the points of a load program",
+    "stiffness": "the same on the branches of the stiffness loops",
+    "transmission_error": "transmission error and input torque over a period or whole turns",
+    "losses": "losses at the angles of the sampled period",
+    "fatigue_cycle": "stress over a cycle where the safety is the least",
+    "balls": "loads of the balls of a bearing",
+}
+"""Tables that a drive adds to its history: name of the file without .csv -> what it has."""
 
 SECTOR, SECTOR_XDMF = "fatigue.h5", "fatigue.xdmf"
 """Safety factors at the nodes of one sector."""
-
-CYCLE = "fatigue_cycle.csv"
-"""Stress over a cycle where the safety is the least."""
-
-LOSSES = "losses.csv"
-"""Losses at the angles of the sampled period."""
-PROGRAM = "program.csv"
-"""Torque and rotation of the output at the points of a load program."""
-
-STIFFNESS = "stiffness.csv"
-"""The same on the branches of the stiffness loops."""
-BALLS = "balls.csv"
-"""Loads of the balls of a bearing."""
 
 START_STATES = "start_*.h5"
 """Loaded states on the meshes of a start, until there is a checkpoint."""
@@ -64,16 +54,9 @@ RESULTS = (
     checkpoint.NAME,
     START_STATES,
     SUMMARY,
-    PAIRS,
-    CONTACT_LINES,
+    *(f"{name}.csv" for name in DRIVE_TABLES),
     SECTOR,
     SECTOR_XDMF,
-    CYCLE,
-    LOSSES,
-    PROGRAM,
-    STIFFNESS,
-    TRANSMISSION_ERROR,
-    BALLS,
     "published.csv",
     RECIPE,
     f"{TABLES}/*.csv",

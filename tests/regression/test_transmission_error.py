@@ -10,7 +10,7 @@ import pytest
 import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.results.folder import SUMMARY, TRANSMISSION_ERROR
+from swgpar.results.folder import SUMMARY
 
 RATIO, TEETH_RG = -20.0, 42
 OVAL = (
@@ -58,7 +58,7 @@ def test_a_turn_with_deviations(folder: Path) -> None:
 
 
 def test_an_interrupted_turn_is_continued(folder: Path) -> None:
-    path = folder / TRANSMISSION_ERROR
+    path = folder / "transmission_error.csv"
     before = path.read_text().splitlines()
     path.write_text("\n".join(before[:15]) + "\n")
     (folder / SUMMARY).unlink()
