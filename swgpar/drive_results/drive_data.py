@@ -171,7 +171,7 @@ class DriveData(DriveTables):
     def names(self, body: GearName = SPLINE, increment: int = -1) -> tuple[str, ...]:
         """Names of the fields of a body at an increment."""
         source = self._source(body)
-        return source.names(body, chosen_increment(source, increment))
+        return source.names(body, chosen_increment(source.increments, increment))
 
     def field(self, name: str, increment: int = -1, body: GearName = SPLINE) -> np.ndarray:
         """A nodal field.
@@ -198,7 +198,7 @@ class DriveData(DriveTables):
             There is no such field, increment or body.
         """
         source = self._source(body)
-        number = chosen_increment(source, increment)
+        number = chosen_increment(source.increments, increment)
         known = source.names(body, number)
         if name not in known:
             raise InputError(

@@ -26,6 +26,7 @@ from swgpar.presentation.contact_figures import (
 from swgpar.presentation.deformed_figures import draw_cup_section, draw_deformed, draw_loaded_teeth
 from swgpar.presentation.fatigue_figures import draw_haigh, sector_picture
 from swgpar.presentation.program_figures import torque_against_rotation
+from swgpar.results.field_sources import chosen_increment
 from swgpar.results.figure_set import Drawings, FigureSet, panels
 from swgpar.results.history import COLUMNS
 from swgpar.results.sector_fields import SectorFields
@@ -339,13 +340,7 @@ class DriveFigures(FigureSet):
 
     def _row(self, increment: int) -> int:
         """Row of the history, from 0, of an increment with fields."""
-        known = self._result.field_increments
-        if not -len(known) <= increment < len(known):
-            raise InputError(
-                f"increment = {increment} has no fields: allowed from {-len(known)} to "
-                f"{len(known) - 1}"
-            )
-        return known[increment] - 1
+        return chosen_increment(self._result.field_increments, increment) - 1
 
     def _cam_angle(self, row: int) -> float:
         """Angle (rad) of the cam in the fields of a row of the history; 0 where the wave generator

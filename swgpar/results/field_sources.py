@@ -149,9 +149,8 @@ class FieldParts:
         return whole
 
 
-def chosen_increment(source: FieldSource, increment: int) -> int:
+def chosen_increment(known: Sequence[int], increment: int) -> int:
     """The increment with an index in the list of those with fields; negative from the end."""
-    known = source.increments
     if not -len(known) <= increment < len(known):
         raise InputError(
             f"increment = {increment} has no fields: allowed {-len(known)} to {len(known) - 1}"

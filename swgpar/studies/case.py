@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.input.design import Design
@@ -16,27 +14,19 @@ from swgpar.input.quantities import show_key
 from swgpar.meshing import MeshRecipe
 from swgpar.results.quantity import Quantity
 from swgpar.studies.spec import CaseSection, folder_name
-from swgpar.systems import System
+from swgpar.systems import Measured, System
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """What became of a job.
+class Outcome(Measured):
+    """What became of a job; what is measured is empty and None when it has failed.
 
     status : "finished" or "failed";  reason : one sentence, empty when finished
-    values, wall_s, unbounded, elements, newton_mean, history : as in `Measured`; empty and None
-    when failed
     kept : whether an earlier call of the study had finished it
     """
 
     status: str
     reason: str = ""
-    values: dict[str, float] = field(default_factory=dict)
-    wall_s: float | None = None
-    unbounded: frozenset[str] = frozenset()
-    elements: int | None = None
-    newton_mean: float | None = None
-    history: Mapping[str, np.ndarray] = field(default_factory=dict)
     kept: bool = False
 
 

@@ -43,20 +43,20 @@ class Result(Protocol):
         """The figures."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Measured:
     """Numbers that a study takes from a run.
 
     values : all quantities by name, without those that the run does not have
     unbounded : names of those that grow with every finer mesh
-    wall_s : seconds;  elements, newton_mean : of the mesh, and Newton iterations of an increment;
-    None without a mesh
+    wall_s : seconds, None where they are not known
+    elements, newton_mean : of the mesh, and Newton iterations of an increment; None without a mesh
     history : columns of the history that are drawn against the angle of the wave generator; empty
     without one
     """
 
-    values: dict[str, float]
-    wall_s: float
+    values: dict[str, float] = field(default_factory=dict)
+    wall_s: float | None = None
     unbounded: frozenset[str] = frozenset()
     elements: int | None = None
     newton_mean: float | None = None
@@ -65,12 +65,9 @@ class Measured:
     @classmethod
     def of(cls, answers: Mapping[str, Answer], wall_s: float, **more: Any) -> Measured:
         """The answers that have a value. more : further fields"""
-        return cls(
-            {name: answer.value for name, answer in answers.items() if answer.value is not None},
-            wall_s,
-            frozenset(name for name, answer in answers.items() if answer.no_error == NO_LIMIT),
-            **more,
-        )
+        values = {n: answer.value for n, answer in answers.items() if answer.value is not None}
+        unbounded = frozenset(n for n, answer in answers.items() if answer.no_error == NO_LIMIT)
+        return cls(values=values, wall_s=wall_s, unbounded=unbounded, **more)
 
 
 D = TypeVar("D", bound=Design)
