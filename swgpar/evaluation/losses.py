@@ -19,6 +19,7 @@ from swgpar.evaluation.stress_cycle import StressCycle, elements_of_rank
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.log import logger
 from swgpar.materials import Material
+from swgpar.meshing.quality import CORNERS, GAUSS, PLANE_CORNERS, jacobian_matrices
 from swgpar.model.drive_model import DriveModel
 from swgpar.results.history import Row
 
@@ -220,7 +221,7 @@ def work_per_cycle(
     elements, energy = layout.mesh.elements[elements_of_rank(comm, layout)], 0.0
     for start in range(0, len(elements), CHUNK):
         chunk = elements[start : start + CHUNK]
-        matrix, values = mass_matrices(layout.mesh.coords[chunk], thickness), features[local[chunk]]
+        matrix, values = mass_matrices(layout.mesh.coords, chunk, thickness), features[local[chunk]]
         energy += float((np.matmul(matrix, values) * values).sum())
     return 2.0 * np.pi * layout.mesh.n_sectors * comm.allreduce(energy, op=MPI.SUM)
 
@@ -239,30 +240,13 @@ def energy_coordinates(amplitude: np.ndarray, material: Material) -> np.ndarray:
     return np.moveaxis(stacked, 1, 0).reshape(amplitude.shape[1], -1)
 
 
-def mass_matrices(coords: np.ndarray, thickness: float | None) -> np.ndarray:
-    """Integrals (n, m, m) mm³ of products of the shape functions of hexahedra (n, 8, 3) mm, or of
-    quadrilaterals.
+def mass_matrices(coords: np.ndarray, elements: np.ndarray, thickness: float | None) -> np.ndarray:
+    """Integrals (m, k, k) mm³ of products of the shape functions of hexahedra (m, 8), or of
+    quadrilaterals (m, 4) in the plane.
 
-    thickness : mm, of quadrilaterals (n, 4, 3) in the plane; None for hexahedra
+    coords : (n, 3) mm;  thickness : mm, of quadrilaterals; None for hexahedra
     """
-    dims = 3 if thickness is None else 2
-    corner = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1]])
-    corner = np.vstack([corner, corner * (1, 1, -1)])[: 2**dims, :dims]
-    point = (
-        np.array(np.meshgrid(*[(-1.0 / np.sqrt(3.0), 1.0 / np.sqrt(3.0))] * dims))
-        .reshape(dims, -1)
-        .T
-    )
-    out = np.zeros((len(coords), len(corner), len(corner)))
-    for x in point:
-        factors = 1.0 + x * corner
-        shape = factors.prod(axis=1) / 2.0**dims
-        gradient = np.stack(
-            [
-                corner[:, k] * np.delete(factors, k, axis=1).prod(axis=1) / 2.0**dims
-                for k in range(dims)
-            ]
-        )
-        jacobian = np.linalg.det(np.einsum("ka,nai->nki", gradient, coords[..., :dims]))
-        out += np.abs(jacobian)[:, None, None] * shape[:, None] * shape
-    return out * (1.0 if thickness is None else thickness)
+    corners = CORNERS if thickness is None else PLANE_CORNERS
+    shape = (0.5 * (1.0 + GAUSS * corners[:, None] * corners)).prod(axis=2)  # point, node
+    weight = np.abs(np.linalg.det(jacobian_matrices(coords, elements, GAUSS)))
+    return np.einsum("eq,qa,qb->eab", weight * (thickness or 1.0), shape, shape)
