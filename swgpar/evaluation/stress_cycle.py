@@ -23,6 +23,7 @@ from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import split
 from swgpar.fem.stress import rotated_tensor
+from swgpar.geometry.rotation import rotation_between
 from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
@@ -153,14 +154,5 @@ def sector_stress(body: BodyElements, fields: Mapping[str, np.ndarray]) -> np.nd
     """
     before, layout = body.positions()[body.owned][..., :2], body.layout
     angle = layout.sector_angle(layout.first_tooth + body.sectors[body.owned])
-    angle = angle + _rotation(before, before + fields["displacement"][..., :2])
+    angle = angle + rotation_between(before, before + fields["displacement"][..., :2])
     return rotated_tensor(fields["stress"], -angle[:, None])
-
-
-def _rotation(before: np.ndarray, after: np.ndarray) -> np.ndarray:
-    """Rotation (n,) rad about z that fits the motion of points (n, m, 2) best, by the polar
-    decomposition."""
-    a, b = before - before.mean(axis=1, keepdims=True), after - after.mean(axis=1, keepdims=True)
-    return np.arctan2(
-        (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]).sum(axis=1), (a * b).sum(axis=(1, 2))
-    )

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
-from scipy.spatial.transform import Rotation
 
+from swgpar.geometry.rotation import rotated, rotation_between
 from swgpar.kernel import ReferenceElements
 from swgpar.meshing.sector import SectorMesh
 
@@ -47,9 +47,8 @@ class CondensedPart:
         coords, gradient = self.reference.coords[0], self.reference.gradient[0]
         middle = coords.mean(axis=0)
         outer, inner = coords - middle, self.inner_coords - middle
-        rotation = _about_z(angle)
-        mean = u.mean(axis=1, keepdims=True)
-        position = outer @ rotation + u - mean
+        mean, turn = u.mean(axis=1, keepdims=True), angle[:, None]
+        position = rotated(outer, turn) + u - mean
         stretch = position.transpose(0, 2, 1) @ gradient
         if not gradient[:, 2].any():  # plane
             stretch[:, 2, 2] = 1.0
@@ -57,12 +56,8 @@ class CondensedPart:
         frame = left @ right
         deformed = (position @ frame - outer).reshape(len(u), outer.size) @ self.modes.T
         frame = frame.transpose(0, 2, 1)
-        return (inner + deformed.reshape(len(u), *inner.shape)) @ frame - inner @ rotation + mean
-
-
-def _about_z(angle: np.ndarray) -> np.ndarray:
-    """Matrices (n, 3, 3) that rotate row vectors on their left by angles (n,) rad about z."""
-    return Rotation.from_euler("z", angle[:, None]).as_matrix().transpose(0, 2, 1)
+        moved = (inner + deformed.reshape(len(u), *inner.shape)) @ frame
+        return moved - rotated(inner, turn) + mean
 
 
 def relative_end_rotation(mesh: SectorMesh, angle: np.ndarray, u: np.ndarray) -> np.ndarray:
@@ -72,13 +67,8 @@ def relative_end_rotation(mesh: SectorMesh, angle: np.ndarray, u: np.ndarray) ->
     """
     rotations = []
     for nodes in (mesh.ccw_nodes, mesh.cw_nodes):
-        undeformed = mesh.coords[nodes] @ _about_z(angle)
-        undeformed -= undeformed.mean(axis=1, keepdims=True)
-        deformed = undeformed + u[:, nodes] - u[:, nodes].mean(axis=1, keepdims=True)
-        sine = (undeformed[..., 0] * deformed[..., 1] - undeformed[..., 1] * deformed[..., 0]).sum(
-            axis=1
-        )
-        rotations.append(np.arctan2(sine, (undeformed * deformed)[..., :2].sum(axis=(1, 2))))
+        undeformed = rotated(mesh.coords[nodes], angle[:, None])
+        rotations.append(rotation_between(undeformed, undeformed + u[:, nodes]))
     return rotations[0] - rotations[1]
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from swgpar.fem.local_nodes import LocalNodes
 from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows
-from swgpar.geometry.rotation import to_images
+from swgpar.geometry.rotation import rotated, to_images
 from swgpar.kernel import ReferenceElements, assemble_elements, recover_stress
 
 
@@ -157,11 +157,8 @@ class BodyElements:
 
     def positions(self) -> np.ndarray:
         """Undeformed positions of all nodes of the sectors seen; (n_sectors, n_node, 3) mm."""
-        x, y, z = self.layout.mesh.coords.T
-        c, s = self.sector_rotation[:, :1], self.sector_rotation[:, 1:]
-        return np.stack(
-            [c * x - s * y, s * x + c * y, np.broadcast_to(z, (len(c), len(z)))], axis=-1
-        )
+        angle = self.layout.sector_angle(self.layout.first_tooth + self.sectors)
+        return rotated(self.layout.mesh.coords, angle[:, None])
 
     def nodal_stress(self, u: np.ndarray, part: int = 0) -> np.ndarray:
         """Stress at the nodes of the owned sectors: extrapolated, averaged over elements of a part.

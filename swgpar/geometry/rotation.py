@@ -55,3 +55,11 @@ def rotated(vectors: np.ndarray, angle: float | np.ndarray) -> np.ndarray:
     if vectors.shape[-1] == 3:
         components.append(np.broadcast_to(vectors[..., 2], components[0].shape))
     return np.stack(components, axis=-1)
+
+
+def rotation_between(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Rotations (n,) rad about z that fit the motion of points (n, m, 2 or 3) best, by the polar
+    decomposition."""
+    a, b = (points - points.mean(axis=1, keepdims=True) for points in (before, after))
+    across = (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]).sum(axis=1)
+    return np.arctan2(across, (a * b)[..., :2].sum(axis=(1, 2)))
