@@ -24,10 +24,12 @@ from swgpar.evaluation.program_results import stage_ends
 from swgpar.evaluation.ratcheting import evaluate_ratcheting
 from swgpar.evaluation.rigid_clearance import rigid_clearance
 from swgpar.evaluation.rotation import evaluate_rotation, sampled_rows
+from swgpar.evaluation.slip_error import evaluate_slip
 from swgpar.evaluation.step_values import step_values
 from swgpar.evaluation.stiffness import torsional_stiffness
 from swgpar.evaluation.transmission_error import evaluate_turns
 from swgpar.load.load_program import stiffness_program
+from swgpar.load.negligible_torque import negligible_torque
 from swgpar.petsc import PETSc
 from swgpar.results.history import Row, loaded_increments
 from swgpar.version import __version__
@@ -106,14 +108,15 @@ def evaluate_run(
         ratcheting=(
             evaluate_ratcheting(
                 sequence.kinematics,
-                design.ratcheting.drop,
-                program,
-                record.tooth_rotations,
+                design.ratcheting,
+                record.torque_points,
+                1e-3 * negligible_torque(design),
                 ended_early=ended_early,
             )
             if design.ratcheting
             else None
         ),
+        slip=evaluate_slip(record.slip_checks) if design.contact.friction else None,
         program=stage_ends(program) if design.load.program and program else None,
         fatigue=None if fatigue is None else fatigue.found,
         losses=losses,

@@ -1,4 +1,5 @@
-"""Load stepping: increments with prediction, cut-back and closing of the backlash."""
+"""Load stepping: increments in bounded steps, with prediction, cut-back and closing of the
+backlash."""
 
 from __future__ import annotations
 
@@ -8,6 +9,8 @@ import numpy as np
 
 from swgpar.analysis.bent_start import bend
 from swgpar.analysis.predictor import KnownState, predict
+from swgpar.analysis.snapshot import ProgramState, Snapshot
+from swgpar.analysis.step_bounds import steps_needed
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.torques import torques
 from swgpar.fem.body import FLEXIBLE_SPLINE
@@ -15,7 +18,6 @@ from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import logger
 from swgpar.model.drive_model import DriveModel
-from swgpar.petsc import PETSc
 from swgpar.solve.solve_state import SolveResult
 
 MAX_KNOWN_STATES = 40
@@ -51,8 +53,8 @@ class LoadStepper:
         self.iterations = 0
         self.residual = 0.0
         self.known_states: list[KnownState] = []
-        self._last: tuple[LoadState, PETSc.Vec] | None = None
-        self._before: tuple[LoadState, PETSc.Vec] | None = None
+        self._last: ProgramState = None
+        self._before: ProgramState = None
 
     def reset(self) -> None:
         """Go back to the undeformed drive."""
@@ -66,39 +68,83 @@ class LoadStepper:
         self.load_state = load_state
         self.known_states = [KnownState(load_state.angle, self.problem.x.copy())]
 
-    def advance(self, target: LoadState) -> None:
-        """Solve up to `target`, with smaller steps where Newton's iteration fails.
+    def snapshot(self) -> Snapshot:
+        """The present state, for `restore`."""
+        return Snapshot(
+            self.load_state,
+            self.residual,
+            self.problem.x.copy(),
+            self.problem.accepted.copy(),
+            tuple(flanks.tractions for flanks in self.problem.flanks),
+            tuple(self.known_states),
+            self._last,
+            self._before,
+        )
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back to a state of before; the results of its contacts come with the next solve."""
+        self.load_state, self.residual = snapshot.load_state, snapshot.residual
+        snapshot.x.copy(self.problem.x)
+        snapshot.accepted.copy(self.problem.accepted)
+        for flanks, tractions in zip(self.problem.flanks, snapshot.tractions):
+            flanks.resume(dict(tractions))
+        self.known_states = list(snapshot.known_states)
+        self._last, self._before = snapshot.last, snapshot.before
+
+    def advance(self, target: LoadState, *, cut_back: bool = True) -> None:
+        """Solve up to `target` in the steps that it needs (`step_bounds`), and in smaller ones
+        where Newton's iteration fails.
+
+        cut_back : whether to take these smaller ones
+
+        Raises ConvergenceError after `solver.max_cutbacks` halvings or `solver.iteration_limit`
+        iterations of a step; x is then the last converged state.
+        """
+        self.iterations = 0
+        for state in self.steps_to(target):
+            self._take_step(state, cut_back=cut_back)
+
+    def steps_to(self, target: LoadState) -> list[LoadState]:
+        """The states at the ends of the steps to `target`, itself the last."""
+        origin, count = self.origin(target), 1
+        if self.design.steps.subdivide:
+            friction = self.design.contact.friction > 0.0
+            count = steps_needed(origin, target, self.design.kinematics, friction=friction)
+        if count > 1:
+            logger.info("   in %d steps, so that no tooth passes and no slip begins unseen", count)
+        return [self.between(origin, target, k / count) for k in range(1, count + 1)]
+
+    def between(self, origin: LoadState, target: LoadState, share: float) -> LoadState:
+        """The state at a share of the way from `origin` to `target`."""
+        return origin.interpolate(target, share, self.design.drive.module, self.design.deflection)
+
+    def _take_step(self, target: LoadState, *, cut_back: bool) -> None:
+        """Solve a step up to `target`.
 
         Teeth that are held across a backlash may stick on the wrong flanks. The first load that
         friction does not let through is taken up without it, and then with it.
-
-        Raises ConvergenceError after `solver.max_cutbacks` halvings or `solver.iteration_limit`
-        iterations; x is then the last converged state.
         """
-        self.iterations = 0
         takes_up_load = self.load_state.stage == Stage.ENGAGE and target.control == "torque"
         try:
-            self._advance(target)
+            self._advance(target, cut_back=cut_back)
         except ConvergenceError as error:
             if not takes_up_load or not self.design.contact.friction:
                 raise
             logger.info("   %s; the load is taken up without friction first", error)
-            tried, self.iterations = self.iterations, 0
-            self._advance(replace(target, frictionless=True))
-            self._advance(target)
-            self.iterations += tried
+            self._advance(replace(target, frictionless=True), cut_back=cut_back)
+            self._advance(target, cut_back=cut_back)
 
-    def _advance(self, target: LoadState) -> None:
+    def _advance(self, target: LoadState, *, cut_back: bool) -> None:
         settings = self.design.solver
-        origin, x = self._origin(target), self.problem.x
-        done, share, cutbacks = 0.0, 1.0, 0
+        most = settings.max_cutbacks if cut_back else 0
+        origin, x = self.origin(target), self.problem.x
+        done, share, cutbacks, spent = 0.0, 1.0, 0, 0
         while done < 1.0:
             saved = x.copy()
             end = min(1.0, done + share)
-            state = origin.interpolate(
-                target, end, self.design.drive.module, self.design.deflection
-            )
-            result = self._solve(state, settings.iteration_limit - self.iterations)
+            state = self.between(origin, target, end)
+            result = self._solve(state, settings.iteration_limit - spent)
+            spent += result.iterations
             self.iterations += result.iterations
             if result.converged:
                 self._take(state, result)
@@ -106,12 +152,12 @@ class LoadStepper:
                 continue
             saved.copy(x)
             cutbacks += 1
-            exhausted = self.iterations >= settings.iteration_limit
+            exhausted = spent >= settings.iteration_limit
             if exhausted:
                 limit = f"{settings.iteration_limit} Newton iterations of one increment"
                 result = replace(result, reason=f"{limit} (solver.iteration_limit)")
             # a state that is its own origin has nothing to halve
-            if exhausted or cutbacks > settings.max_cutbacks or origin == target:
+            if exhausted or cutbacks > most or origin == target:
                 raise self._failure(target, state, result, cutbacks - 1)
             share *= 0.5
             logger.info(
@@ -148,7 +194,7 @@ class LoadStepper:
         free = self.problem.supports.spline_ratio is not None and not state.spline_held
         return replace(state, spline_held=True) if free else None
 
-    def _origin(self, target: LoadState) -> LoadState:
+    def origin(self, target: LoadState) -> LoadState:
         """The present load state with what the output has under the control of the target.
 
         After a cut-back an increment begins with the torque that held the output, or its angle.

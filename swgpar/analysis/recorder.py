@@ -26,7 +26,6 @@ from swgpar.evaluation.losses import cam_force
 from swgpar.evaluation.place_errors import with_errors
 from swgpar.evaluation.places import Place, find_places
 from swgpar.evaluation.program_results import PointRow, point_rows
-from swgpar.evaluation.ratcheting import tooth_rotation
 from swgpar.evaluation.result_frame import history_rows, nodal_fields
 from swgpar.evaluation.stiffness import loop_rows
 from swgpar.evaluation.stress_cycle import StressCycle
@@ -92,8 +91,6 @@ class Recorder(ABC):
         )
         row = {**self.stepper.row(), **values, "wall_s": seconds}
         self.record.rows.append(history.plain_row(row))
-        if model.design.ratcheting:
-            self.record.tooth_rotations.append(tooth_rotation(model))
         with model.phases("stress"):
             on_edge = self._keep_pairs(state)
             self._keep_places(state, body_fields, on_edge)

@@ -110,7 +110,8 @@ def resume_run(
 def _continues(record: RunRecord, last: LoadState, states: Sequence[LoadState]) -> bool:
     """Whether the increments of the record are the first ones of these states."""
     done = len(record.rows)
-    if done > len(states) or states[done - 1] != last:
+    # a rotation that has ended where the torque fell is within its last increment
+    if done > len(states) or (states[done - 1] != last and not record.torque_points):
         return False
     angles = [float(np.radians(row["wg_angle_deg"])) for row in record.rows]
     return np.allclose(angles, [state.angle for state in states[:done]])

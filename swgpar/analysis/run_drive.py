@@ -21,6 +21,7 @@ from swgpar.analysis.mesh_refinement import choose_mesh
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.saved_state import StartStates
 from swgpar.analysis.shortcuts import MESHES, with_shortcuts
+from swgpar.analysis.step_control import StepControl
 from swgpar.analysis.stiffness_error import stiffness_error
 from swgpar.checks.remarks import remarks
 from swgpar.design.drive_design import DriveDesign
@@ -215,6 +216,7 @@ class DriveRun:
         """Compute and record the increments that are left."""
         stepper, recorder, terminal = self.stepper, self.recorder, self.options.terminal
         record, design = recorder.record, self.model.design
+        steps = StepControl(stepper, record.torque_points, record.slip_checks)
         loaded = next((state for state in reversed(states) if state.stage == Stage.LOAD), None)
         with IncrementProgress(
             self.model.comm, len(states), done=len(record.rows), terminal=terminal
@@ -223,13 +225,14 @@ class DriveRun:
                 state.stage.label, np.degrees(state.angle), its, ratio
             )
             for state in states[len(record.rows) :]:
-                if design.ratcheting is not None and has_fallen(
-                    design.ratcheting.drop, recorder.program_rows()
-                ):
+                fallen = design.ratcheting is not None and has_fallen(
+                    design.ratcheting.drop, record.torque_points
+                )
+                if fallen or self.ended_early:
                     break
                 start = time.perf_counter()
                 # a start at once ends with the first one
-                if state != stepper.load_state and not self._advance(state):
+                if state != stepper.load_state and not self._advance(steps, state):
                     break
                 seconds = time.perf_counter() - start
                 if design.resolves_root_stress:
@@ -245,19 +248,22 @@ class DriveRun:
                 if terminal:
                     warn_of_unused_options()
 
-    def _advance(self, state: LoadState) -> bool:
-        """Compute an increment; False where the output is rotated beyond the strength and finds no
-        equilibrium."""
+    def _advance(self, steps: StepControl, state: LoadState) -> bool:
+        """Compute an increment, or its part up to where the rotated output has no equilibrium;
+        False where nothing of it has one."""
+        before = self.stepper.load_state
         try:
-            self.stepper.advance(state)
-            return True
+            steps.advance(state)
         except ConvergenceError as error:
             rotated = self.model.design.ratcheting is not None and state.stage == Stage.PROGRAM
-            if not rotated or not self.recorder.program_rows():
+            if not rotated or not self.recorder.record.torque_points:
                 raise
             logger.warning("the rotation of the output ends here: %s", error)
             self.ended_early = True
-            return False
+            if self.stepper.load_state == before:
+                return False
+            self.stepper.advance(self.stepper.load_state)  # contacts of the last state
+        return True
 
     def _root_stress(self, state: LoadState, loaded: bool) -> RootStress | None:
         """Largest tensile stress at the teeth by windows; the one known before where a window

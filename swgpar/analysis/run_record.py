@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from swgpar.evaluation.bearing_loads import ComplianceShares
 from swgpar.evaluation.place_errors import CoarseStresses
 from swgpar.evaluation.places import Place
+from swgpar.evaluation.ratcheting import TorquePoint
+from swgpar.evaluation.slip_error import SlipCheck
 from swgpar.evaluation.windows.accuracy import Accuracy
 from swgpar.evaluation.windows.root_stress import RootStress
 from swgpar.results.history import Row
@@ -29,7 +31,8 @@ class RunRecord:
     stress_errors : by it, as shares, of `places`
     pairs, contact_lines : rows of pairs.csv and contact_lines.csv
     cam_forces : N, of all increments, with [losses]
-    tooth_rotations : deg, mean of the flexible spline's teeth at increments, with [ratcheting]
+    torque_points : states of a prescribed rotation of the output, with [ratcheting] all of them
+    slip_checks : increments with friction whose last step was taken again in halves
     turns : rows of transmission_error.csv
     balls : rows of balls.csv, the loads of a bearing's balls
     race_stress : largest stresses of the outer race under load, MPa
@@ -48,7 +51,8 @@ class RunRecord:
     pairs: list[Row] = field(default_factory=list)
     contact_lines: list[Row] = field(default_factory=list)
     cam_forces: list[float] = field(default_factory=list)
-    tooth_rotations: list[float] = field(default_factory=list)
+    torque_points: list[TorquePoint] = field(default_factory=list)
+    slip_checks: list[SlipCheck] = field(default_factory=list)
     turns: list[Row] = field(default_factory=list)
     balls: list[Row] = field(default_factory=list)
     race_stress: dict[str, float] = field(default_factory=dict)

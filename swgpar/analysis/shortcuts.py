@@ -83,10 +83,12 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
         if samples_enough and not points:
             beyond = f"{steps.rotation - period:.4g} of {steps.rotation:.4g} degrees"
             leave_out("samples", samples, f"{beyond} ({samples} angles of one period)")
+        # a rotation that is prescribed is followed from the assembled drive on
+        follows = bool(points) and points[0].control == "rotation" and points[0].value != 0.0
         # the bent spline lies on the cam that is not turned
-        if points[0].angle == 0.0 if points else steps.load_increments == 1:
+        if not follows and (points[0].angle == 0.0 if points else steps.load_increments == 1):
             leave_out("bent_start", True, "deflection and engagement step by step")
-        worth = levels and recipe.flexible_spline.flank >= WORTH[design.drive.model]
+        worth = levels and not follows and recipe.flexible_spline.flank >= WORTH[design.drive.model]
         count = _useful_levels(recipe) if worth else 0
         leave_out("start_levels", count, f"the assembly on this mesh ({count} coarser)")
         if "rtol" not in solver.model_fields_set:

@@ -462,6 +462,19 @@ class FlankContact:
         touching = np.unique(active.faces.patch[(active.pressure > 0.0).any(axis=1)])
         return int(self.flank_pairs.owned[touching].sum())
 
+    def doubtful_slip(self) -> tuple[float, float]:
+        """Force (N) of the last evaluation on points of owned faces that stick, or have no foot in
+        the accepted state and so no slip; and on all points."""
+        active = self._active
+        if active is None or active.friction is None:
+            return 0.0, 0.0
+        force = active.faces.weight * active.pressure
+        force[~self.flank_pairs.owned[active.faces.patch]] = 0.0
+        bound = SLIP_SHARE * self.friction_coefficient * active.pressure
+        slips = np.linalg.norm(active.friction.current, axis=2) >= bound
+        slips &= np.isfinite(active.friction.foot_point[..., 0])
+        return float(force[~slips].sum()), float(force.sum())
+
     def smallest_gap(self, side: int) -> float:
         """Smallest gap (mm) of the flanks on one side (+1, -1) in the last evaluation on this rank;
         inf without any."""

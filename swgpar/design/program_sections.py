@@ -79,7 +79,8 @@ class Ratcheting(Section):
     increment: float = quantity(
         0.02,
         unit="pitches",
-        text="rotation of the output in an increment, in pitches of the output",
+        text="rotation of the output between two records, in pitches of the output; the steps "
+        "between follow the torque",
         gt=0.0,
         le=0.5,
     )
@@ -95,4 +96,10 @@ class Ratcheting(Section):
         text="share of its peak by which the torque has to fall for the run to end",
         gt=0.0,
         lt=1.0,
+    )
+    tolerance: float = quantity(
+        0.005,
+        text="share of the peak torque by which it may be missed between two states",
+        ge=1e-4,
+        le=0.1,
     )

@@ -213,6 +213,11 @@ class Steps(Section):
         ge=0,
         le=4,
     )
+    subdivide: bool = quantity(
+        True,
+        text="solve an increment in several steps where teeth would pass, or slip would begin, "
+        "unseen; false: in one step",
+    )
 
 
 class Solver(Section):
@@ -231,7 +236,7 @@ class Solver(Section):
     )
     iteration_limit: int = quantity(
         600,
-        text="Newton iterations of one increment, those before cut-backs included",
+        text="Newton iterations of one step of an increment, those before cut-backs included",
         ge=1,
         le=1_000_000,
     )

@@ -20,6 +20,7 @@ from swgpar.evaluation.program_results import ProgramStages
 from swgpar.evaluation.ratcheting import RatchetingTorque
 from swgpar.evaluation.rigid_clearance import RigidClearance
 from swgpar.evaluation.rotation import Rotation
+from swgpar.evaluation.slip_error import SlipError
 from swgpar.evaluation.step_values import StepValues
 from swgpar.evaluation.stiffness import TorsionalStiffness
 from swgpar.evaluation.transmission_error import TransmissionError
@@ -36,6 +37,7 @@ ANSWER_GROUPS: dict[str, type[AnswerGroup]] = {
     "load_sharing": LoadSharing,
     "rotation": Rotation,
     "transmission_error": TransmissionError,
+    "slip": SlipError,
     "fatigue": SafetyAndLife,
     "losses": DriveLosses,
     "bearing": BallLoads,
@@ -118,6 +120,7 @@ class DriveSummary(Mapping[str, Answer]):
     bearing: BallLoads | None = None
     clearance: RigidClearance | None = None
     housing: HousingStresses | None = None
+    slip: SlipError | None = None
 
     def groups(self) -> list[AnswerGroup]:
         """The evaluations that the run has, in the order of `ANSWER_GROUPS`."""

@@ -4,13 +4,14 @@ way."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.design.kinematics import Kinematics
+from swgpar.design.program_sections import Ratcheting
 from swgpar.evaluation.answers import AnswerGroup, answer, evaluation
-from swgpar.evaluation.program_results import PointRow
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.model.drive_model import DriveModel
 
@@ -19,23 +20,44 @@ AT_TEETH, IN_SPLINE, NOTHING = "teeth jump over", "flexible spline buckles", "no
 and the output; nothing up to the end of the run."""
 
 
+@dataclass(frozen=True)
+class TorquePoint:
+    """A state of equilibrium under a prescribed rotation of the output.
+
+    step : point of the program that it leads to
+    rotation_deg : of the output beyond its kinematic one, in the sense of a positive torque
+    torque_Nm : of the output;  teeth_deg : mean rotation of the flexible spline's teeth
+    """
+
+    step: int
+    rotation_deg: float
+    torque_Nm: float
+    teeth_deg: float
+
+
 @evaluation
 class RatchetingTorque(AnswerGroup):
     """The largest torque of the output under a prescribed rotation, and what gave way.
 
-    peak_error_Nm : difference from the points beside it;  peak_step : its point of the program
-    last_torque_Nm, last_step : of the last point
-    is_peak : whether the torque fell after it;  gave_way : `AT_TEETH`, `IN_SPLINE` or `NOTHING`;
-    ended : why
+    Without a peak that the torque has fallen from, the largest torque is a lower bound of it.
+
+    peak_error_Nm : by which the torque may be larger between two states, at least `tolerance` of
+    [ratcheting]; None without a peak
+    peak_step : point of the program that its state leads to
+    last_torque_Nm, last_step : of the last state
+    is_peak : whether the torque has fallen from it;  gave_way : `AT_TEETH`, `IN_SPLINE` or
+    `NOTHING`; ended : why
+    states : computed, those between the points of the program among them
     """
 
     peak_torque_Nm: float = answer(
         "ratcheting.peak_torque_Nm",
         "largest torque of the output",
         "N·m",
+        error="peak_error_Nm",
         remark="peak_remark",
     )
-    peak_error_Nm: float
+    peak_error_Nm: float | None
     peak_rotation_deg: float = answer(
         "ratcheting.peak_rotation_deg", "rotation of the output there", "deg"
     )
@@ -48,6 +70,7 @@ class RatchetingTorque(AnswerGroup):
     is_peak: bool
     gave_way: str
     ended: str
+    states: int = 0
 
     TITLE = "ratcheting torque"
     ASKED_BY = "[ratcheting]"
@@ -56,8 +79,7 @@ class RatchetingTorque(AnswerGroup):
     @property
     def peak_remark(self) -> str:
         """What to know of the largest torque."""
-        beside = f"the points beside it are {self.peak_error_Nm:.3g} N·m lower"
-        return beside if self.is_peak else "no peak: it still grows"
+        return "error by the steps; not by the mesh" if self.is_peak else "no peak: not fallen from"
 
     def remarks(self) -> Iterator[str]:
         yield f"what gives way: {self.gave_way}; end of the run: {self.ended}"
@@ -76,64 +98,97 @@ def tooth_rotation(model: DriveModel) -> float:
     return float(np.degrees(np.arctan2(sine, cosine)))
 
 
-def peak(rows: Sequence[PointRow]) -> int:
-    """Index of the row with the largest torque."""
-    return int(np.argmax([row["torque_Nm"] for row in rows]))
+def overshoot(rotations: Sequence[float], torques: Sequence[float]) -> float:
+    """How far the torque may be above the largest one of the points, between these.
 
-
-def has_fallen(drop: float, rows: Sequence[PointRow]) -> bool:
-    """Whether the torque of the last row has fallen clearly below its peak. drop : share of the
-    peak"""
-    if not rows:
-        return False
-    top = rows[peak(rows)]["torque_Nm"]
-    return top > 0.0 and rows[-1]["torque_Nm"] < (1.0 - drop) * top
-
-
-def what_gave_way(kinematics: Kinematics, rows: Sequence[PointRow], teeth: Sequence[float]) -> str:
-    """What the output's rotation since the peak went into: `AT_TEETH`, `IN_SPLINE`, or `NOTHING`
-    without a peak.
-
-    teeth : (n,) deg, rotation of the flexible spline's teeth at every row
+    Up to a peak the curve bends down: behind a point it lies below the straight line through this
+    point and the one before. Before the largest point it also lies below the line from behind.
+    Behind it the torque may fall at once, and no line from there is used. 0 where the last point
+    has the largest torque; infinite where no point was before it.
     """
-    top = peak(rows)
-    if top == len(rows) - 1:
+    x, y = rotations, torques
+    top = int(np.argmax(y))
+    if top == len(y) - 1:
+        return 0.0
+
+    def line(a: int, b: int, at: float) -> float:
+        """The line through two points; above all where they are no points or the same."""
+        if a < 0 or x[a] == x[b]:
+            return np.inf
+        return y[a] + (y[b] - y[a]) / (x[b] - x[a]) * (at - x[a])
+
+    missed = line(top - 1, top, x[top + 1]) - y[top]
+    if top > 0:
+        # of two lines that cross the lower one is highest where they do
+        ends = x[top - 1], x[top]
+        over = [line(top - 2, top - 1, at) - line(top, top + 1, at) for at in ends]
+        if np.isfinite(over).all() and over[0] < 0.0 < over[1]:
+            at = x[top - 1] + over[0] / (over[0] - over[1]) * (x[top] - x[top - 1])
+            missed = max(missed, line(top - 2, top - 1, at) - y[top])
+        elif over[0] < 0.0:
+            missed = max(missed, line(top - 2, top - 1, x[top]) - y[top])
+    return missed
+
+
+def peak(points: Sequence[TorquePoint]) -> int:
+    """Index of the point with the largest torque."""
+    return int(np.argmax([point.torque_Nm for point in points]))
+
+
+def has_fallen(drop: float, points: Sequence[TorquePoint]) -> bool:
+    """Whether the torque of the last point has fallen clearly below its peak. drop : share of the
+    peak"""
+    if not points:
+        return False
+    top = points[peak(points)].torque_Nm
+    return top > 0.0 and points[-1].torque_Nm < (1.0 - drop) * top
+
+
+def what_gave_way(kinematics: Kinematics, points: Sequence[TorquePoint]) -> str:
+    """What the output's rotation since the peak went into: `AT_TEETH`, `IN_SPLINE`, or `NOTHING`
+    without a peak."""
+    top = peak(points)
+    if top == len(points) - 1:
         return NOTHING
-    output = (rows[-1]["rotation_arcmin"] - rows[top]["rotation_arcmin"]) / 60.0
-    turned = kinematics.torque_direction * (teeth[-1] - teeth[top])
+    output = points[-1].rotation_deg - points[top].rotation_deg
+    turned = kinematics.torque_direction * (points[-1].teeth_deg - points[top].teeth_deg)
     between_teeth = output - turned if kinematics.output_gear == "ring_gear" else turned
     return AT_TEETH if between_teeth > 0.5 * output else IN_SPLINE
 
 
 def evaluate_ratcheting(
     kinematics: Kinematics,
-    drop: float,
-    rows: Sequence[PointRow],
-    teeth: Sequence[float],
+    section: Ratcheting,
+    points: Sequence[TorquePoint],
+    least: float,
     *,
     ended_early: bool,
 ) -> RatchetingTorque:
-    """The largest torque from the rows of program.csv of a design with [ratcheting].
+    """The largest torque from the states of a run with [ratcheting].
 
-    drop : share of the peak by which the torque has to fall
-    teeth : (n,) deg, rotation of the flexible spline's teeth at every row
-    ended_early : whether no equilibrium was found behind the last row
+    least : N·m, below which a torque is none
+    ended_early : whether no equilibrium was found behind the last state
     """
-    top, fallen = peak(rows), has_fallen(drop, rows)
-    beside = [rows[k]["torque_Nm"] for k in (top - 1, top + 1) if 0 <= k < len(rows)]
+    top, fallen = peak(points), has_fallen(section.drop, points)
+    largest = points[top].torque_Nm
+    error = overshoot([p.rotation_deg for p in points], [p.torque_Nm for p in points])
+    error = max(error, section.tolerance * largest)
+    lowest = min(point.torque_Nm for point in points[top:])
+    is_peak = largest > least and largest - lowest > error
     return RatchetingTorque(
-        peak_torque_Nm=rows[top]["torque_Nm"],
-        peak_error_Nm=max((rows[top]["torque_Nm"] - torque for torque in beside), default=0.0),
-        peak_rotation_deg=rows[top]["rotation_arcmin"] / 60.0,
-        peak_rotation_pitches=rows[top]["rotation_arcmin"] / 60.0 / kinematics.output_pitch,
-        peak_step=rows[top]["step"],
-        last_torque_Nm=rows[-1]["torque_Nm"],
-        last_step=rows[-1]["step"],
-        is_peak=top < len(rows) - 1,
-        gave_way=what_gave_way(kinematics, rows, teeth),
+        peak_torque_Nm=largest,
+        peak_error_Nm=error if is_peak and np.isfinite(error) else None,
+        peak_rotation_deg=points[top].rotation_deg,
+        peak_rotation_pitches=points[top].rotation_deg / kinematics.output_pitch,
+        peak_step=points[top].step,
+        last_torque_Nm=points[-1].torque_Nm,
+        last_step=points[-1].step,
+        is_peak=is_peak,
+        gave_way=what_gave_way(kinematics, points) if is_peak else NOTHING,
         ended="no equilibrium found"
         if ended_early
         else "torque fell"
         if fallen
         else "limit reached",
+        states=len(points),
     )

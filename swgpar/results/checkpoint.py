@@ -27,7 +27,7 @@ T = TypeVar("T")
 
 NAME = "checkpoint.h5"
 
-VERSION = 8
+VERSION = 9
 """Of the content, a run's included."""
 
 _ATTRS, _VERSION, _DIGEST = "attrs_json", "version", "attrs_sha256"

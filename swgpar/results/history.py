@@ -11,7 +11,7 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -30,6 +30,8 @@ VERSION = 2
 
 Row = dict[str, Any]
 """One increment: values by column."""
+
+Angles = TypeVar("Angles", float, np.ndarray)
 
 
 @dataclass(frozen=True)
@@ -236,8 +238,8 @@ def transmission_error(wg_angle: np.ndarray, output_angle: np.ndarray, ratio: fl
     return 3600.0 * wrapped(output_angle - wg_angle / ratio)
 
 
-def wrapped(angle: np.ndarray) -> np.ndarray:
-    """Angles (degrees) within half a turn."""
+def wrapped(angle: Angles) -> Angles:
+    """Angle or angles (degrees) within half a turn."""
     return angle - 360.0 * np.round(angle / 360.0)
 
 

@@ -407,6 +407,13 @@ class DiscreteProblem:
         pairs = sum(flanks.touching_pairs() for flanks in self.flanks)
         return int(self.partition.comm.allreduce(pairs, op=MPI.SUM))
 
+    def doubtful_slip(self) -> float:
+        """Share of the flanks' force on points whose friction may depend on the step;
+        collective."""
+        forces = np.array([flanks.doubtful_slip() for flanks in self.flanks]).reshape(-1, 2)
+        doubtful, force = self.partition.comm.allreduce(forces.sum(axis=0), op=MPI.SUM)
+        return float(doubtful / force) if force else 0.0
+
     def accept(self) -> None:
         """Take x as the state from which friction counts the slip of the next solve; collective."""
         self.complete()

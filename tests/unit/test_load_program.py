@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,13 +12,16 @@ import pytest
 from support.stepping import small
 from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.errors import InputError
+from swgpar.evaluation.answers import NO_ESTIMATE
 from swgpar.evaluation.program_results import work_by_torque
 from swgpar.evaluation.ratcheting import (
     AT_TEETH,
     IN_SPLINE,
     NOTHING,
+    TorquePoint,
     evaluate_ratcheting,
     has_fallen,
+    overshoot,
 )
 from swgpar.evaluation.stiffness import ARC_MINUTE, by_position, torsional_stiffness
 from swgpar.load.load_program import (
@@ -243,32 +247,58 @@ def test_work_is_the_area_below_the_torque() -> None:
     assert work_by_torque([*rows, *rows[::-1]]) == pytest.approx(0.0, abs=1e-15)
 
 
+def points_of(torques: Sequence[float], teeth: Sequence[float]) -> list[TorquePoint]:
+    """States at whole degrees of the output."""
+    return [TorquePoint(3 + k, float(k), torque, teeth[k]) for k, torque in enumerate(torques)]
+
+
 @pytest.mark.parametrize(("teeth", "gave_way"), [(1.0, AT_TEETH), (-0.2, IN_SPLINE)])
 def test_what_gives_way_is_where_the_rotation_goes(teeth: float, gave_way: str) -> None:
     """Behind the peak the teeth move on with the output, or they turn back while the spline
     yields."""
     design = small("plane").with_values({"ratcheting.increment": 0.1})
-    torques = [1.0, 3.0, 2.9, 2.0]
-    rows = [
-        {"step": 3 + k, "torque_Nm": torque, "rotation_arcmin": 60.0 * k, "stage": "ratcheting"}
-        for k, torque in enumerate(torques)
-    ]
-    assert not has_fallen(design.ratcheting.drop, rows[:3]) and has_fallen(
-        design.ratcheting.drop, rows
-    )
-    moved = [0.0, 0.5, 0.5 + teeth, 0.5 + 2.0 * teeth]
+    moved = [0.0, 0.5, 0.5, 0.5 + teeth, 0.5 + 2.0 * teeth]
+    points = points_of([1.0, 2.5, 3.0, 2.9, 1.0], moved)
+    drop = design.ratcheting.drop
+    assert not has_fallen(drop, points[:4]) and has_fallen(drop, points)
     found = evaluate_ratcheting(
-        design.kinematics, design.ratcheting.drop, rows, moved, ended_early=False
+        design.kinematics, design.ratcheting, points, 1e-9, ended_early=False
     )
     assert found.gave_way == gave_way and found.ended == "torque fell"
-    assert (found.peak_torque_Nm, found.peak_step, found.peak_error_Nm) == (3.0, 4, 2.0)
-    assert found.peak_rotation_pitches == pytest.approx(1.0 / design.kinematics.output_pitch)
-    rising = evaluate_ratcheting(
-        design.kinematics, design.ratcheting.drop, rows[:2], moved[:2], ended_early=True
+    # straight on from the first two states to the third
+    assert (found.peak_torque_Nm, found.peak_step, found.peak_error_Nm) == (3.0, 5, 0.5)
+    assert found.peak_rotation_pitches == pytest.approx(2.0 / design.kinematics.output_pitch)
+
+
+@pytest.mark.parametrize(
+    "torques",
+    [[1.0, 3.0], [0.0, 1.0, 3.0, 2.999], [3e-15, 2e-15, 0.0]],
+    ids=["rises", "rises but for less than the error", "round-off"],
+)
+def test_a_torque_that_has_not_fallen_has_no_peak(torques: list[float]) -> None:
+    design = small("plane").with_values({"ratcheting.increment": 0.1})
+    points = points_of(torques, [0.0, 0.5, 1.0, 1.5])
+    found = evaluate_ratcheting(
+        design.kinematics, design.ratcheting, points, 1e-9, ended_early=True
     )
-    assert (
-        rising.gave_way == NOTHING and not rising.is_peak and rising.ended == "no equilibrium found"
-    )
+    assert not found.is_peak and found.gave_way == NOTHING and found.peak_error_Nm is None
+    assert found.ended == "no equilibrium found"
+    (answer,) = (one for one in found.answers() if one.name == "ratcheting.peak_torque_Nm")
+    assert answer.no_error == NO_ESTIMATE and "no peak" in answer.remark
+
+
+@pytest.mark.parametrize("turn", [0.35, 0.5, 0.62])
+def test_the_peak_between_states_is_within_the_overshoot(turn: float) -> None:
+    """Of a curve that bends down, and of one that falls at once."""
+    x = np.linspace(0.0, 1.0, 12)
+    for torque in (
+        lambda at: 5.0 - 20.0 * (at - turn) ** 2,
+        lambda at: np.where(at < turn, 5.0 * np.sin(at), 0.1),
+    ):
+        y, fine = torque(x), torque(np.linspace(0.0, 1.0, 100001))
+        missed = fine.max() - y.max()
+        assert 0.0 < missed <= overshoot(x, y) <= 1.01 * np.diff(y).max()
+    assert overshoot([0.0, 1.0], [1.0, 2.0]) == 0.0 and overshoot([0.0, 1.0], [2.0, 1.0]) == np.inf
 
 
 def test_first_branch_begins_where_the_one_before_ended() -> None:
