@@ -41,7 +41,38 @@ def teeth(**values: float) -> np.ndarray:
     ],
 )
 def test_candidates(ends: dict[str, float], between: dict[str, float], expected: list[int]) -> None:
-    assert candidates(teeth(**between), teeth(**ends)) == expected
+    in_root = teeth(**between)
+    assert candidates(teeth(**between), teeth(**ends), in_root=in_root) == expected
+
+
+@pytest.mark.parametrize(
+    ("in_root", "expected"),
+    [
+        ({"t0": 60.0, "t7": 75.0}, [0, 7]),
+        ({"t0": 60.0, "t7": 65.0}, [0]),
+        # the window of tooth 0 has the roots of its neighbours
+        ({"t0": 60.0, "t1": 75.0}, [0]),
+        # the largest one is in a root: nodal averages lose the same share of both
+        ({"t0": 100.0, "t7": 75.0}, [0]),
+    ],
+)
+def test_roots_are_looked_at_where_the_largest_stress_is_not_in_one(
+    in_root: dict[str, float], expected: list[int]
+) -> None:
+    assert candidates(teeth(t0=100.0), in_root=teeth(**in_root)) == expected
+
+
+def test_a_root_is_followed_below_a_stress_that_falls() -> None:
+    """Inside of the rim s1 falls from window to window, in a root it rises."""
+    rim = WindowStress(100.0, 0, np.zeros(3), "rim inside", "", 1)
+    for level, value, expected in (
+        (0, 83.0, True),
+        (0, 80.0, False),
+        (1, 95.0, True),
+        (2, 96.0, False),
+    ):
+        root = WindowStress(value, 5, np.zeros(3), "tooth root", "", 1)
+        assert may_be_largest(root, rim, level) == expected
 
 
 @pytest.mark.parametrize(
