@@ -17,6 +17,7 @@ from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
 from swgpar.results import checkpoint, parallel_hdf5
+from swgpar.results.folder import CHECKPOINT
 from swgpar.results.parallel_hdf5 import Block
 
 
@@ -66,7 +67,7 @@ def save_run(
         elapsed,
         model.phases.slowest(model.comm),
     )
-    checkpoint.write_checkpoint(out / checkpoint.NAME, model.comm, blocks, content)
+    checkpoint.write_checkpoint(out / CHECKPOINT, model.comm, blocks, content)
 
 
 def resume_run(
@@ -81,7 +82,7 @@ def resume_run(
 
     Returns what is saved, and the load states of the run: without those on other meshes.
     """
-    model, path = stepper.model, out / checkpoint.NAME
+    model, path = stepper.model, out / CHECKPOINT
     saved = checkpoint.read_checkpoint(path, model.comm, SavedRun)
     if saved.identity != identity:
         raise InputError(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 import sys
 import traceback
 from collections.abc import Sequence
@@ -41,6 +42,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Entry point; returns the exit code: 0, that of the error, 130 or 143 after a signal."""
     from swgpar import watch
 
+    # a process that mpirun did not start needs no daemon of Open MPI, which takes long to start
+    os.environ.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
     with watch.armed():
         return _main(arguments)
 

@@ -20,8 +20,7 @@ from swgpar.geometry.rotation import SIXTHS, sixths_of_turn
 from swgpar.results import history
 from swgpar.results.atomic import agreed
 from swgpar.results.field_sources import BodyMesh, FieldFiles, FieldSource, chosen_increment
-from swgpar.results.fields import INDEX
-from swgpar.results.folder import SUMMARY, read_summary
+from swgpar.results.folder import FIELD_INDEX, SUMMARY, read_summary
 from swgpar.results.history import Curves, Row
 
 if TYPE_CHECKING:
@@ -308,6 +307,6 @@ def open_data(folder: Path, comm: MPI.Comm) -> DriveData:
 
 def open_fields(folder: Path, comm: MPI.Comm) -> FieldFiles | None:
     """Fields in a results folder, None without any; collective."""
-    present = comm.bcast((folder / INDEX).exists() if comm.rank == 0 else None)
-    with agreed(comm, folder / INDEX, "read"):
+    present = comm.bcast((folder / FIELD_INDEX).exists() if comm.rank == 0 else None)
+    with agreed(comm, folder / FIELD_INDEX, "read"):
         return FieldFiles(folder) if present else None

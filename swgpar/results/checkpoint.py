@@ -25,8 +25,6 @@ from swgpar.results.parallel_hdf5 import Block
 
 T = TypeVar("T")
 
-NAME = "checkpoint.h5"
-
 VERSION = 9
 """Of the content, a run's included."""
 

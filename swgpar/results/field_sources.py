@@ -14,14 +14,13 @@ from swgpar.errors import InputError, OutputError
 from swgpar.results.atomic import sentence
 from swgpar.results.fields import (
     FLANKS,
-    FOLDER,
-    INDEX,
     MESH,
     BodyPart,
     FlankGrids,
     increment_name,
     stored,
 )
+from swgpar.results.folder import FIELD_INDEX, FIELDS
 
 
 class BodyMesh(NamedTuple):
@@ -68,8 +67,8 @@ class FieldFiles:
     gathered = False
 
     def __init__(self, folder: Path) -> None:
-        self._folder = folder / FOLDER
-        with h5py.File(folder / INDEX, "r") as file:
+        self._folder = folder / FIELDS
+        with h5py.File(folder / FIELD_INDEX, "r") as file:
             parts = [name for name in file if name != MESH]
         self.increments = sorted(int(name.rpartition("_")[2]) for name in parts)
 

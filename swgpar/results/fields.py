@@ -19,12 +19,9 @@ from mpi4py import MPI
 
 from swgpar.results import parallel_hdf5, xdmf
 from swgpar.results.atomic import TEMPORARY, agreed, discard, finish, write_from_root
+from swgpar.results.folder import FIELD_INDEX, FIELDS
 from swgpar.results.parallel_hdf5 import Block
 
-INDEX = "fields.h5"
-"""Links to the mesh and to the fields of all increments."""
-
-FOLDER = "fields"
 MESH = "mesh"
 FLANKS = ("flank_nodes", "flank_s", "flank_z")
 """Data sets of a body's `FlankGrids`."""
@@ -109,10 +106,10 @@ class FieldWriter:
     def __init__(self, out: Path, comm: MPI.Comm) -> None:
         self.out, self.comm = out, comm
         self._bodies: Mapping[str, BodyPart] = {}
-        with agreed(comm, out / FOLDER):
+        with agreed(comm, out / FIELDS):
             if comm.rank == 0:
-                (out / FOLDER).mkdir(exist_ok=True)
-                for left in (out / FOLDER).glob(f"*{TEMPORARY}"):
+                (out / FIELDS).mkdir(exist_ok=True)
+                for left in (out / FIELDS).glob(f"*{TEMPORARY}"):
                     discard(left)
 
     def write_mesh(self, bodies: Mapping[str, BodyPart]) -> None:
@@ -128,11 +125,11 @@ class FieldWriter:
             if part.flanks is not None:
                 grids = zip(FLANKS, part.flanks, strict=True)
                 blocks |= {f"{name}/{key}": Block.of_root(self.comm, array) for key, array in grids}
-        parallel_hdf5.write(self.out / FOLDER / f"{MESH}.h5", self.comm, blocks)
+        parallel_hdf5.write(self.out / FIELDS / f"{MESH}.h5", self.comm, blocks)
 
     def has(self, index: int) -> bool:
         """Whether the fields of an increment were written; seen from this rank."""
-        return (self.out / FOLDER / f"{increment_name(index)}.h5").exists()
+        return (self.out / FIELDS / f"{increment_name(index)}.h5").exists()
 
     def write_increment(self, index: int, fields: Mapping[str, Mapping[str, np.ndarray]]) -> None:
         """Write nodal fields: body -> name -> (n_sectors, n_local[, n_components])."""
@@ -141,19 +138,19 @@ class FieldWriter:
             for body, values in fields.items()
             for name, array in values.items()
         }
-        parallel_hdf5.write(self.out / FOLDER / f"{increment_name(index)}.h5", self.comm, blocks)
+        parallel_hdf5.write(self.out / FIELDS / f"{increment_name(index)}.h5", self.comm, blocks)
 
     def write_index(
         self, increments: Sequence[tuple[int, float]], names: Mapping[str, Mapping[str, int]]
     ) -> None:
         """Rewrite both indices: increments (index, cam angle), body -> field -> components."""
-        path = self.out / INDEX
+        path = self.out / FIELD_INDEX
         with agreed(self.comm, path):
             if self.comm.rank == 0:
                 temporary = path.with_name(path.name + TEMPORARY)
                 with h5py.File(temporary, "w") as file:
                     for part in (MESH, *(increment_name(i) for i, _ in increments)):
-                        file[part] = h5py.ExternalLink(f"{FOLDER}/{part}.h5", "/")
+                        file[part] = h5py.ExternalLink(f"{FIELDS}/{part}.h5", "/")
                 finish(temporary, path)
         write_from_root(self.comm, self.out / "fields.xdmf", self._xdmf(increments, names).encode())
 
@@ -177,8 +174,8 @@ class FieldWriter:
         part = self._bodies[body]
         count = part.total * part.points.shape[1]
         yield f'<Time Value="{time!r}"/><Information Name="wg_angle_deg" Value="{angle!r}"/>'
-        yield xdmf.hexahedra(f"{FOLDER}/{MESH}.h5:/{body}/cells", part.total * len(part.cells))
-        yield xdmf.points(f"{FOLDER}/{MESH}.h5:/{body}/points", count)
+        yield xdmf.hexahedra(f"{FIELDS}/{MESH}.h5:/{body}/cells", part.total * len(part.cells))
+        yield xdmf.points(f"{FIELDS}/{MESH}.h5:/{body}/points", count)
         for name, components in names.items():
-            place = f"{FOLDER}/{increment_name(index)}.h5:/{body}/{name}"
+            place = f"{FIELDS}/{increment_name(index)}.h5:/{body}/{name}"
             yield xdmf.attribute(name, place, count, components, 8 if name == "displacement" else 4)

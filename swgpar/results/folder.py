@@ -11,12 +11,17 @@ from mpi4py import MPI
 from swgpar import log
 from swgpar.errors import InputError, OutputError
 from swgpar.input.quantities import show
-from swgpar.results import checkpoint, history, lock
+from swgpar.results import history, lock
 from swgpar.results.atomic import TEMPORARY, agreed, discard, on_root, sentence, write_file
-from swgpar.results.fields import FOLDER, INDEX
 
 RECIPE = "recipe.toml"
 """The mesh recipe that was chosen for an accuracy."""
+
+CHECKPOINT = "checkpoint.h5"
+"""The last converged state, until the run is finished."""
+
+FIELDS, FIELD_INDEX = "fields", "fields.h5"
+"""Folder of the mesh and of the fields of all increments, and the file with links to them."""
 
 TABLES = "tables"
 """Folder of the tables that a gear train adds to its history."""
@@ -51,7 +56,7 @@ LOG = "run.log"
 RESULTS = (
     history.NAME,
     history.DESCRIPTION,
-    checkpoint.NAME,
+    CHECKPOINT,
     START_STATES,
     SUMMARY,
     *(f"{name}.csv" for name in DRIVE_TABLES),
@@ -61,8 +66,8 @@ RESULTS = (
     RECIPE,
     f"{TABLES}/*.csv",
     "fields.xdmf",
-    INDEX,
-    f"{FOLDER}/*.h5",
+    FIELD_INDEX,
+    f"{FIELDS}/*.h5",
     "figures/*.png",
     REPORT,
     LOG,
@@ -103,7 +108,7 @@ def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
             for left in out.glob(f"*{TEMPORARY}"):
                 discard(left)
     present, saved = on_root(
-        comm, lambda: [(out / name).exists() for name in (history.NAME, checkpoint.NAME)]
+        comm, lambda: [(out / name).exists() for name in (history.NAME, CHECKPOINT)]
     )
     if present and not restart and not overwrite:
         raise OutputError(

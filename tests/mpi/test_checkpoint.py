@@ -16,6 +16,7 @@ from mpi4py import MPI
 from swgpar.errors import OutputError
 from swgpar.load.load_states import Stage
 from swgpar.results import checkpoint, parallel_hdf5
+from swgpar.results.folder import CHECKPOINT
 from swgpar.results.parallel_hdf5 import Block
 
 ROWS = np.arange(7 * 5 * 3, dtype=float).reshape(7, 5, 3)
@@ -47,7 +48,7 @@ CONTENT = Content("x", [{"a": 0.1, "b": "c"}], 1.5, Stage.LOAD, INNER, {"one": I
 
 def write(folder: Path, comm: MPI.Comm) -> Path:
     first, end = (len(ROWS) * rank // comm.size for rank in (comm.rank, comm.rank + 1))
-    path = folder / checkpoint.NAME
+    path = folder / CHECKPOINT
     checkpoint.write_checkpoint(
         path, comm, {"body": Block(ROWS[first:end], first, len(ROWS))}, CONTENT
     )

@@ -17,6 +17,7 @@ from support.commands import assert_same_history, execute, run_command, succeed
 from support.small_drive import PLANE
 from swgpar.analysis.restart import SavedRun
 from swgpar.results import checkpoint, history
+from swgpar.results.folder import CHECKPOINT
 
 
 class Disk:
@@ -66,9 +67,7 @@ def assert_one_sentence(done: subprocess.CompletedProcess[str], out: Path) -> No
 def assert_readable(out: Path, plain: Path, fields: bool) -> None:
     """Everything of the increments that were finished is there, and is what it should be."""
     rows, whole = (history.read_history(p / history.NAME) for p in (out, plain))
-    done = len(
-        checkpoint.read_checkpoint(out / checkpoint.NAME, MPI.COMM_SELF, SavedRun).record.rows
-    )
+    done = len(checkpoint.read_checkpoint(out / CHECKPOINT, MPI.COMM_SELF, SavedRun).record.rows)
     # the checkpoint is written last: the increment that it misses may be in the history already
     assert 1 <= done <= len(rows) <= done + 1 < len(whole)
     for row, exact in zip(rows, whole):
@@ -105,12 +104,12 @@ def test_something_else_fills_the_disk(plain: Path, disk: Disk) -> None:
     # one increment, then a run that finds the room for its second checkpoint gone
     succeed(run_command(out, overrides=(*PLANE, "steps.rotation=2.0", "steps.increment=2.0")))
     (out / "summary.json").unlink()
-    saved = (out / checkpoint.NAME).read_bytes()
+    saved = (out / CHECKPOINT).read_bytes()
     room = os.statvfs(disk.place)
     with open(disk.place / "ballast", "wb") as ballast:
         os.posix_fallocate(ballast.fileno(), 0, room.f_bavail * room.f_bsize - 64 * 1024)
     assert_one_sentence(execute(run_command(out, "--restart")), out)
-    assert (out / checkpoint.NAME).read_bytes() == saved
+    assert (out / CHECKPOINT).read_bytes() == saved
     assert len(history.read_history(out / history.NAME)) == 5
     (disk.place / "ballast").unlink()
     succeed(run_command(out, "--restart"))

@@ -35,6 +35,7 @@ from swgpar.input.toml_file import apply_overrides, read_toml
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.recipe import RECIPES, recipe_path
 from swgpar.results import checkpoint, parallel_hdf5
+from swgpar.results.folder import CHECKPOINT
 from swgpar.results.parallel_hdf5 import Block
 from swgpar.studies.cases import expand
 from swgpar.studies.spec import load_study
@@ -297,8 +298,8 @@ def right_checkpoint(folder: Path) -> bytes:
     """A checkpoint with two data sets and attributes of a run, written into the folder."""
     rng = np.random.default_rng(1)
     blocks = {name: Block(rng.random((rows, n, 3)), 0, rows) for name, rows, n in SHAPES}
-    checkpoint.write_checkpoint(folder / checkpoint.NAME, MPI.COMM_SELF, blocks, RECORD)
-    return (folder / checkpoint.NAME).read_bytes()
+    checkpoint.write_checkpoint(folder / CHECKPOINT, MPI.COMM_SELF, blocks, RECORD)
+    return (folder / CHECKPOINT).read_bytes()
 
 
 KINDS = ("drive", "gear train", "mesh recipe", "study", "pitch file", "checkpoint")
@@ -310,7 +311,7 @@ def bad_inputs(draw: st.DrawFn, folder: Path) -> BadInput:
     kind = draw(st.sampled_from((*KINDS, "drive", "drive", "gear train")))
     if kind == "checkpoint":
         content, what = draw(damaged(right_checkpoint(folder)))
-        return BadInput(kind, {checkpoint.NAME: content}, what)
+        return BadInput(kind, {CHECKPOINT: content}, what)
     if kind == "pitch file":
         content, what = draw(damaged(_pitch_file()))
         column = draw(st.sampled_from(("pitch", "pitch", "", "tooth", "none")))
@@ -432,7 +433,7 @@ def _use_pitch_file(folder: Path) -> str:
 
 def _use_checkpoint(folder: Path) -> str:
     """A damaged checkpoint is refused, or all that it holds is what was written."""
-    path, ranges = folder / checkpoint.NAME, {name: (0, rows) for name, rows, _ in SHAPES}
+    path, ranges = folder / CHECKPOINT, {name: (0, rows) for name, rows, _ in SHAPES}
     checkpoint.require_undamaged(path, MPI.COMM_SELF)
     record = checkpoint.read_checkpoint(path, MPI.COMM_SELF, RunRecord)
     arrays = parallel_hdf5.read_rows(path, MPI.COMM_SELF, ranges)

@@ -63,7 +63,7 @@ def test_a_check_loads_neither_other_systems_nor_what_runs_need(tmp_path: Path) 
     code = (
         f"import swgpar, sys; swgpar.check({str(DESIGN)!r}); "
         "print([m for m in sys.modules if m.startswith(('swgpar.gear_trains', 'swgpar.studies', "
-        "'swgpar.fem', 'petsc4py', 'meshio', 'matplotlib'))])"
+        "'swgpar.fem', 'petsc4py', 'h5py', 'meshio', 'matplotlib'))])"
     )
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path

@@ -18,10 +18,10 @@ from support.small_trains import result_with
 from swgpar.drive_results.summary_file import summary_to_json
 from swgpar.evaluation.transmission_error import SpectrumLine
 from swgpar.gear_trains import result as trains
-from swgpar.results import checkpoint, history
+from swgpar.results import history
 from swgpar.results.atomic import to_json
 from swgpar.results.checkpoint import read_checkpoint, write_checkpoint
-from swgpar.results.folder import SUMMARY
+from swgpar.results.folder import CHECKPOINT, SUMMARY
 from swgpar.studies import job
 from swgpar.systems.gear_train import GEAR_TRAIN
 
@@ -97,7 +97,7 @@ def test_every_writer_leaves_valid_files(value: float, tmp_path: Path) -> None:
 
 
 def test_a_checkpoint_keeps_them(tmp_path: Path) -> None:
-    path = tmp_path / checkpoint.NAME
+    path = tmp_path / CHECKPOINT
     write_checkpoint(path, MPI.COMM_SELF, {}, {"pairs": [1.0, math.nan, math.inf]})
     found = read_checkpoint(path, MPI.COMM_SELF, dict)
     assert np.array_equal(found["pairs"], [1.0, math.nan, math.inf], equal_nan=True)
