@@ -32,9 +32,10 @@ to 2 (docs/verification/effectivity.md)."""
 COMPARED_LEVELS = 2
 """Windows of which the last one shows what the mesh of the drive changes."""
 
-LEAST = {"plane": 0.004, "cup": 0.01}
+LEAST = {"plane": 0.004, "cup": 0.015}
 """Least error by the mesh of the drive that meshes can show, as a share of the stress: contact
-points move between nodes."""
+points move between nodes, and the recipe of cup drives has the fewest layers below the root
+already. Twice the elements in root and below it change the reference cup by 1 %."""
 
 LEAST_WITH_EDGES = 0.02
 """The same where a contact lies on an edge. The forces of the teeth move with the mesh: on
