@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.exchange.outlines import cam_outlines
+from swgpar.geometry.cams import cam_outlines
 
 SAGITTA = 1e-4
 """Largest height of the cam's curve over a facet, as a share of the module."""
@@ -49,7 +49,7 @@ def cam_facets(design: DriveDesign, half_width: float, inset: float) -> CamFacet
     points: list[np.ndarray] = []
     elements: list[np.ndarray] = []
     first = 0
-    for part in cam_outlines(design, count):
+    for part in cam_outlines(design.cam(), count):
         x, y = part.T
         if np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) < 0.0:  # clockwise
             part = part[::-1]
@@ -81,5 +81,7 @@ def cam_facets(design: DriveDesign, half_width: float, inset: float) -> CamFacet
 
 
 def _sagitta(design: DriveDesign, count: int) -> float:
-    middles = [0.5 * (part + np.roll(part, -1, axis=0)) for part in cam_outlines(design, count)]
+    middles = [
+        0.5 * (part + np.roll(part, -1, axis=0)) for part in cam_outlines(design.cam(), count)
+    ]
     return float(-design.cam().evaluate(np.concatenate(middles))[0].min())

@@ -11,7 +11,8 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
-from swgpar.exchange.outlines import Edge, cam_outlines, gear_outline
+from swgpar.exchange.outlines import Edge, gear_outline
+from swgpar.geometry.cams import cam_outlines
 
 
 def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
@@ -40,7 +41,7 @@ def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
         document.layers.add("housing")
         space.add_circle((0.0, 0.0), design.geometry.outer_radius, dxfattribs={"layer": "housing"})
     document.layers.add("wave_generator")
-    for points in cam_outlines(design):  # within 0.02 µm of the curve
+    for points in cam_outlines(design.cam()):  # within 0.02 µm of the curve
         space.add_lwpolyline(points.tolist(), close=True, dxfattribs={"layer": "wave_generator"})
     path = folder / "drive.dxf"
     document.saveas(path)

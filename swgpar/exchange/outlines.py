@@ -14,7 +14,6 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GearName
-from swgpar.geometry.cams import FourRoller
 from swgpar.geometry.profiles.flank import Segment, ToothProfile
 from swgpar.geometry.rotation import rotated
 
@@ -23,9 +22,6 @@ TOLERANCE = 1e-4
 
 FLANK_POINTS = 33
 """On a segment of a flank that is no arc: an involute of module 1 is met to 0.01 µm."""
-
-CAM_POINTS = 5760
-"""On a cam: arcs and lines that join with a jump of curvature need them."""
 
 
 class Edge(NamedTuple):
@@ -78,11 +74,3 @@ def gear_outline(design: DriveDesign, gear: GearName) -> list[Edge]:
     tooth = [*right, tip, *left, root]
     phase = 0.0 if gear == "flexible_spline" else 0.5 * pitch
     return [edge.turned(phase + pitch * k) for k in range(profile.n_teeth) for edge in tooth]
-
-
-def cam_outlines(design: DriveDesign, count: int = CAM_POINTS) -> list[np.ndarray]:
-    """Closed curves of the cam of about `count` points in all, each (n, 2) mm without the first
-    point again: one, or one for each roller."""
-    points = design.cam().outline(count)
-    parts = 4 if isinstance(design.wave_generator, FourRoller) else 1
-    return list(points.reshape(parts, -1, 2))

@@ -21,8 +21,9 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GearName
-from swgpar.exchange.outlines import Edge, cam_outlines, gear_outline
+from swgpar.exchange.outlines import Edge, gear_outline
 from swgpar.geometry.arrays import Floats
+from swgpar.geometry.cams import cam_outlines
 from swgpar.meshing.gmsh_session import gmsh_model
 
 PIECES = 32
@@ -75,7 +76,7 @@ def _build(gmsh: ModuleType, design: DriveDesign, name: Solid) -> None:
     """The solid of a body in the present model."""
     if name == "wave_generator":
         half = 0.5 * design.wave_generator.face_width
-        for points in cam_outlines(design):
+        for points in cam_outlines(design.cam()):
             curves = closed_curve(gmsh, points, design.cam().evaluate(points)[1], -half)
             _extrude(gmsh, [gmsh.model.occ.addCurveLoop(curves)], 2.0 * half)
         return

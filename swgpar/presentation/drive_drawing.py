@@ -16,6 +16,7 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS, GearName
+from swgpar.geometry.cams import cam_outlines
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing.cup import meridian
@@ -149,7 +150,7 @@ def _curves(design: DriveDesign) -> dict[str, list[np.ndarray]]:
     return (curves if design.housing else {}) | {
         "ring_gear": [_circle(outer), ring],
         "flexible_spline": [teeth.reshape(-1, 2), inside],
-        "wave_generator": [design.cam().outline(720)],
+        "wave_generator": cam_outlines(design.cam(), 720),
     }
 
 
@@ -166,7 +167,7 @@ def _front(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
     reach = 1.04 * outer
     sheet.axis((-reach, 0.0), (reach, 0.0))
     sheet.axis((0.0, -reach), (0.0, reach))
-    cam = curves["wave_generator"][0]
+    cam = np.concatenate(curves["wave_generator"])
     width, low, high = float(cam[:, 0].max()), float(cam[:, 1].min()), float(cam[:, 1].max())
     sheet.across(-outer, outer, 0.0, 20.0, f"⌀ {2 * outer:.4g}")
     sheet.across(-width, width, 0.0, 525.0, f"cam {2 * width:.5g}")
@@ -190,9 +191,9 @@ def _teeth(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
     scale = 0.5 * (SIZE - 210.0) / half
     sheet = Sheet(scale, 0.5 * SIZE, 25.0 + scale * high, 50.0 + scale * (high - low))
     for name, closed in curves.items():
-        if name == "housing":  # beyond the window
-            continue
-        sheet.outline([_cut(curve, half, low, high) for curve in closed], name)
+        near = [curve for curve in closed if _near(curve, half).any()]
+        if near and name != "housing":  # which is beyond the window
+            sheet.outline([_cut(curve, half, low, high) for curve in near], name)
     # dimensions of the spline are drawn where its tooth is deflected to
     moved, edge = 0.5 * design.deflection, SIZE - 90.0
     root, tip = spline.r_root_circle + moved, spline.r_tip_circle + moved
@@ -214,11 +215,16 @@ def _height(profile: ToothProfile) -> float:
     return abs(profile.r_tip_circle - profile.r_root_circle)
 
 
+def _near(curve: np.ndarray, half: float) -> np.ndarray:
+    """Which points (n,) of a curve are at the top of a drive, in the window or beside it."""
+    return (np.abs(curve[:, 0]) < 1.3 * half) & (curve[:, 1] > 0.0)
+
+
 def _cut(curve: np.ndarray, half: float, low: float, high: float) -> np.ndarray:
     """The part of a closed curve at the top of a drive, closed below the window and clipped to
     it."""
     curve = np.roll(curve, -int(curve[:, 1].argmin()), axis=0)
-    near = curve[(np.abs(curve[:, 0]) < 1.3 * half) & (curve[:, 1] > 0.0)]
+    near = curve[_near(curve, half)]
     below = np.array([[near[-1, 0], low], [near[0, 0], low]])
     return np.clip(np.concatenate([near, below]), [-half, low], [half, high])
 

@@ -22,13 +22,13 @@ from swgpar.errors import InputError
 from swgpar.exchange.outlines import (
     FLANK_POINTS,
     TOLERANCE,
-    cam_outlines,
     flank_edges,
     gear_outline,
 )
 from swgpar.exchange.step import closed_curve
 from swgpar.exchange.tables import write_look_up
 from swgpar.exchange.vtkhdf import step_times
+from swgpar.geometry.cams import cam_outlines
 from swgpar.meshing.gmsh_session import gmsh_model
 from swgpar.results.fields import TIME_STEP, times
 from swgpar.results.table import read_columns
@@ -178,7 +178,7 @@ def test_curves_of_the_kernel_stay_within_their_tolerance(cam: str) -> None:
     """The B-spline that OpenCASCADE lays through the points, against the exact cam and an exact
     involute."""
     design = small(profile="involute", cam=cam, model="plane")
-    (points,) = cam_outlines(design)
+    (points,) = cam_outlines(design.cam())
     flank = max(
         flank_edges(design.profile("flexible_spline")), key=lambda edge: len(edge.points)
     ).points

@@ -15,6 +15,7 @@ import swgpar
 from support.html_text import assert_needs_nothing_else
 from support.paths import DESIGN, DRIVERS, RECIPE
 from support.small_drive import PLANE, SHORT
+from swgpar.checks.starter import Request, starter_design
 from swgpar.design.sections import GEARS
 from swgpar.drive_results.report_checks import checks
 from swgpar.errors import InputError
@@ -148,6 +149,17 @@ def test_drawings_have_the_dimensions(name: str) -> None:
     for outline in (outline for sheet in drawings for outline in sheet.outlines):
         numbers = [float(number) for number in re.findall(r"-?\d+\.\d\d", outline.path)]
         assert numbers and min(numbers) > 0.0 and max(numbers) < 700.0  # nothing is drawn outside
+
+
+def test_rollers_are_drawn_as_circles() -> None:
+    design, _ = starter_design(Request(60.0, 10.0, diameter=60.0, cam="four_roller"))
+    front, _, _ = draw_drive(design)
+    (rollers,) = (one.path for one in front.outlines if one.body == "wave_generator")
+    curves, radius = rollers.split("Z")[:-1], front.scale * design.wave_generator.r_4
+    assert len(curves) == 4
+    for curve in curves:
+        x, y = np.array(re.findall(r"-?\d+\.\d\d", curve), dtype=float).reshape(-1, 2).T
+        assert np.hypot(x - x.mean(), y - y.mean()) == pytest.approx(radius, abs=0.02)
 
 
 @pytest.mark.parametrize("gear", ["flexible_spline", "ring_gear"])

@@ -14,7 +14,7 @@ from swgpar.geometry.arrays import SignedDistance
 from swgpar.geometry.cams.arcs import arcs
 from swgpar.geometry.cams.bearing_keys import Bearing
 from swgpar.geometry.cams.elliptical import EllipticalCam
-from swgpar.geometry.cams.four_roller import four_roller
+from swgpar.geometry.cams.four_roller import FourRollerCam, four_roller
 from swgpar.geometry.cams.harmonic import HarmonicCam
 from swgpar.geometry.cams.keys import (
     Arcs,
@@ -28,6 +28,9 @@ from swgpar.geometry.cams.keys import (
 )
 from swgpar.geometry.cams.parabolic import Side, parabolic
 from swgpar.geometry.cams.simplified import simplified
+
+OUTLINE_POINTS = 5760
+"""Of a cam: arcs and lines that join with a jump of curvature need them."""
 
 
 class Cam(Protocol):
@@ -76,6 +79,13 @@ def make_cam(
         left = Side(keys.left.a_p, keys.left.C_p, keys.left.r_c, f"{name}.left")
         return parabolic(a, b, right, left, float(np.radians(keys.rotational_angle)))
     raise TypeError(f"no curve for {type(keys).__name__}")
+
+
+def cam_outlines(cam: Cam, count: int = OUTLINE_POINTS) -> list[np.ndarray]:
+    """Closed curves of the cam of about `count` points in all, each (n, 2) mm without the first
+    point again: one, or one for each roller."""
+    parts = 4 if isinstance(cam, FourRollerCam) else 1
+    return list(cam.outline(count).reshape(parts, -1, 2))
 
 
 def taut_length(cam: Cam, n: int = 7200) -> float:
