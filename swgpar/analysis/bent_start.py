@@ -82,8 +82,7 @@ class BentSpline:
         # in the radial and the circumferential direction, the latter counter-clockwise
         along = self.radius + share * outward + height * np.cos(lean)
         across = share * around + height * np.sin(lean)
-        sine, cosine = np.sin(theta), np.cos(theta)
-        return np.column_stack([-sine * along - cosine * across, cosine * along - sine * across, z])
+        return rotated(np.column_stack([-across, along, z]), theta)
 
     def _waves(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Radial and circumferential displacement (n,) mm at mid-width, slope of the first."""
@@ -128,11 +127,8 @@ class BentSpline:
                 np.column_stack([-radius * np.sin(theta), radius * np.cos(theta)])
             )
             deflection[held] = slope[held] = around[held] = 0.0
-        height, sine, cosine = self.end - z, np.sin(theta), np.cos(theta)
-        outward, across = height * slope, height * around
-        return np.column_stack(
-            [-sine * outward - cosine * across, cosine * outward - sine * across, deflection]
-        )
+        height = self.end - z
+        return rotated(np.column_stack([-height * around, height * slope, deflection]), theta)
 
     def _plate(self, order: float) -> tuple[np.ndarray, np.ndarray]:
         """Powers (4,) of the radius and factors (4,) in the deflection of a plate by such waves.
@@ -193,10 +189,7 @@ def bend(model: DriveModel) -> None:
     model.problem.x.set(0.0)
     for body, field in fields.items():
         layout = model.partition.layouts[body]
-        first, end = model.partition.owned_sectors(body)
-        sectors = np.arange(first, end)
-        angle = layout.sector_angle(layout.first_tooth + sectors)
-        coords = np.broadcast_to(layout.mesh.coords, (len(sectors), *layout.mesh.coords.shape))
-        points = rotated(coords, angle[:, None])
+        angle = layout.sector_angle(layout.first_tooth + model.partition.owned_indices(body))
+        points = rotated(layout.mesh.coords, angle[:, None])
         values = field.displacement(points.reshape(-1, 3)).reshape(points.shape)
-        write_field(model.partition, body, sectors, values, model.problem.x)
+        write_field(model.partition, body, values, model.problem.x)

@@ -32,15 +32,14 @@ from swgpar.petsc import PETSc
 def transfer(coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec) -> None:
     """Set y of the fine model to x of the coarse one, sector by sector, on the same ranks."""
     for body, layout in fine.partition.layouts.items():
-        first, end = fine.partition.owned_sectors(body)
-        sectors = np.arange(first, end)
+        sectors = fine.partition.owned_indices(body)
         angle = layout.sector_angle(layout.first_tooth + sectors)
         local = rotated(read_field(coarse.partition, body, sectors, x), -angle[:, None])
         matrix = interpolation(coarse.partition.layouts[body].mesh, layout.mesh)
         values = np.zeros((len(local), matrix.shape[0], 3))
         for own, sector in enumerate(local):
             values[own] = matrix @ sector
-        write_field(fine.partition, body, sectors, rotated(values, angle[:, None]), y)
+        write_field(fine.partition, body, rotated(values, angle[:, None]), y)
     if fine.comm.rank == fine.comm.size - 1:
         n = fine.partition.n_multipliers
         y.array[-n:] = x.array_r[-n:]

@@ -87,14 +87,13 @@ def predict(
     """
     new = []
     for body, layout in partition.layouts.items():
-        first, end = partition.owned_sectors(body)
-        own = np.arange(first, end)
+        own = partition.owned_indices(body)
         rotation, coords = 0.0 if body in resting else output_rotation, layout.mesh.coords
         moved = _pattern(partition, fixed_body, body, known, angle, rotation)
         at = layout.sector_angle(layout.first_tooth + own)[:, None]
-        new.append((body, own, rotated(coords + moved, at) - rotated(coords, at)))
-    for body, own, values in new:
-        write_field(partition, body, own, values, x)
+        new.append((body, rotated(coords + moved, at) - rotated(coords, at)))
+    for body, values in new:
+        write_field(partition, body, values, x)
 
 
 def _pattern(
@@ -110,10 +109,8 @@ def _pattern(
     teeth, fixed_teeth = layout.mesh.n_sectors, partition.layouts[fixed_body].mesh.n_sectors
     pitch = 2.0 * np.pi / fixed_teeth
     drift = 0.0 if body == fixed_body else 1.0 - fixed_teeth / teeth
-    first, end = partition.owned_sectors(body)
-    own = np.arange(first, end)
-    coords = layout.mesh.coords
-    moved = np.zeros((end - first, *coords.shape))
+    own, coords = partition.owned_indices(body), layout.mesh.coords
+    moved = np.zeros((len(own), *coords.shape))
     # when the pattern rotates by `shift` teeth, a tooth takes over the displacements of the one so
     # many teeth before
     shifts = [(angle - state.angle) / pitch - rotation * teeth / (2.0 * np.pi) for state in known]

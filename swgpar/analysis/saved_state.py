@@ -50,12 +50,12 @@ def state_rows(
     """
     blocks, partition = {}, model.partition
     for name, layout in partition.layouts.items():
-        first, end = partition.owned_sectors(name)
         if displacement is None:
-            values = read_field(partition, name, np.arange(first, end), model.problem.x)
+            own = partition.owned_indices(name)
+            values = read_field(partition, name, own, model.problem.x)
         else:
             values = np.ascontiguousarray(displacement[name])
-        blocks[name] = Block(values, first, layout.count)
+        blocks[name] = Block(values, partition.owned_sectors(name)[0], layout.count)
     if model.design.contact.friction:
         first, end = partition.owned_sectors(FLEXIBLE_SPLINE)
         for row, values in model.problem.flanks_of(RING_GEAR).traction_rows(first, end).items():
@@ -69,8 +69,8 @@ def restore_state(model: DriveModel, path: Path, solved: SolvedState) -> None:
     owned = {name: partition.owned_sectors(name) for name in partition.layouts}
     ranges = {name: (first, end - first) for name, (first, end) in owned.items()}
     arrays = parallel_hdf5.read_rows(path, model.comm, ranges)
-    for name, sectors in owned.items():
-        write_field(partition, name, np.arange(*sectors), arrays[name], problem.x)
+    for name in owned:
+        write_field(partition, name, arrays[name], problem.x)
     if model.comm.rank == model.comm.size - 1:
         problem.x.array[-partition.n_multipliers :] = solved.multipliers
     problem.resume_sectors(solved.modelled_sectors)

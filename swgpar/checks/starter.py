@@ -23,7 +23,8 @@ from swgpar.errors import InputError
 from swgpar.geometry.cams import make_cam, taut_length
 from swgpar.geometry.cams.keys import Harmonic, Parabolic, Simplified
 from swgpar.geometry.profiles.keys import DoubleArc, ProfileKeys, QuadrupleArc, RackInvolute
-from swgpar.input.quantities import Section
+from swgpar.input.quantities import Section, show
+from swgpar.input.require import require, require_available
 from swgpar.input.toml_file import toml_value, with_value
 
 Profile = Literal["quadruple_arc", "double_arc", "involute"]
@@ -185,15 +186,13 @@ def _thin_teeth(table: dict[str, Any]) -> tuple[DriveDesign, dict[str, Any]]:
 
 def _check(request: Request) -> None:
     """Refuse numbers from which no drive can be made."""
-    if request.shape != "cup" and request.model != "cup":
-        raise InputError(
-            f'shape = "{request.shape}" is not available with model = "{request.model}": allowed '
-            f'"cup"'
-        )
+    model, shape, lobes = (
+        f"{key} = {show(getattr(request, key))}" for key in ("model", "shape", "lobes")
+    )
+    require_available("cup" in (request.shape, request.model), shape, model, '"cup"')
     for name, unit in (("torque", "N·m"), ("diameter", "mm"), ("bore", "mm")):
         value = getattr(request, name)
-        if value is not None and not 0.0 < value < np.inf:
-            raise InputError(f"{name} = {value:g} is out of range: allowed above 0 {unit}")
+        require(value is None or 0.0 < value < np.inf, name, value, f"above 0 {unit}")
     if (request.diameter is None) == (request.bore is None):
         raise InputError(
             "give either diameter (pitch diameter of the flexible spline, mm) or bore (its inner "
@@ -204,20 +203,17 @@ def _check(request: Request) -> None:
             f'layout = "{request.layout}" is not available for a start: allowed '
             f"{' or '.join(LAYOUTS)}"
         )
-    if request.lobes not in RIM:
-        raise InputError(f"lobes = {request.lobes} is out of range: allowed 2 or 3")
-    if request.lobes == 3 and request.model == "pancake":
-        raise InputError('lobes = 3 is not available with model = "pancake": allowed 2')
-    if request.lobes == 3 and request.cam != "harmonic":
-        raise InputError(
-            f'lobes = 3 is not available with cam = "{request.cam}": allowed with "harmonic"'
-        )
+    require(request.lobes in RIM, "lobes", request.lobes, "2 or 3")
+    require_available(request.lobes == 2 or request.model != "pancake", lobes, model, "2")
+    fits = request.lobes == 2 or request.cam == "harmonic"
+    require_available(fits, lobes, f'cam = "{request.cam}"', 'with "harmonic"')
     step = 0.5 if request.lobes == 2 else 1.0
-    if not LEAST_RATIO <= request.ratio <= LARGEST_RATIO or request.ratio % step:
-        raise InputError(
-            f"ratio = {request.ratio:g} is out of range: allowed {LEAST_RATIO:g} to "
-            f"{LARGEST_RATIO:g} in steps of {step:g}"
-        )
+    require(
+        LEAST_RATIO <= request.ratio <= LARGEST_RATIO and request.ratio % step == 0.0,
+        "ratio",
+        request.ratio,
+        f"{LEAST_RATIO:g} to {LARGEST_RATIO:g} in steps of {step:g}",
+    )
 
 
 def _rounded(value: float, digits: int = 4) -> float:

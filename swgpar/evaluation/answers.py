@@ -139,16 +139,19 @@ class AnswerGroup:
     TITLE : heading of its answers
     ASKED_BY : what in the design file asks for it; empty for what every run has
     SECTION : attribute of the design without which there is none; empty for what needs no section
+    IN_PROGRAMS : whether a run of a load program has it
     """
 
     TITLE: ClassVar[str]
     ASKED_BY: ClassVar[str] = ""
     SECTION: ClassVar[str] = ""
+    IN_PROGRAMS: ClassVar[bool] = True
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
         """The answers that a run of a design has."""
         missing = cls.SECTION and getattr(design, cls.SECTION) is None
+        missing = missing or (design.has_program and not cls.IN_PROGRAMS)
         return () if missing else declared_answers(cls)
 
     def answers(self) -> Iterator[Answer]:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.answers import AnswerGroup, AnswerKind, answer, evaluation, part_answers
 from swgpar.results.history import Row
 
@@ -76,10 +75,7 @@ class LoadSharing(AnswerGroup):
     )
 
     TITLE = "load sharing over the rotation"
-
-    @classmethod
-    def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
-        return () if design.has_program else super().kinds(design)
+    IN_PROGRAMS = False
 
 
 def load_sharing(

@@ -93,11 +93,10 @@ class Rotation(AnswerGroup):
     energy: str | None = None
 
     TITLE = "over the rotation"
+    IN_PROGRAMS = False
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
-        if design.has_program:
-            return ()
         has = {
             "all": True,
             "pancake": design.dynamic_spline is not None,

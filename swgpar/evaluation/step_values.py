@@ -39,19 +39,15 @@ class StepValues(AnswerGroup):
     )
 
     TITLE = "ends of the steps"
+    IN_PROGRAMS = False
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
-        left_out = (
-            set()
-            if design.kinematics.wave_generator_is_fixed
-            else {"input_angle_deg", "input_torque_Nmm"}
-        )
-        return tuple(
-            kind
-            for kind in declared_answers(cls)
-            if not design.has_program and _parts(kind.name)[1] not in left_out
-        )
+        kinds = super().kinds(design)
+        if design.kinematics.wave_generator_is_fixed:
+            return kinds
+        left_out = {"input_angle_deg", "input_torque_Nmm"}
+        return tuple(kind for kind in kinds if _parts(kind.name)[1] not in left_out)
 
     def answers(self) -> Iterator[Answer]:
         for kind in declared_answers(StepValues):

@@ -10,10 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.design.deviations import Deviations, TiltedOffset
-from swgpar.design.drive_design import DriveDesign
 from swgpar.design.kinematics import Kinematics
 from swgpar.design.sections import GearName
-from swgpar.evaluation.answers import AnswerGroup, AnswerKind, answer, evaluation
+from swgpar.evaluation.answers import AnswerGroup, answer, evaluation
 from swgpar.evaluation.period import of_period
 from swgpar.evaluation.result_frame import shown_output
 from swgpar.load.load_sequence import LoadSequence
@@ -110,10 +109,7 @@ class TransmissionError(AnswerGroup):
 
     TITLE = "transmission error over a period, or with deviations over whole turns"
     ASKED_BY = "steps.samples or [deviations]"
-
-    @classmethod
-    def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
-        return () if design.has_program else super().kinds(design)
+    IN_PROGRAMS = False
 
     def remarks(self) -> Iterator[str]:
         yield (

@@ -66,6 +66,10 @@ class Partition:
         """Range (first, end) of the indices in the chain of the sectors that this rank owns."""
         return int(self._first[body][self.comm.rank]), int(self._first[body][self.comm.rank + 1])
 
+    def owned_indices(self, body: str) -> np.ndarray:
+        """Indices (n,) in the chain of the sectors that this rank owns."""
+        return np.arange(*self.owned_sectors(body))
+
     def owner_of_sector(self, body: str, index: np.ndarray) -> np.ndarray:
         """Ranks (n,) that own the sectors of the indices (n,) in the chain."""
         return np.searchsorted(self._first[body], index, side="right") - 1

@@ -63,13 +63,10 @@ def read_field(
     return partition.layouts[body].with_inner_nodes(sectors, to_images(values, sixths))
 
 
-def write_field(
-    partition: Partition, body: str, sectors: np.ndarray, values: np.ndarray, vector: PETSc.Vec
-) -> None:
-    """Set the owned entries of `vector` from values (n_sectors, n_node, 3) of owned sectors."""
-    number, sixths = partition.node_numbers(
-        body, sectors, np.arange(len(partition.layouts[body].mesh.coords))
-    )
+def write_field(partition: Partition, body: str, values: np.ndarray, vector: PETSc.Vec) -> None:
+    """Set the owned entries of `vector` from values (n_sectors, n_node, 3) of the owned sectors."""
+    nodes = np.arange(len(partition.layouts[body].mesh.coords))
+    number, sixths = partition.node_numbers(body, partition.owned_indices(body), nodes)
     own = partition.owns(number) & (sixths == 0)
     vector.array.reshape(-1, 3)[number[own] - partition.row_start] = values[own]
 

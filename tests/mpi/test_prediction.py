@@ -35,7 +35,7 @@ def wave(model: DriveModel, angle: float, slip: float = 0.0) -> PETSc.Vec:
     x = create_vector(partition)
     teeth = {name: layout.mesh.n_sectors for name, layout in partition.layouts.items()}
     for body, layout in partition.layouts.items():
-        own = np.arange(*partition.owned_sectors(body))
+        own = partition.owned_indices(body)
         coords = np.repeat(layout.mesh.coords[None], len(own), axis=0)
         turn = (
             0.0
@@ -48,7 +48,7 @@ def wave(model: DriveModel, angle: float, slip: float = 0.0) -> PETSc.Vec:
         radial = np.stack([np.cos(around), np.sin(around), np.zeros_like(around)], axis=-1)
         values = place + np.cos(2.0 * (around - angle))[..., None] * radial - rotated(coords, at)
         values[:, layout.numbering.without_unknowns] = 0.0
-        write_field(partition, body, own, values, x)
+        write_field(partition, body, values, x)
     return x
 
 
@@ -59,7 +59,7 @@ def error(model: DriveModel, known: list[float], angle: float, slip: float = 0.0
     predict(model.partition, model.fixed_body, states, x, angle, slip, resting={model.fixed_body})
     exact, worst = wave(model, angle, slip), 0.0
     for body in model.partition.layouts:
-        own = np.arange(*model.partition.owned_sectors(body))
+        own = model.partition.owned_indices(body)
         gap = read_field(model.partition, body, own, x) - read_field(
             model.partition, body, own, exact
         )

@@ -158,9 +158,8 @@ class LocalProblem:
             ),
         )
         self.problem = problem
-        own_first, own_end = self.partition.owned_sectors(FLEXIBLE_SPLINE)
-        own = displacement[own_first:own_end]
-        write_field(self.partition, FLEXIBLE_SPLINE, np.arange(own_first, own_end), own, problem.x)
+        own = displacement[self.partition.owned_indices(FLEXIBLE_SPLINE)]
+        write_field(self.partition, FLEXIBLE_SPLINE, own, problem.x)
 
     def _of_the_drive(self, teeth: np.ndarray) -> np.ndarray:
         """Displacement (n_teeth, n_node, 3) mm of the drive at the nodes of the window;
