@@ -22,6 +22,10 @@ SMALLEST_STEP = PART_OF_PITCH / 16.0
 SMALLEST_STEP_AT_PEAK = PART_OF_PITCH / 1024.0
 """Pitches: where equilibrium is lost the torque falls at once, whatever the step."""
 
+EARLY_FALL = 0.125
+"""Share of the tolerance of the peak by which the torque may be missed at a fall: Newton's
+iteration leaves the rising branch before its end, and later after smaller steps."""
+
 SAME_PLACE = 1e-6
 """Difference (deg) of two rotations that are the same."""
 
@@ -104,8 +108,8 @@ class RotationPath:
         torques = [abs(one.torque_Nm) for one in known]
         missed = overshoot([one.rotation_deg for one in known], torques)
         scale, top = max(self._floor, *torques), max(abs(one.torque_Nm) for one in self.points)
-        # half of it: Newton's iteration may leave the rising branch before its end
-        falls_unseen = missed > 0.5 * self.tolerance * scale and step > SMALLEST_STEP_AT_PEAK
+        falls_unseen = missed > EARLY_FALL * self.tolerance * scale
+        falls_unseen &= step > SMALLEST_STEP_AT_PEAK
         if falls_unseen and max(torques) + missed > (1.0 + self.tolerance) * top:
             return False
         bend = departure(known)

@@ -27,7 +27,7 @@ step."""
 MOST_PARTS = 16
 """Of a step with friction; the wave generator then turns by a 64th of the period in each."""
 
-PROGRAM_TOLERANCE = 0.005
+PROGRAM_TOLERANCE = 0.01
 """Share of a largest torque by which a load program may miss it."""
 
 

@@ -98,7 +98,7 @@ class Ratcheting(Section):
         lt=1.0,
     )
     tolerance: float = quantity(
-        0.005,
+        0.01,
         text="share of the peak torque by which it may be missed between two states",
         ge=1e-4,
         le=0.1,

@@ -25,27 +25,32 @@ LEAST_EFFICIENCY = 0.5
 
 
 def jamming_remark(
-    sequence: LoadSequence, rows: Sequence[Row], means: Mapping[str, float], left: float
+    sequence: LoadSequence,
+    rows: Sequence[Row],
+    means: Mapping[str, float],
+    left: float,
+    pairs: Sequence[Row],
 ) -> str | None:
     """A sentence where the mean input torque is far from that of the energy balance, T / ratio;
-    else None.
+    else None. It names angle and pair as `energy_remark` does.
 
     Over a period the work of the input torque is that of the output torque, plus what friction
     takes. Less than a period, drives without a torque and bolted ones, which do not repeat after a
     pitch, are not judged. Nor is a difference that the torque left over can make.
 
     rows : increments of the rotation whose `means` are given
-    left : N·mm, largest torque that an increment leaves over
+    left : N·mm, largest torque that an increment leaves over;  pairs : rows of pairs.csv
     """
     expected, mean = _expected(sequence, rows), means.get(TORQUE, 0.0)
     if expected is None or abs(mean - expected) <= left:
         return None
     if LEAST_EFFICIENCY * expected <= mean <= expected / LEAST_EFFICIENCY:
         return None
+    where = _largest_departure(sequence, rows, pairs, mean - expected)
     return (
         f"the mean input torque of {mean:.4g} N·mm is far from the {expected:.4g} N·mm of the "
-        "energy balance: the teeth may jam, and the results are not those of a running drive; "
-        "swgpar check shows where teeth overlap"
+        f"energy balance, {where}: the teeth may jam, and the results are not those of a running "
+        "drive; swgpar check shows where teeth overlap"
     )
 
 
@@ -72,6 +77,18 @@ def energy_remark(
     departure, allowed = means[TORQUE] - expected, ENERGY * expected + left
     if abs(departure) <= allowed or (friction and departure > 0.0):
         return None
+    return (
+        f"the mean input torque of {means[TORQUE]:.4g} N·mm departs from the {expected:.4g} N·mm "
+        f"of the energy balance by {100 * abs(departure) / expected:.2g} %, more than its error of "
+        f"{100 * allowed / expected:.2g} %: {_largest_departure(sequence, rows, pairs, departure)}"
+    )
+
+
+def _largest_departure(
+    sequence: LoadSequence, rows: Sequence[Row], pairs: Sequence[Row], departure: float
+) -> str:
+    """Words for the angle at which the input torque departs most in the sense of its mean, and for
+    the pair with the largest torque in that sense."""
     sign = np.sign(departure)
     angle = max(rows, key=lambda row: sign * row[TORQUE])["wg_angle_deg"]
     # the torque of the teeth on the spline has the sign of the ratio
@@ -80,17 +97,13 @@ def energy_remark(
         pair for pair in pairs if pair["wg_angle_deg"] == angle and sense * pair["torque_Nmm"] > 0.0
     ]
     where = f"most at {angle:.4g}° of the wave generator"
-    if pushing:
-        pair = max(pushing, key=lambda pair: abs(pair["torque_Nmm"]))
-        where += (
-            f", where tooth {pair['tooth']} of the flexible spline pushes on tooth "
-            f"{pair['ring_tooth']} of the {pair.get('ring', 'ring_gear').replace('_', ' ')} with "
-            f"{pair['force_N']:.3g} N at {pair['angle_deg']:.1f}° from +y"
-        )
+    if not pushing:
+        return where
+    pair = max(pushing, key=lambda pair: abs(pair["torque_Nmm"]))
     return (
-        f"the mean input torque of {means[TORQUE]:.4g} N·mm departs from the {expected:.4g} N·mm "
-        f"of the energy balance by {100 * abs(departure) / expected:.2g} %, more than its error of "
-        f"{100 * allowed / expected:.2g} %: {where}"
+        f"{where}, where tooth {pair['tooth']} of the flexible spline pushes on tooth "
+        f"{pair['ring_tooth']} of the {pair.get('ring', 'ring_gear').replace('_', ' ')} with "
+        f"{pair['force_N']:.3g} N at {pair['angle_deg']:.1f}° from +y"
     )
 
 

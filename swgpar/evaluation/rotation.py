@@ -164,7 +164,7 @@ def evaluate_rotation(
         torque = column(sampled, "tooth_torque_Nmm" if driven else INPUT_TORQUE)
         change = half[INPUT_TORQUE] if half else 0.0
         ripple = known_quotient(float(np.ptp(torque)), abs(float(torque.mean())), left + change)
-    jammed, energy = jamming_remark(sequence, sampled, means, left), None
+    jammed, energy = jamming_remark(sequence, sampled, means, left, pairs), None
     if not jammed:
         left += half[INPUT_TORQUE] if half else 0.0
         energy = energy_remark(sequence, sampled, means, left, pairs, friction=friction)

@@ -225,7 +225,7 @@ def test_the_peak_does_not_depend_on_the_records(ratcheting: list[DriveResult]) 
     assert rough.peak_torque_Nm == pytest.approx(
         fine.peak_torque_Nm, abs=max(rough.peak_error_Nm, fine.peak_error_Nm)
     )
-    assert rough.peak_error_Nm < 0.01 * rough.peak_torque_Nm
+    assert rough.peak_error_Nm < 0.02 * rough.peak_torque_Nm
     assert rough.gave_way == fine.gave_way
 
 
