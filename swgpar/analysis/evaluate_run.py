@@ -56,7 +56,7 @@ def evaluate_run(
     """
     model, design, record = recorder.model, recorder.model.design, recorder.record
     sequence, rows = recorder.sequence, record.rows
-    program, places = recorder.program_rows(), recorder.places_with_errors()
+    program, places = recorder.program_rows(), recorder.resolved_places()
     fatigue, losses, losses_table = _cycle_results(recorder)
     bodies = {name: BodySizes(**counts) for name, counts in model.counts().items()}
     memory = model.comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
@@ -86,7 +86,6 @@ def evaluate_run(
             sequence,
             rows,
             record.pairs,
-            record.root_stress,
             places,
             friction=design.contact.friction > 0.0,
         ),

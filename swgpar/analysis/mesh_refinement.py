@@ -14,6 +14,7 @@ from mpi4py import MPI
 
 from swgpar.analysis.accuracy import ROUGH
 from swgpar.analysis.coarse_start import solve_to_load
+from swgpar.analysis.coarse_stresses import coarse_stresses
 from swgpar.analysis.drive_mesh_error import (
     coarser_mesh,
     coarser_recipes,
@@ -26,7 +27,6 @@ from swgpar.analysis.saved_state import StartStates
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.evaluation.place_errors import CoarseStresses
-from swgpar.evaluation.places import find_places
 from swgpar.evaluation.windows.root_stress import (
     FEWEST_LEVELS,
     LEVELS,
@@ -106,8 +106,8 @@ class Refinement:
 
         before : error (MPa) of the present mesh by the mesh of the drive, if it is known
         """
-        places = find_places(self.model, self.loaded, self.model.stresses()[1])
-        compared = CoarseStresses(places, body_ratio(coarser[0], recipe) or RATIO)
+        ratio = body_ratio(coarser[0], recipe) or RATIO
+        compared = coarse_stresses(self.model, self.loaded, coarser[0], recipe, ratio)
         meshes = [coarser_mesh(self.model, coarser[0], self.loaded)]
         for between in coarser[1:]:
             self._replace(between)

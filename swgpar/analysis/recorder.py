@@ -26,6 +26,7 @@ from swgpar.evaluation.losses import cam_force
 from swgpar.evaluation.place_errors import with_errors
 from swgpar.evaluation.places import Place, find_places
 from swgpar.evaluation.program_results import PointRow, point_rows
+from swgpar.evaluation.resolved_places import with_windows
 from swgpar.evaluation.result_frame import history_rows, nodal_fields
 from swgpar.evaluation.stiffness import loop_rows
 from swgpar.evaluation.stress_cycle import StressCycle
@@ -117,16 +118,21 @@ class Recorder(ABC):
     def _keep_places(self, state: LoadState, fields: NodalFields, on_edge: bool) -> None:
         """Find the places of stresses that are the largest under load so far."""
         if state.is_periodic:
-            for name, place in find_places(self.model, state, fields, on_edge=on_edge).items():
+            found = find_places(self.model, state, fields, on_edge=on_edge)
+            if state == self.sequence.loaded:
+                self.record.loaded = {name: place.value for name, place in found.items()}
+            for name, place in found.items():
                 if name not in self.record.places or place.value > self.record.places[name].value:
                     self.record.places[name] = place
             if self.record.coarse is not None and state == self.sequence.loaded:
                 self.record.stress_errors = self.record.coarse.errors(self.record.places)
                 self.record.coarse = None
 
-    def places_with_errors(self) -> dict[str, Place]:
-        """The places with the errors of their stresses where they are known."""
-        return with_errors(self.record.places, self.record.stress_errors, self.record.root_stress)
+    def resolved_places(self) -> dict[str, Place]:
+        """The places with the stresses of windows, and with errors where they are known."""
+        record = self.record
+        nodal = with_errors(record.places, record.stress_errors, record.root_stress)
+        return with_windows(nodal, record.loaded, record.root_stress, record.wall_stress)
 
     def _keep_pairs(self, state: LoadState) -> bool:
         """Keep the contacts of flanks under load; returns whether one lies on the edge of a

@@ -11,6 +11,7 @@ import numpy as np
 
 from swgpar.analysis.accuracy import require_refinable, with_accuracy
 from swgpar.analysis.coarse_start import start_at_load
+from swgpar.analysis.coarse_stresses import coarse_stresses
 from swgpar.analysis.drive_mesh_error import CoarserMesh, coarser_mesh, drive_error, least_error
 from swgpar.analysis.evaluate_run import evaluate_run
 from swgpar.analysis.follow_turns import follow_turns
@@ -28,12 +29,11 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.drive_data import DriveData
 from swgpar.errors import ConvergenceError, InputError, SwgparError, TimeLimitError
 from swgpar.evaluation.period import continued, require_samples
-from swgpar.evaluation.place_errors import CoarseStresses
-from swgpar.evaluation.places import find_places
 from swgpar.evaluation.ratcheting import has_fallen
 from swgpar.evaluation.result_frame import history_rows
 from swgpar.evaluation.transmission_error import period_rows
 from swgpar.evaluation.windows.root_stress import RootStress, resolve_root_stress, with_angle
+from swgpar.evaluation.windows.wall_stress import WallStress, resolve_wall, resolves_wall
 from swgpar.load.load_sequence import LoadSequence, load_sequence
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import IncrementProgress, logger
@@ -202,8 +202,8 @@ class DriveRun:
         loaded = self.stepper.sequence.loaded
         ratio = body_ratio(recipe, self.recipe)
         if not self.coarser and ratio is not None:
-            places = find_places(model, loaded, model.stresses()[1])
-            self.recorder.record.coarse = CoarseStresses(places, ratio)
+            coarse = coarse_stresses(model, loaded, recipe, self.recipe, ratio)
+            self.recorder.record.coarse = coarse
         found = None
         if model.design.resolves_root_stress:
             try:
@@ -237,6 +237,8 @@ class DriveRun:
                 seconds = time.perf_counter() - start
                 if design.resolves_root_stress:
                     record.root_stress = self._root_stress(state, state == loaded)
+                if state == loaded and resolves_wall(design):
+                    record.wall_stress = self._wall_stress(state)
                 recorder.keep(seconds, self.seconds)
                 if len(record.rows) == 1:
                     self.kept.remove(self.model.comm)
@@ -291,6 +293,18 @@ class DriveRun:
             return found
         least = least_error(self.model, state)
         return replace(found, drive_error=drive_error(known, self.recipe, found, least))
+
+    def _wall_stress(self, state: LoadState) -> WallStress | None:
+        """Largest stresses of the wall behind the teeth; None where they cannot be computed."""
+        record = self.recorder.record
+        at_teeth = 0.0 if record.root_stress is None else record.root_stress.s1
+        coarse = None if record.coarse is None else record.coarse.wall
+        try:
+            with self.model.phases("windows"):
+                return resolve_wall(self.model, state, at_teeth, coarse)
+        except (ConvergenceError, InputError) as error:
+            logger.warning("the stress of the wall is not resolved: %s", error)
+            return None
 
     def finish(self, recipe_name: str) -> DriveData:
         """Summarise the run."""

@@ -11,6 +11,7 @@ from swgpar.evaluation.ratcheting import TorquePoint
 from swgpar.evaluation.slip_error import SlipCheck
 from swgpar.evaluation.windows.accuracy import Accuracy
 from swgpar.evaluation.windows.root_stress import RootStress
+from swgpar.evaluation.windows.wall_stress import WallStress
 from swgpar.results.history import Row
 
 
@@ -25,8 +26,9 @@ class RunRecord:
     rows : history of the increments computed so far
     starts_loaded : whether the history begins with the loaded state
     accuracy : what was asked for and reached, if an accuracy was asked for
-    root_stress : of the loaded state, once it is resolved
-    places : of the largest stresses under load, by column of the history
+    root_stress, wall_stress : of the loaded state, once they are resolved
+    places : of the largest nodal averages of stress under load, by column of the history
+    loaded : MPa, the averages of the loaded state by the names of `places`
     coarse : largest stresses on a coarser mesh, until `places` are compared with them
     stress_errors : by it, as shares, of `places`
     pairs, contact_lines : rows of pairs.csv and contact_lines.csv
@@ -45,7 +47,9 @@ class RunRecord:
     starts_loaded: bool = False
     accuracy: Accuracy | None = None
     root_stress: RootStress | None = None
+    wall_stress: WallStress | None = None
     places: dict[str, Place] = field(default_factory=dict)
+    loaded: dict[str, float] = field(default_factory=dict)
     coarse: CoarseStresses | None = None
     stress_errors: dict[str, float] = field(default_factory=dict)
     pairs: list[Row] = field(default_factory=list)

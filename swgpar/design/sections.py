@@ -276,8 +276,8 @@ class Output(Section):
     figures: bool = quantity(True, text="draw the figures")
     root_stress: bool = quantity(
         True,
-        text="resolve the largest tensile stress at the teeth under load by windows on finer "
-        "meshes",
+        text="resolve the largest stresses of teeth and wall of the flexible spline under load by "
+        "windows on finer meshes",
     )
 
 

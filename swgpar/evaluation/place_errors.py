@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from swgpar.evaluation.places import Place
 from swgpar.evaluation.windows.root_stress import RootStress
+from swgpar.evaluation.windows.wall_stress import CoarseWall
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.model.regions import TOOTH_ROOT
 
@@ -24,10 +25,12 @@ class CoarseStresses:
     """Largest stresses on a coarser mesh under load, of which finer ones have their errors.
 
     places : by column of the history;  ratio : of the element sizes, coarse over fine
+    wall : stresses of the wall on the coarser mesh; None where they are not known
     """
 
     places: Mapping[str, Place]
     ratio: float
+    wall: CoarseWall | None = None
 
     def errors(self, fine: Mapping[str, Place]) -> dict[str, float]:
         """Errors of the stresses on the finer mesh as shares of them; none of those that depend on

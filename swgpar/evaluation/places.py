@@ -56,7 +56,8 @@ class Place:
     warning : why the value depends on the mesh; empty where it converges
     in_root : largest value, MPa, in the roots of the body's teeth; at least 0
     root_spacing : mm, length of an element along the root
-    error : MPa, estimated, by the drive's mesh; None where it is not known
+    error : MPa, estimated; None where it is not known
+    on_mesh : MPa, nodal average on the drive's mesh where the value is by windows; else None
     """
 
     value: float
@@ -70,6 +71,7 @@ class Place:
     in_root: float = 0.0
     root_spacing: float = 0.0
     error: float | None = None
+    on_mesh: float | None = None
 
     @property
     def text(self) -> str:
@@ -83,7 +85,7 @@ BODIES = {"fs": "flexible spline", "rg": "ring gear", "ds": "dynamic spline"}
 
 @evaluation
 class LargestStresses(AnswerGroup):
-    """Largest nodal stresses under load.
+    """Largest stresses under load, by windows where they resolve them, else nodal averages.
 
     places : by column of the history, and with `APART`;  regions : by names with `OF_REGION`
     """
@@ -103,7 +105,7 @@ class LargestStresses(AnswerGroup):
     )
     regions: Mapping[str, Place]
 
-    TITLE = "largest nodal averages of stress under load"
+    TITLE = "largest stresses under load"
     OF_REGIONS = tuple(
         AnswerKind(
             f"largest.{body}_{stress}{OF_REGION}",
@@ -112,7 +114,7 @@ class LargestStresses(AnswerGroup):
             detail=True,
         )
         for body in ("fs", "rg")
-        for stress in ("s1", "vm")
+        for stress in STRESSES
     )
 
     @classmethod
@@ -154,8 +156,8 @@ def find_places(
 
     |s3| and von Mises are looked for apart from the contact of flanks as well, with names that end
     with `APART`: on surfaces and in the rim. Inside of a tooth they decrease with the distance from
-    the contact, wherever it is cut off. s1 and von Mises are looked for in every region as well,
-    with names that have `OF_REGION`; only values above 0.
+    the contact, wherever it is cut off. All are looked for in every region as well, with names that
+    have `OF_REGION`; only values above 0.
 
     fields : nodal fields of both bodies as `DriveModel.stresses` gives them
     on_edge : whether a contact of flanks lies on the edge of a tooth
@@ -192,8 +194,7 @@ def find_places(
                     np.where(apart, values, -np.inf),
                     np.zeros_like(touched),
                 )
-            if stress != "s3":
-                names |= _by_region(f"{prefix}_{stress}", regions, values, below)
+            names |= _by_region(f"{prefix}_{stress}", regions, values, below)
             for column, of in names.items():
                 place = _largest(model, name, *of)
                 if OF_REGION in column and place.value <= 0.0:

@@ -21,7 +21,6 @@ from swgpar.evaluation.numerics import torque_left
 from swgpar.evaluation.period import of_period, sampling_error
 from swgpar.evaluation.places import STRESSES, Place
 from swgpar.evaluation.result_frame import InputTorque, input_torque
-from swgpar.evaluation.windows.root_stress import RootStress
 from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import Stage
 from swgpar.results.history import DECLARED, Row, column, transmission_error
@@ -135,7 +134,6 @@ def evaluate_rotation(
     sequence: LoadSequence,
     rows: Sequence[Row],
     pairs: Sequence[Row],
-    root_stress: RootStress | None,
     places: Mapping[str, Place],
     *,
     friction: bool,
@@ -143,7 +141,7 @@ def evaluate_rotation(
     """From the history `rows` of the computed increments.
 
     pairs : rows of pairs.csv;  friction : whether flanks have friction
-    root_stress, places : by which the errors of the means are known
+    places : by which the errors of the means are known
     """
     kinematics, rotation = sequence.kinematics, rotation_rows(sequence, rows)
     sampled = sampled_rows(sequence, rows)
@@ -173,7 +171,7 @@ def evaluate_rotation(
         maxima=maxima,
         torque_ripple=ripple,
         transmission_error_arcsec=deviation,
-        mesh_error=mesh_error(root_stress, means, places),
+        mesh_error=mesh_error(means, places),
         sampling_error=half,
         newton_iterations_mean=float(np.mean([row["newton_iterations"] for row in rotation]))
         if rotation
@@ -198,22 +196,15 @@ def sampled_rows(sequence: LoadSequence, rows: Sequence[Row]) -> list[Row]:
     return rotation_rows(sequence, rows)
 
 
-def mesh_error(
-    root_stress: RootStress | None, means: Mapping[str, float], places: Mapping[str, Place]
-) -> dict[str, float]:
-    """Errors (MPa) of the means of nodal stresses by the drive's mesh, by column of the history,
-    where they are known.
+def mesh_error(means: Mapping[str, float], places: Mapping[str, Place]) -> dict[str, float]:
+    """Errors (MPa) of the means of nodal averages, by column of the history, where they are known.
 
-    That of s1 is how far windows are from it, and their own error. Others are in proportion to
-    those of the largest stresses under load, which a coarser mesh gives.
+    They are in proportion to those of the largest stresses under load: of what windows resolve, how
+    far nodal averages are from it, and its own error.
     """
-    found = {
-        name: means[name] * place.error / place.value
-        for name, place in places.items()
-        if name in means and place.error
-    }
-    if root_stress is not None:
-        found.pop("fs_s1", None)
-        if root_stress.total_error is not None:
-            found["fs_s1"] = abs(root_stress.on_mesh - root_stress.s1) + root_stress.total_error
+    found = {}
+    for name, place in places.items():
+        if name in means and place.error:
+            nodal = place.value if place.on_mesh is None else place.on_mesh
+            found[name] = means[name] * (abs(place.value - nodal) + place.error) / nodal
     return found

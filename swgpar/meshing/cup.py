@@ -71,18 +71,27 @@ def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
     The sizes of the cup are those of a checked design (`swgpar.checks.cup_checks`).
     """
     wall, back_fillet = cup.wall, cup.back_fillet
-    r_center, z_center = wall.center
+    r_center, _ = wall.center
     s = wall.stations(
         cylinder_stations(wall.length, recipe, back_fillet, layers), back_fillet * (1.0 + 1e-9)
     )
     angle = np.linspace(0.0, 0.5 * np.pi, recipe.fillet + 1)[1:]
-    side = -1.0 if wall.outwards else 1.0
     share = symmetric_steps(recipe.closed_end, recipe.end_ratio)
     if cup.clamping_radius is not None:
         share = with_station(
             share, (cup.clamping_radius - r_center) / (wall.edge - r_center), share[[0, -1]]
         )
-    r = r_center + (wall.edge - r_center) * share[1:]
+    return section_lines(cup, s, angle, r_center + (wall.edge - r_center) * share[1:])
+
+
+def section_lines(cup: CupGeometry, s: Floats, angle: Floats, r: Floats) -> Meridian:
+    """Stations of the wall's section.
+
+    s : (n,) mm, from the back of the teeth to the fillet;  angle : (m,) rad along the fillet, above
+    0;  r : (k,) mm, radii on closed end or flange, without that of the fillet
+    """
+    wall, back_fillet = cup.wall, cup.back_fillet
+    side = -1.0 if wall.outwards else 1.0
     lines = []
     for line, (along_r, along_z), face in zip(
         (wall.inner, wall.outer), wall.sizes, wall.faces, strict=True
@@ -99,7 +108,7 @@ def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
                 (cylinder, wall.center + arms, np.stack((r, np.full_like(r, face)), axis=-1))
             )
         )
-    return Meridian(lines[0], lines[1], len(s) - 1, len(s) - 1 + recipe.fillet)
+    return Meridian(lines[0], lines[1], len(s) - 1, len(s) - 1 + len(angle))
 
 
 def depth_fractions(section: CrossSection, grid: Ints, r_inner: float, thickness: float) -> Floats:

@@ -17,10 +17,16 @@ NEIGHBOURS = 4
 
 
 def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:
-    """Matrix (n_fine, n_coarse) that maps nodal values of the coarse sector to the fine one.
+    """Matrix (n_fine, n_coarse) that maps nodal values of the coarse sector to the fine one; see
+    `interpolation_at`."""
+    return interpolation_at(coarse, fine.coords)
+
+
+def interpolation_at(coarse: SectorMesh, points: np.ndarray) -> csr_matrix:
+    """Matrix (n, n_coarse) that maps nodal values of the coarse sector to points (n, 3) mm.
 
     The values are linear in the Delaunay tetrahedra (triangles in the plane) of the coarse nodes,
-    in cylindrical coordinates, in which rim and cup are flat. Values at nodes outside are
+    in cylindrical coordinates, in which rim and cup are flat. Values at points outside are
     extrapolated from the adjacent cell in which their smallest weight is largest. Raises InputError
     where the coarse nodes have no such tetrahedra.
     """
@@ -28,7 +34,7 @@ def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:
     nodes = np.unique(coarse.lower_nodes) if plane else np.arange(len(coarse.coords))
     radius = float(np.hypot(*coarse.coords[:, :2].T).max())
     known = _unrolled(coarse.coords[nodes], radius, plane)
-    sought = _unrolled(fine.coords, radius, plane)
+    sought = _unrolled(points, radius, plane)
     try:
         mesh, dims = Delaunay(known), known.shape[1]
     except QhullError as error:

@@ -25,6 +25,10 @@ BODY = ("root", "under", "rim")
 """Counts of the flexible spline that decide most about its stiffness."""
 
 
+WALL = {"cup": ("cylinder", "fillet", "closed_end"), "face_width": ("elements",)}
+"""Counts that decide about the wall of a cup, by section."""
+
+
 def with_counts(recipe: MeshRecipe, count: Callable[[str, str, int], int]) -> MeshRecipe:
     """The recipe with ``count(section, name, elements)`` for every element count; gradings stay.
 
@@ -84,6 +88,11 @@ def contact_ratio(coarse: MeshRecipe, fine: MeshRecipe) -> float | None:
 def body_ratio(coarse: MeshRecipe, fine: MeshRecipe) -> float | None:
     """Smallest ratio of the counts `BODY` that differ; None if none do."""
     return _smallest_ratio(coarse, fine, {"flexible_spline": BODY})
+
+
+def wall_ratio(coarse: MeshRecipe, fine: MeshRecipe) -> float | None:
+    """Smallest ratio of the counts of a cup's wall and width that differ; None if none do."""
+    return _smallest_ratio(coarse, fine, WALL)
 
 
 def _smallest_ratio(

@@ -13,13 +13,14 @@ from swgpar.meshing.sector import SectorMesh
 def trimmed(mesh: SectorMesh, keep: NDArray[np.bool_]) -> SectorMesh:
     """The sector with the elements of the mask `keep` (n_elem,) only.
 
-    The node set ``cut`` holds the nodes that kept and removed elements share. Sets, faces and
-    flanks keep what is left of them; flanks must be left whole.
+    The node set ``cut`` holds the nodes that kept and removed elements share, beside those that it
+    has already. Sets, faces and flanks keep what is left of them; flanks must be left whole.
     """
     used = np.zeros(len(mesh.coords), dtype=bool)
     used[mesh.hexes[keep]] = True
     removed = np.zeros_like(used)
     removed[mesh.hexes[~keep]] = True
+    removed[mesh.node_sets.get("cut", [])] = True
     number = np.cumsum(used) - 1
 
     def renumbered(nodes: NDArray[np.int32]) -> NDArray[np.int32]:

@@ -27,6 +27,10 @@ AT_ENDS = (TOOTH_END, BACK, "notch")
 NEAR = 0.02
 """Distance over the module within which a place lies on an edge."""
 
+BESIDE = 0.5
+"""Distance over the thickness of the wall within which a place belongs to the fillet beside it, or
+to the edge of an attachment: as far as the stress there reaches."""
+
 AVERAGE = "below the contact of teeth: an average over elements, larger on a finer mesh"
 NOTCH = "in the notch behind the teeth, a corner without fillet: no limit to converge to"
 EDGE = "at the edge of the wave generator: edge contact, no limit to converge to"
@@ -116,24 +120,25 @@ def _region_of_the_cup(
 ) -> str:
     """Region of a node of the wall, closed end or flange. near : mm"""
     wall = cup.wall
-    if _is_attached(cup, radius, near) and z > min(wall.faces) - near:
+    on_end = BESIDE * wall.end_thickness
+    if _is_attached(cup, radius, on_end) and z > min(wall.faces) - near:
         return ATTACHED
     if node in mesh.node_sets["bore"]:
         return "rim of the flange" if wall.outwards else "bore"
     r_center, z_center = wall.center
-    beyond = radius > r_center if wall.outwards else radius < r_center
-    if beyond and z > min(wall.faces) - near:
+    beyond = radius - r_center if wall.outwards else r_center - radius
+    if beyond > on_end and z > min(wall.faces) - near:
         return "flange" if wall.outwards else "closed end"
-    return "fillet" if z > z_center + near else "cup wall"
+    return "fillet" if z > z_center - BESIDE * wall.thickness else "cup wall"
 
 
-def _is_attached(cup: CupGeometry, radius: float, near: float) -> bool:
+def _is_attached(cup: CupGeometry, radius: float, beside: float) -> bool:
     """Whether points at a radius (mm) of closed end or flange are clamped, or lie under bolts or
-    between them."""
+    between them, or within `beside` (mm) of that ring."""
     if cup.attached_ring is None:
         return False
     low, high = cup.attached_ring
-    return low - near <= radius <= high + near
+    return low - beside <= radius <= high + beside
 
 
 def warning_of(geometry: DriveGeometry, region: str, point: np.ndarray) -> str:

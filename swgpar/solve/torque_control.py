@@ -26,8 +26,11 @@ class TorqueControl:
         if state.control != "torque":
             return None
         return self.supports.scale * min(
-            clearance.largest_rotation(self._loaded_side(clearance.flanks, state))
-            for clearance in self.clearances
+            (
+                clearance.largest_rotation(self._loaded_side(clearance.flanks, state))
+                for clearance in self.clearances
+            ),
+            default=np.inf,
         )
 
     def closing_rotation(self, u: np.ndarray, state: LoadState) -> float:

@@ -14,8 +14,9 @@ from support.cup_shapes import CLAMPED, shaped
 from support.paths import RECIPE
 from support.stepping import WORLD, loaded, small
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.evaluation.windows.convergence import HIGHEST_ORDER, error_of
 from swgpar.evaluation.windows.local_problem import MARGIN, SECTORS, LocalProblem
-from swgpar.evaluation.windows.root_stress import HIGHEST_ORDER, error_of, resolve_root_stress
+from swgpar.evaluation.windows.root_stress import resolve_root_stress
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal
 from swgpar.meshing import MeshRecipe, load_recipe

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from swgpar.evaluation.windows.convergence import error_of
 from swgpar.evaluation.windows.local_problem import WindowStress
 from swgpar.evaluation.windows.root_stress import (
     BETWEEN,
     ENDS,
     candidates,
     error_at_ends,
-    error_of,
     followed,
     may_be_largest,
 )

@@ -29,6 +29,7 @@ from swgpar.evaluation.answers import (
     with_no_limit,
 )
 from swgpar.evaluation.places import root_nodes
+from swgpar.evaluation.windows.convergence import error_of
 from swgpar.evaluation.windows.local_problem import SECTORS, LocalProblem, WindowStress, tooth_nodes
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal
@@ -84,11 +85,6 @@ FEWEST_LEVELS = {"plane": 4, "cup": 2}
 
 PERIOD_LEVEL = {"plane": 1, "cup": 1}
 """Index of the window with which the further angles of a period are computed."""
-
-LOWEST_ORDER, ASSUMED_ORDER, HIGHEST_ORDER = 1.0, 1.5, 2.5
-"""Bounds of the observed order, and the order that two windows are judged by. In roots 2 to 3.4 is
-seen, but it rests on two differences only, at the ends of teeth about 1. With the highest one the
-error of most windows is 0.5 to 3 times the true one (docs/verification/effectivity.md)."""
 
 CLOSE = 0.85
 """Share of the largest stress on the drive's own mesh from which a tooth outside of the first
@@ -376,26 +372,6 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
     value = found.value * known.s1 / known.levels[level]
     period = known.period or ((0.0, known.s1),)
     return replace(known, period=(*period, (float(np.degrees(state.angle)), value)))
-
-
-def error_of(levels: Sequence[float], ratio: float) -> float:
-    """Error of the last value on meshes whose element sizes have this ratio, by the order observed
-    on the last three.
-
-    Two values are judged by `ASSUMED_ORDER`; a single one, the others being left out, has no bound.
-    """
-    if len(levels) < 2 or math.isnan(levels[-2]):
-        return np.inf
-    last = levels[-1] - levels[-2]
-    if len(levels) == 2:
-        return abs(last) / (ratio**ASSUMED_ORDER - 1.0)
-    before = levels[-2] - levels[-3]
-    # a last change that is small by chance is no convergence
-    change = max(abs(last), abs(before) / ratio**HIGHEST_ORDER)
-    if before * last <= 0.0:
-        return change  # the limit lies between the last two
-    order = float(np.clip(np.log(before / last) / np.log(ratio), LOWEST_ORDER, HIGHEST_ORDER))
-    return change / (ratio**order - 1.0)
 
 
 def error_at_ends(by_part: Mapping[str, Sequence[float]], ratio: float) -> float:

@@ -1,0 +1,390 @@
+"""The largest stresses of the wall behind the teeth, by rings and slices of it on finer meshes.
+
+The whole wall is solved on two meshes that resolve its bending. Where one of its regions may have
+the largest stress, slices around that place, each finer than the one before, resolve the stress at
+the surface (docs/theory/windows.md).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.places import OF_REGION, Place
+from swgpar.evaluation.windows.convergence import error_of
+from swgpar.evaluation.windows.wall_problem import Source, WallProblem
+from swgpar.fem.body import FLEXIBLE_SPLINE, STRESS_PREFIXES
+from swgpar.fem.stress import principal
+from swgpar.load.load_states import LoadState
+from swgpar.log import logger
+from swgpar.meshing.sector import SectorMesh
+from swgpar.meshing.trim import trimmed
+from swgpar.meshing.wall_sector import WallCounts, WallSector, wall_sector
+from swgpar.model.drive_model import DriveModel
+from swgpar.model.regions import region_of, warning_of
+
+RINGS = WallCounts(4, 2), WallCounts(6, 3)
+"""Elements of the rings, coarse to fine."""
+
+RING_RATIO, RING_ORDER = 1.5, 2
+"""Ratio of their element sizes; order of their displacements."""
+
+SLICES = WallCounts(8, 4, 0.5), WallCounts(16, 8, 0.25), WallCounts(32, 16, 0.125)
+SLICE_RATIO = 2.0
+"""Elements of the slices, coarse to fine, and the ratio of their sizes."""
+
+MARGIN, FEWEST, MOST = 3.0, 3, 9
+"""Distance over the thickness from the sector in the middle of a slice, which is read, to its
+sides; fewest and most sectors of a slice."""
+
+REACH, READ, HELD = 4.0, 1.0, 0.5
+"""Distances along the section from the middle of a slice over the thickness there: as far as which
+it extends, as far as which it is read, and as far as which it resolves other stresses too."""
+
+CUT = 1.5
+"""Distance from the cut at the back of the teeth over the thickness there from which stresses of a
+ring are read."""
+
+CLOSE, FOLLOWED = 0.6, 0.8
+"""Shares of the largest stress from which another is resolved by slices, on the ring, and from
+which it is followed to the last of them. The ring shows 0.6 of the stress in the sharpest fillets
+that are allowed, and more of others."""
+
+DRIVE_ORDER = 2
+"""Order of the displacements of the drive."""
+
+LEAST = 0.005
+"""Least error by the mesh of the drive that two meshes can show, as a share of the stress."""
+
+STRESSES = {"s1": (0, 1.0), "s3": (1, -1.0), "vm": (2, 1.0)}
+"""Stresses that are looked for: index in `principal`, and sign."""
+
+LEAST_MISES = 0.5 * np.sqrt(3.0)
+"""Von Mises stress at a free surface over the largest tension there, at least, where the other
+principal stress is no compression."""
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A largest stress.
+
+    value : MPa;  sector : index in the chain of the ring or slice;  point : (3,) mm, undeformed, in
+    the frame of its sector
+    """
+
+    value: float
+    sector: int
+    point: np.ndarray
+
+    @property
+    def section(self) -> np.ndarray:
+        """Radius and z (2,) mm."""
+        return np.array([np.hypot(*self.point[:2]), self.point[2]])
+
+
+@dataclass(frozen=True)
+class CoarseWall:
+    """Largest stresses (MPa) of the wall by a coarser drive, see `ring_stresses`.
+
+    ratio : of the drives' element sizes in wall and width, the least
+    """
+
+    on_ring: Mapping[str, float]
+    ratio: float
+
+
+@dataclass(frozen=True)
+class WallStress:
+    """Largest stresses of the wall in one state.
+
+    places : by names with `OF_REGION`, with their errors
+    levels : MPa, on the slices, coarse to fine, by these names; none where the rings are enough
+    on_ring : MPa, on the coarsest ring, for the error of a finer drive
+    """
+
+    places: Mapping[str, Place]
+    levels: Mapping[str, tuple[float, ...]]
+    on_ring: Mapping[str, float]
+
+
+def resolves_wall(design: DriveDesign) -> bool:
+    """Whether rings resolve the wall of a design. Their columns are too wide for bolts."""
+    return design.output.root_stress and design.has_cup and not design.is_bolted
+
+
+def wall_start(model: DriveModel) -> float:
+    """Distance (mm) from the back of the teeth at which rings begin: behind its fillet, and where
+    no cam touches."""
+    geometry = model.geometry
+    return max(geometry.cup.back_fillet, 0.5 * (geometry.cam_width - geometry.face_width))
+
+
+def ring_stresses(model: DriveModel, state: LoadState) -> dict[str, float]:
+    """Largest stresses (MPa) on the coarsest ring, by names with `OF_REGION`; collective.
+
+    Raises ConvergenceError.
+    """
+    ring = _solved_ring(model, state, RINGS[0]).problem
+    try:
+        return {name: spot.value for name, spot in _largest(ring, _regions_of_ring(ring)).items()}
+    finally:
+        ring.destroy()
+
+
+def resolve_wall(
+    model: DriveModel,
+    state: LoadState,
+    tension: float = 0.0,
+    coarse: CoarseWall | None = None,
+) -> WallStress:
+    """Resolve the largest stresses of every region of the wall; collective.
+
+    tension : MPa, the largest one at the teeth; places far below it are not resolved by slices
+    coarse : what a coarser drive gives; None where there is none
+
+    Raises ConvergenceError or InputError where a part cannot be computed.
+    """
+    rings: list[Ring] = []
+    try:
+        for counts in RINGS:
+            rings.append(_solved_ring(model, state, counts, rings[-1:]))
+        first, last = (_largest(ring.problem, _regions_of_ring(ring.problem)) for ring in rings)
+        on_slices = _on_slices(rings, last, tension)
+        places = {}
+        for name, spot in last.items():
+            value, error = spot, np.inf
+            if name in on_slices:
+                value, error = on_slices[name].spot, on_slices[name].error
+            elif name in first:  # nodal averages are of first order
+                error = abs(spot.value - first[name].value) / (RING_RATIO - 1.0)
+            error += spot.value * _drive_share(name, first, coarse)
+            places[name] = _place(model, value, name, error if np.isfinite(error) else None)
+    finally:
+        for ring in rings:
+            ring.problem.destroy()
+    levels = {name: tuple(one.levels) for name, one in on_slices.items()}
+    for name, values in levels.items():
+        logger.info("%s: %s MPa by slices", name, ", ".join(f"{value:.1f}" for value in values))
+    return WallStress(places, levels, {name: spot.value for name, spot in first.items()})
+
+
+def _candidates(spots: Mapping[str, Spot], tension: float, close: float) -> list[str]:
+    """Stresses with the share `close` of the largest one and more, largest first. Compression is
+    read where one of the others is resolved."""
+    least = {"s1": tension, "vm": LEAST_MISES * tension}
+    found = []
+    for stress, at_teeth in least.items():
+        of_stress = {name: spot.value for name, spot in spots.items() if f"_{stress}" in name}
+        top = max([at_teeth, *of_stress.values()])
+        found += [name for name, value in of_stress.items() if value > close * top]
+    return sorted(found, key=lambda name: -spots[name].value)
+
+
+def _drive_share(name: str, fine: Mapping[str, Spot], coarse: CoarseWall | None) -> float:
+    """Error by the drive's mesh as a share of the stress; inf where it is not known."""
+    if coarse is None or name not in coarse.on_ring or name not in fine:
+        return np.inf
+    change = abs(fine[name].value - coarse.on_ring[name]) / fine[name].value
+    return max(change / (coarse.ratio**DRIVE_ORDER - 1.0), LEAST)
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A ring in equilibrium, and the grid of its sector."""
+
+    problem: WallProblem
+    grid: WallSector
+
+    def displacements(self) -> Source:
+        """Its displacements."""
+        return self.problem.displacements(self.grid)
+
+
+def _solved_ring(
+    model: DriveModel, state: LoadState, counts: WallCounts, coarser: Sequence[Ring] = ()
+) -> Ring:
+    """coarser : a ring whose displacements to begin with, if there is one"""
+    grid = wall_sector(model.geometry, counts, wall_start(model))
+    begin = coarser[0].displacements() if coarser else None
+    problem = WallProblem.ring(model, state, grid.mesh, begin)
+    try:
+        problem.solve()
+    except BaseException:
+        problem.destroy()
+        raise
+    return Ring(problem, grid)
+
+
+def _regions_of_ring(ring: WallProblem) -> np.ndarray:
+    """Regions (n_node,) of a ring's sector; none near the cut, and where a stress has no limit."""
+    return _regions_read(ring, np.ones(len(ring.layout.mesh.coords), dtype=bool))
+
+
+def _first_z(model: DriveModel) -> float:
+    """z (mm) from which stresses are read: away from the cut."""
+    geometry = model.geometry
+    return geometry.cup.wall.back + wall_start(model) + CUT * geometry.cup_thickness
+
+
+def _largest(
+    part: WallProblem, regions: np.ndarray, sectors: slice = slice(None)
+) -> dict[str, Spot]:
+    """Largest stresses of every region by names with `OF_REGION`; collective.
+
+    regions : (n_node,), empty where nothing is read;  sectors : that are read, of the chain
+    """
+    wanted = np.isin(part.sectors, np.arange(part.layout.count)[sectors])
+    kinds = principal(part.stress()[wanted])
+    own, mesh = part.sectors[wanted], part.layout.mesh
+    prefix = STRESS_PREFIXES[FLEXIBLE_SPLINE][0]
+    found = {}
+    for region in sorted(set(regions) - {""}):
+        nodes = np.flatnonzero(regions == region)
+        for stress, (index, sign) in STRESSES.items():
+            best: tuple[float, int, int] = (-np.inf, 0, 0)
+            if len(own):
+                values = sign * kinds[index][:, nodes]
+                k, i = np.unravel_index(values.argmax(), values.shape)
+                best = (float(values[k, i]), int(own[k]), int(nodes[i]))
+            value, sector, node = max(part.model.comm.allgather(best), key=lambda one: one[0])
+            if value > 0.0:
+                name = f"{prefix}_{stress}{OF_REGION}{region}"
+                found[name] = Spot(value, sector, mesh.coords[node])
+    return found
+
+
+@dataclass
+class OnSlices:
+    """A stress on slices.
+
+    levels : MPa, coarse to fine;  spot : on the finest
+    by_ring : error by the ring as a share of the stress
+    """
+
+    levels: list[float]
+    spot: Spot
+    by_ring: float
+
+    @property
+    def error(self) -> float:
+        """Error (MPa) by slices and ring. Two levels are taken to be of first order."""
+        if len(self.levels) == 1:
+            return np.inf
+        if len(self.levels) < len(SLICES):
+            change = abs(self.levels[-1] - self.levels[-2])
+        else:
+            change = error_of(self.levels, SLICE_RATIO)
+        return change + self.by_ring * self.spot.value
+
+
+def _on_slices(
+    rings: Sequence[Ring], spots: Mapping[str, Spot], tension: float
+) -> dict[str, OnSlices]:
+    """The stresses of the finer ring that may be the largest of their kind, on slices; collective.
+
+    spots : on the finer ring;  tension : see `resolve_wall`
+    """
+    groups: list[tuple[Spot, list[str]]] = []
+    for name in _candidates(spots, tension, CLOSE):
+        if not any(name in names for _, names in groups):
+            middle = spots[name]
+            taken = [other for _, names in groups for other in names]
+            held = [o for o in spots if o not in taken and _is_held(spots[o], middle, rings[0])]
+            groups.append((middle, held))
+    found: dict[str, OnSlices] = {}
+    for level, counts in enumerate(SLICES):
+        if level == len(SLICES) - 1:
+            known = {name: one.spot for name, one in found.items()}
+            followed = set(_candidates(known, tension, FOLLOWED))
+            groups = [group for group in groups if followed & set(group[1])]
+        for middle, names in groups:
+            read = _read(rings[-1], counts, middle)
+            coarse = _read(rings[0], counts, middle) if level == 0 else {}
+            for name in names:
+                if name not in read:
+                    continue
+                spot = replace(read[name], sector=middle.sector)
+                if level == 0:
+                    change = abs(spot.value - coarse[name].value) / spot.value
+                    found[name] = OnSlices([], spot, change / (RING_RATIO**RING_ORDER - 1.0))
+                if name in found:
+                    found[name].levels.append(spot.value)
+                    found[name].spot = spot
+    return found
+
+
+def _is_held(spot: Spot, middle: Spot, ring: Ring) -> bool:
+    """Whether a slice around `middle` resolves another stress too."""
+    return spot.sector == middle.sector and bool(
+        np.linalg.norm(spot.section - middle.section) <= HELD * _thickness(ring.problem.model)
+    )
+
+
+def _thickness(model: DriveModel) -> float:
+    """Thickness (mm) of the wall at its fillet, or of closed end or flange if that is more."""
+    wall = model.geometry.cup.wall
+    return max(wall.thickness, wall.end_thickness)
+
+
+def _read(ring: Ring, counts: WallCounts, middle: Spot) -> dict[str, Spot]:
+    """Largest stresses in the middle of a slice around a stress of a ring; collective."""
+    model = ring.problem.model
+    thickness, pitch = _thickness(model), 2.0 * np.pi / ring.grid.mesh.n_sectors
+    beside = int(np.ceil(MARGIN * thickness / (pitch * middle.section[0])))
+    count = min(max(1 + 2 * beside, FEWEST), MOST)
+    mesh, distance = _slice_mesh(ring, counts, middle, REACH * thickness)
+    part = ring.problem.slice(ring.displacements(), mesh, middle.sector, count)
+    try:
+        part.solve()
+        sectors = slice(count // 2, count // 2 + 1)
+        return _largest(part, _regions_read(part, distance <= READ * thickness), sectors)
+    finally:
+        part.destroy()
+
+
+def _slice_mesh(
+    ring: Ring, counts: WallCounts, middle: Spot, reach: float
+) -> tuple[SectorMesh, np.ndarray]:
+    """Mesh within `reach` (mm) along the section of a stress, and distances (n_node,) mm from it"""
+    model = ring.problem.model
+    mesh = wall_sector(model.geometry, counts, wall_start(model)).mesh
+
+    def distance(points: np.ndarray) -> np.ndarray:
+        section = np.column_stack([np.hypot(*points[:, :2].T), points[:, 2]])
+        return np.linalg.norm(section - middle.section, axis=1)
+
+    mesh = trimmed(mesh, distance(mesh.coords[mesh.hexes].mean(axis=1)) < reach)
+    return mesh, distance(mesh.coords)
+
+
+def _regions_read(part: WallProblem, near: np.ndarray) -> np.ndarray:
+    """Regions (n_node,) of a slice, empty where it is not read. near : (n_node,) bool"""
+    geometry, mesh = part.model.geometry, part.layout.mesh
+    regions = np.full(len(near), "", dtype=object)
+    for node in np.flatnonzero(near & (mesh.coords[:, 2] >= _first_z(part.model))):
+        region = region_of(geometry, mesh, int(node), False)
+        if not warning_of(geometry, region, mesh.coords[node]):
+            regions[node] = region
+    return regions
+
+
+def _place(model: DriveModel, spot: Spot, name: str, error: float | None) -> Place:
+    region = name.partition(OF_REGION)[2]
+    layout = model.partition.layouts[FLEXIBLE_SPLINE]
+    tooth = layout.first_tooth + spot.sector
+    radius, z = spot.section
+    angle = float(layout.sector_angle(np.array(tooth)) - np.arctan2(*spot.point[:2]))
+    return Place(
+        value=spot.value,
+        body=FLEXIBLE_SPLINE,
+        region=region,
+        tooth=tooth % layout.mesh.n_sectors,
+        radius=float(radius),
+        z=float(z),
+        angle_deg=float(np.degrees(angle)) % 360.0,
+        warning="",
+        error=error,
+    )

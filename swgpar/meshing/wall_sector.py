@@ -1,0 +1,235 @@
+"""The wall of the cup behind the teeth as a sector of its own: fine along its section, coarse
+around.
+
+The wall is a body of revolution. Its mesh does not continue that of the teeth: elements are graded
+along the section towards the fillet and the edges of the flat part, and through the thickness
+towards both surfaces.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from swgpar.geometry.arrays import Floats, Ints
+from swgpar.geometry.cup_wall import CupWall
+from swgpar.geometry.drive_geometry import CupGeometry, DriveGeometry
+from swgpar.meshing.cup import Meridian, section_lines
+from swgpar.meshing.quality import element_quality
+from swgpar.meshing.sector import SectorMesh
+from swgpar.meshing.spacing import polar
+from swgpar.meshing.sweep import grid_quads, symmetric_steps
+
+GROWTH = 1.35
+"""Ratio of the lengths of successive elements along the section."""
+
+LONGEST = 0.35
+"""Length of the longest elements along the section over sqrt(radius * thickness): a disturbance of
+the wall's edge decays by e within about 0.8 of that."""
+
+LAYER_RATIO = 2.0
+"""Thickness of the layers in the middle of the wall over that of the outermost."""
+
+AROUND = 100
+"""Fewest elements around the whole wall. Twice as many change the stress in the fillet of a silk
+hat by 0.15 % (docs/verification/largest_stress.md)."""
+
+
+BISECTIONS, SMALL = 50, 1e-9
+"""Halvings of the depth in the fillet; least semi-axis of its curves there, mm."""
+
+
+@dataclass(frozen=True)
+class WallCounts:
+    """Elements of the wall.
+
+    fillet : along its fillet;  layers : through its thickness
+    longest : length of the longest along the section over the thickness; None for `LONGEST`
+    """
+
+    fillet: int
+    layers: int
+    longest: float | None = None
+
+    def limit(self, radius: float, thickness: float) -> float:
+        """Length (mm) of the longest elements where the wall has a radius and a thickness (mm)."""
+        if self.longest is None:
+            return LONGEST * np.sqrt(radius * thickness)
+        return self.longest * thickness
+
+
+def graded_line(length: float, first: float, last: float, longest: float) -> Floats:
+    """Distances (n,) mm from 0 to `length`. Steps grow by `GROWTH` from `first` and `last` (mm) at
+    the ends to at most `longest`."""
+    steps, ends = [min(first, longest), min(last, longest)], ([0.0], [length])
+    while ends[1][-1] - ends[0][-1] > sum(steps):
+        side = int(steps[1] < steps[0])
+        ends[side].append(ends[side][-1] + (steps[0], -steps[1])[side])
+        steps[side] = min(GROWTH * steps[side], longest)
+    gap = ends[1][-1] - ends[0][-1]
+    if gap > 0.7 * sum(steps):
+        ends[0].append(ends[0][-1] + gap * steps[0] / sum(steps))
+    return np.array([*ends[0], *ends[1][::-1]])
+
+
+def flat_radii(cup: CupGeometry, counts: WallCounts, first: float) -> Floats:
+    """Radii (n,) mm of the stations on closed end or flange, without that of the fillet.
+
+    first : mm, length of the element at the fillet and at the edge of a clamped ring
+    """
+    wall, (begin, _) = cup.wall, cup.wall.center
+    width, longest = abs(wall.edge - begin), counts.limit(begin, wall.end_thickness)
+    free = width if cup.clamping_radius is None else abs(cup.clamping_radius - begin)
+    last = 0.5 * wall.end_thickness if cup.clamping_radius is None else first
+    along = graded_line(free, first, last, longest) if free > first else np.array([0.0, free])
+    if free < width:
+        along = np.append(along, free + graded_line(width - free, first, longest, longest)[1:])
+    return begin + np.sign(wall.edge - begin) * along[along > 0.0]
+
+
+def graded_section(geometry: DriveGeometry, counts: WallCounts, start: float) -> Meridian:
+    """Stations of the wall, graded towards the fillet and the edges of the flat part.
+
+    start : mm, distance from the back of the teeth at which it begins
+    """
+    wall: CupWall = geometry.cup.wall
+    middle = wall.fillet - 0.5 * min(wall.thickness, wall.end_thickness)
+    arc = 0.5 * np.pi * middle / counts.fillet
+    longest = counts.limit(geometry.inner_radius, wall.thickness)
+    usual = wall.length - graded_line(wall.length - start, arc, longest, longest)[::-1]
+    angle = np.linspace(0.0, 0.5 * np.pi, counts.fillet + 1)[1:]
+    return section_lines(
+        geometry.cup, wall.stations(usual, start), angle, flat_radii(geometry.cup, counts, arc)
+    )
+
+
+def section_parameters(cup: CupGeometry, points: Floats) -> tuple[Floats, Floats]:
+    """Distance (n,) mm along the section, in the fillet along its middle, and depth (n,) over the
+    thickness, 0 inside, of points (n, 3) mm of the wall."""
+    wall = cup.wall
+    r, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
+    r_center, z_center = wall.center
+    x, y = np.abs(r - r_center), np.maximum(z - z_center, 0.0)
+    s = np.clip(z - wall.back, 0.0, wall.length)
+    inner = wall.inner.radius(s)
+    depth = (r - inner) / (wall.outer.radius(s) - inner)
+    along = s.copy()
+    near, far = wall.faces
+    beyond = (r >= r_center) == wall.outwards
+    flat = beyond & (z > z_center)
+    depth[flat] = (z[flat] - near) / (far - near)
+    turn = np.flatnonzero((z > z_center) & ~beyond)
+    begin, end = np.array(wall.sizes)
+    outwards = end.sum() > begin.sum()
+
+    def arms(at: Floats) -> Floats:
+        """Components (2, n) of the arms of points of the fillet at depths (n,), over its axes."""
+        axes = np.maximum(begin[:, None] + at * (end - begin)[:, None], SMALL)
+        return np.array([x[turn], y[turn]]) / axes
+
+    low, high = np.full(len(turn), -0.5), np.full(len(turn), 1.5)
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        up = (np.hypot(*arms(middle)) > 1.0) == outwards
+        low, high = np.where(up, middle, low), np.where(up, high, middle)
+    depth[turn] = 0.5 * (low + high)
+    arm = wall.fillet - 0.5 * min(wall.thickness, wall.end_thickness)
+    along[turn] = wall.length + arm * np.arctan2(*arms(depth[turn])[::-1])
+    along[flat] = wall.length + 0.5 * np.pi * arm + x[flat]
+    return along, depth
+
+
+@dataclass(frozen=True)
+class WallSector:
+    """Sector of the wall.
+
+    mesh : in it the node set ``cut`` has the nodes of the first station
+    cup : whose wall it is;  number : (n_station, n_layer + 1, n_column + 1) nodes
+    pieces : first stations of fillet and flat part
+    """
+
+    mesh: SectorMesh
+    cup: CupGeometry
+    number: Ints
+    pieces: tuple[int, int]
+
+    def interpolate(self, field: Floats, points: Floats) -> Floats:
+        """Nodal values (n_sector, n_node, 3) of sectors at points (n, 3) mm: cubic along the
+        section in each of its three pieces, linear through the thickness and around."""
+        along, depth = section_parameters(self.cup, points)
+        coords = self.mesh.coords
+        stations, _ = section_parameters(self.cup, coords[self.number[:, 0, 0]])
+        _, layers = section_parameters(self.cup, coords[self.number[0, :, 0]])
+        columns = np.arctan2(*coords[self.number[0, 0]][:, :2].T)
+        angle = np.arctan2(points[:, 0], points[:, 1])
+        ends = (0, *self.pieces, len(stations) - 1)
+        values = np.empty((len(field), len(points), len(layers), len(columns), 3))
+        limits = stations[list(self.pieces)]
+        of_piece = np.searchsorted(limits, along)
+        for piece in range(3):
+            knots, on = slice(ends[piece], ends[piece + 1] + 1), of_piece == piece
+            if on.any():
+                spline = CubicSpline(stations[knots], field[:, self.number[knots]], axis=1)
+                values[:, on] = spline(along[on])
+        through = _linear(values, layers, depth)
+        return _linear(through, columns, angle)
+
+
+def _linear(values: Floats, grid: Floats, at: Floats) -> Floats:
+    """Values (m, n, k, …) on a grid (k,), interpolated to points (n,) of it."""
+    k = np.clip(np.searchsorted(grid, at, side="right") - 1, 0, len(grid) - 2)
+    rows = np.arange(len(at))
+    share = ((at - grid[k]) / (grid[k + 1] - grid[k])).reshape(-1, *[1] * (values.ndim - 3))
+    low, high = values[:, rows, k], values[:, rows, k + 1]
+    found: Floats = low + share * (high - low)
+    return found
+
+
+def wall_sector(geometry: DriveGeometry, counts: WallCounts, start: float) -> WallSector:
+    """Sector of the wall of a cup drive, as wide as a tooth.
+
+    start : mm, distance from the back of the teeth at which it begins
+    """
+    profile = geometry.gears["flexible_spline"].profile
+    lines = graded_section(geometry, counts, start)
+    fraction = symmetric_steps(counts.layers, LAYER_RATIO)[:, None]
+    section = lines.inner[:, None] + fraction * (lines.outer - lines.inner)[:, None]
+    half, columns = np.pi / profile.n_teeth, -(-AROUND // profile.n_teeth)
+    angle = np.linspace(-half, half, columns + 1)
+    radius, z = (
+        np.repeat(part[..., None], columns + 1, axis=2) for part in np.moveaxis(section, -1, 0)
+    )
+    points = np.concatenate([polar(radius, angle), z[..., None]], axis=-1).reshape(-1, 3)
+    number = np.arange(z.size, dtype=np.int32).reshape(z.shape)
+    hexes = _swept(number)
+    mesh = SectorMesh(
+        body="flexible_spline",
+        n_sectors=profile.n_teeth,
+        phase=0.0,
+        coords=points,
+        hexes=hexes,
+        ccw_nodes=number[..., 0].ravel(),
+        cw_nodes=number[..., -1].ravel(),
+        faces={"end": _end_faces(number[lines.end :])},
+        node_sets={"bore": number[-1].ravel(), "cut": number[0].ravel()},
+        flanks=(),
+        profile=profile,
+        quality=element_quality(points, hexes),
+    )
+    return WallSector(mesh, geometry.cup, number, (lines.wall, lines.end))
+
+
+def _swept(number: Ints) -> Ints:
+    """Hexahedra (n, 8) of nodes by station, layer and column."""
+    stations = number.reshape(len(number), -1)
+    quads = grid_quads(np.arange(stations.shape[1]).reshape(number.shape[1:]))
+    quads = np.roll(quads[:, ::-1], 1, axis=1)
+    return np.concatenate((stations[:-1, quads], stations[1:, quads]), axis=-1).reshape(-1, 8)
+
+
+def _end_faces(number: Ints) -> Ints:
+    """Faces (n, 4) of closed end or flange on the inner line, and on the outer one."""
+    inner, outer = grid_quads(number[:, 0]), grid_quads(number[:, -1])
+    return np.concatenate((inner[:, ::-1], outer))
