@@ -117,8 +117,8 @@ class Rotation(AnswerGroup):
         if not self.means or self.torque_ripple is not None:
             return {}
         return {
-            "rotation.torque_ripple": "the mean input torque is not larger than the torque that "
-            "the increments leave over, or than what the angles change"
+            "rotation.torque_ripple": "the mean input torque is not larger than its error: what "
+            "increments leave over and angles change; without torque and friction it is zero"
         }
 
     def remarks(self) -> Iterator[str]:
@@ -161,7 +161,10 @@ def evaluate_rotation(
             half = sampling_error(sequence, list(rows), tuple(names))
         torque = column(sampled, "tooth_torque_Nmm" if driven else INPUT_TORQUE)
         change = half[INPUT_TORQUE] if half else 0.0
-        ripple = known_quotient(float(np.ptp(torque)), abs(float(torque.mean())), left + change)
+        mean = abs(float(torque.mean()))
+        # without a torque and without friction it is zero, and all of it an error
+        error = left + change if sequence.torque or friction else mean
+        ripple = known_quotient(float(np.ptp(torque)), mean, error)
     jammed, energy = jamming_remark(sequence, sampled, means, left, pairs), None
     if not jammed:
         left += half[INPUT_TORQUE] if half else 0.0

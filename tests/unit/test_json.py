@@ -110,8 +110,10 @@ def run(folder: Path, *values: str) -> swgpar.DriveResult:
     return result
 
 
-def test_without_a_torque_there_is_no_ripple(tmp_path: Path) -> None:
-    summary = run(tmp_path, "load.torque=0", "steps.rotation=9", "steps.samples=2").summary
+@pytest.mark.parametrize("samples", [2, 6])
+def test_without_a_torque_there_is_no_ripple(tmp_path: Path, samples: int) -> None:
+    steps = "steps.rotation=9", f"steps.samples={samples}"
+    summary = run(tmp_path, "load.torque=0", *steps).summary
     assert summary["rotation.torque_ripple"].value is None
     assert summary["rotation.torque_ripple"].remark.startswith("the mean input torque")
 
