@@ -27,6 +27,8 @@ from swgpar.evaluation.rotation import evaluate_rotation, sampled_rows
 from swgpar.evaluation.slip_error import evaluate_slip
 from swgpar.evaluation.step_values import step_values
 from swgpar.evaluation.stiffness import torsional_stiffness
+from swgpar.evaluation.stress_cycle import StressCycle
+from swgpar.evaluation.stress_factors import root_factor, stress_factors
 from swgpar.evaluation.transmission_error import evaluate_turns
 from swgpar.load.load_program import stiffness_program
 from swgpar.load.negligible_torque import negligible_torque
@@ -155,6 +157,13 @@ def _bearing(recorder: Recorder) -> BallLoads | None:
     )
 
 
+def _fatigue(recorder: Recorder, cycle: StressCycle) -> FatigueResult:
+    record = recorder.record
+    factors = stress_factors(record.root_stress, record.wall_stress, record.loaded)
+    root = None if record.root_stress is None else root_factor(record.root_stress)
+    return evaluate_fatigue(cycle, factors, root)
+
+
 def _cycle_results(
     recorder: Recorder,
 ) -> tuple[FatigueResult | None, DriveLosses | None, Mapping[str, np.ndarray]]:
@@ -164,7 +173,7 @@ def _cycle_results(
     if cycle is None or not cycle.complete:
         return None, None, {}
     with model.phases("fatigue and losses"):
-        fatigue = evaluate_fatigue(cycle, recorder.record.root_stress) if design.fatigue else None
+        fatigue = _fatigue(recorder, cycle) if design.fatigue else None
         if not design.losses:
             return fatigue, None, {}
         count = len(recorder.record.rows)

@@ -4,7 +4,7 @@ places, life."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from mpi4py import MPI
@@ -30,11 +30,11 @@ from swgpar.evaluation.fatigue_criteria import (
 )
 from swgpar.evaluation.places import APART_DISTANCE, near_contact
 from swgpar.evaluation.stress_cycle import StressCycle
-from swgpar.evaluation.windows.root_stress import RootStress
+from swgpar.evaluation.stress_factors import StressFactor
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal
 from swgpar.load.load_states import Stage
-from swgpar.model.regions import TOOTH_END, warning_of
+from swgpar.model.regions import warning_of
 from swgpar.results.sector_fields import SectorFields
 
 WARNING = (
@@ -122,10 +122,11 @@ class SafetyAndLife(AnswerGroup):
 
     least : by criterion, of `CRITERIA`;  regions : of every region by its name
     normal : (3,) of the critical plane, in the frame of the tooth (y radial)
-    mesh_error : of Goodman's safety by the windows, None apart from tooth roots or where it is not
-    known
+    mesh_error : of Goodman's safety by the windows, None where they do not resolve its region or
+    it is not known
     sampling_error : its change by half as many angles, None for an odd number of them
     root_factor, root_factor_error : None without windows
+    factors : on nodal averages, by region that windows resolve
     windows : whether windows resolve the stress at the teeth where the design asks for it
     phases : of a cycle, or points of the load program
     """
@@ -162,6 +163,7 @@ class SafetyAndLife(AnswerGroup):
     root_factor_error: float | None
     windows: bool
     phases: int
+    factors: Mapping[str, float] = field(default_factory=dict)
     fatigue_limit_of_the_part_MPa: float = answer(
         "fatigue.limit_of_the_part",
         "fatigue limit with surface and size factors",
@@ -210,19 +212,21 @@ class FatigueResult:
     cycle: dict[str, np.ndarray]
 
 
-def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> FatigueResult:
+def evaluate_fatigue(
+    cycle: StressCycle, factors: Mapping[str, StressFactor], root: StressFactor | None = None
+) -> FatigueResult:
     """Safety factors of every node of a sector from its stress over the cycle; collective.
 
     In a load program the least of all sectors stand for a node.
 
-    root_stress : of the loaded state, by which nodal stresses in the tooth root are scaled; None
-    leaves them
+    factors : on nodal stresses, by region;  root : that of the teeth, None without windows
     """
     model = cycle.model
     comm, fatigue = model.comm, model.design.fatigue
     regions, warnings = _regions(cycle)
-    factor, factor_error = _root_factor(root_stress)
-    scale = np.where(np.isin(regions, _scaled(root_stress)), factor, 1.0)
+    scale = np.ones(len(regions))
+    for region, one in factors.items():
+        scale[regions == region] = one.factor
     mine, stress = cycle.history()
     stress *= scale[mine][:, None]
     plane = critical_plane(stress, fatigue, model.design.drive.model == "plane")
@@ -242,17 +246,18 @@ def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> Fati
     history, normal = _history_at(comm, mine, stress, plane, least["goodman"])
     values = normal_stress(history[:, None], normal[None])[:, 0]
     half = _change_by_half(values, cycle, 1.0 / nodal["goodman"][least["goodman"]])
-    at_root = scale[least["goodman"]] != 1.0
+    scaled = factors.get(str(regions[least["goodman"]]))
     found = SafetyAndLife(
         least={name: _place(cycle, name, least[name], nodal, regions) for name in CRITERIA},
         regions=_by_region(nodal, regions, warnings),
         normal=tuple(normal.tolist()),
-        mesh_error=float(factor_error / factor / nodal["goodman"][least["goodman"]])
-        if at_root and factor_error is not None
+        mesh_error=float(scaled.error / scaled.factor / nodal["goodman"][least["goodman"]])
+        if scaled is not None and scaled.error is not None
         else None,
         sampling_error=half,
-        root_factor=factor if root_stress else None,
-        root_factor_error=factor_error,
+        root_factor=None if root is None else root.factor,
+        root_factor_error=None if root is None else root.error,
+        factors={region: one.factor for region, one in factors.items()},
         windows=model.design.bearing is None and not cycle.sequence.points,
         life=_life(
             damage(values, fatigue),
@@ -296,23 +301,6 @@ def _when(cycle: StressCycle, count: int) -> dict[str, np.ndarray]:
         return {"wg_angle_deg": np.degrees(cycle.angle) * np.arange(count) / count}
     angles = np.array([point.angle for point in cycle.sequence.points])
     return {"step": int(Stage.LOAD) + np.arange(count), "wg_angle_deg": angles}
-
-
-def _scaled(root_stress: RootStress | None) -> list[str]:
-    """Regions whose stresses the windows resolve."""
-    if root_stress is None:
-        return []
-    return [ROOT, TOOTH_END] if root_stress.region == TOOTH_END else [ROOT]
-
-
-def _root_factor(root_stress: RootStress | None) -> tuple[float, float | None]:
-    """Largest tension at the teeth by windows over that of nodal averages, and its error, None
-    where it is not known; 1 without windows."""
-    if root_stress is None:
-        return 1.0, None
-    error = root_stress.total_error
-    factor = root_stress.s1 / root_stress.on_mesh
-    return factor, None if error is None else error / root_stress.on_mesh
 
 
 def _regions(cycle: StressCycle) -> tuple[np.ndarray, np.ndarray]:

@@ -11,7 +11,7 @@ from swgpar.evaluation.places import APART, OF_REGION, Place
 from swgpar.evaluation.windows.root_stress import RootStress
 from swgpar.evaluation.windows.wall_stress import WallStress
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.model.regions import UNDER_CONTACT
+from swgpar.model.regions import UNDER_CONTACT, WALL
 
 STRESSES = "fs_s1", "fs_s3", "fs_vm"
 """Stresses that windows resolve."""
@@ -26,12 +26,17 @@ def with_windows(
     """The places with the values and errors of windows.
 
     Windows resolve the loaded state. Where nodal averages are larger at another angle, so are the
-    stresses in proportion. The largest stress of the body is that of the largest region.
+    stresses in proportion. The largest stress of the body is that of the largest region. Nodal
+    averages of the wall have no error: the meshes of a drive may have one or two elements in its
+    fillet, so that none of them shows its stress.
 
     places : by names of `find_places`, with their errors;  loaded : MPa, nodal averages of the
     loaded state by these names
     """
-    found = dict(places)
+    found = {
+        name: replace(place, error=None) if place.region in WALL else place
+        for name, place in places.items()
+    }
     resolved = dict(wall.places) if wall is not None else {}
     if root_stress is not None:
         resolved |= _of_root(root_stress)

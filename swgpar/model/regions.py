@@ -18,6 +18,9 @@ TOOTH_ROOT, TOOTH_END, UNDER_CONTACT = "tooth root", "tooth end", "flank under c
 """Regions of the roots and of the ends of the teeth; of the flanks that touch and of what is close
 below them."""
 
+WALL = ("cup wall", "fillet", "closed end", "bore", "flange", "rim of the flange")
+"""Regions of the wall behind the teeth."""
+
 END = 0.45
 """Share of the face width from its middle beyond which a place belongs to the end of a tooth."""
 

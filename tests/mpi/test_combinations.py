@@ -72,7 +72,7 @@ def test_fatigue_over_a_program_on_any_ranks() -> None:
             stepper.advance(state)
             cycle.keep(stepper.load_state, stepper.model.stresses()[1][FLEXIBLE_SPLINE])
         assert cycle.complete
-        values = evaluate_fatigue(cycle, None).found
+        values = evaluate_fatigue(cycle, {}).found
         stepper.model.destroy()
         return values
 

@@ -79,12 +79,16 @@ def test_a_finer_whole_ring_is_within_the_error(case: str, monkeypatch: pytest.M
 
 
 def test_a_run_takes_the_largest_stress_from_the_wall() -> None:
-    overrides = ("output.root_stress=true", "steps.rotation=3", "steps.increment=3")
+    pytest.importorskip("rainflow")
+    sampled = ("steps.samples=2", "steps.rotation=9", "fatigue.size_factor=1.0")
+    overrides = ("output.root_stress=true", *sampled)
     result = swgpar.run(shaped(HAT | SHARP, *overrides), RECIPE)
     places, regions = result.summary.stresses.places, result.summary.stresses.regions
     largest, fillet = places["fs_s1"], regions[f"fs_s1{OF_REGION}fillet"]
     assert largest.value == max(p.value for name, p in regions.items() if name[:5] == "fs_s1")
     assert largest.on_mesh == pytest.approx(np.max(result.history["fs_s1"]))
+    factor = result.summary.fatigue.factors["fillet"]
+    assert factor == pytest.approx(fillet.value / fillet.on_mesh) and factor > 1.1
     assert result.summary["largest.fs_s1"].value == largest.value
     assert fillet.value > 1.1 * fillet.on_mesh and fillet.error is None  # no coarser drive
 

@@ -209,7 +209,7 @@ def test_windows_scale_the_tooth_root() -> None:
     sampled += ["steps.start_levels=1"]  # a coarser mesh, for the error of the drive's mesh
     plain, scaled = (
         swgpar.run(
-            swgpar.load_design(DESIGN, [*sampled, f"output.root_stress={flag}"]), RECIPE
+            swgpar.load_design(DESIGN, [*sampled, f"output.root_stress={flag}"]), "plane_coarse"
         ).summary
         for flag in ("false", "true")
     )

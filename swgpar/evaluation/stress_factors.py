@@ -1,0 +1,56 @@
+"""What windows make of nodal averages, by region: the factors on the stresses of a cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from swgpar.evaluation.places import OF_REGION
+from swgpar.evaluation.windows.root_stress import RootStress
+from swgpar.evaluation.windows.wall_stress import WallStress
+from swgpar.model.regions import TOOTH_END, TOOTH_ROOT
+
+TENSION = f"fs_s1{OF_REGION}"
+"""Beginning of the names of the largest tensions of the flexible spline's regions."""
+
+
+@dataclass(frozen=True)
+class StressFactor:
+    """Largest tension by windows over that by nodal averages, in the loaded state.
+
+    error : None where it is not known
+    """
+
+    factor: float
+    error: float | None
+
+
+def root_factor(root_stress: RootStress) -> StressFactor:
+    """Factor of the teeth."""
+    error = root_stress.total_error
+    return StressFactor(
+        root_stress.s1 / root_stress.on_mesh,
+        None if error is None else error / root_stress.on_mesh,
+    )
+
+
+def stress_factors(
+    root_stress: RootStress | None, wall: WallStress | None, loaded: Mapping[str, float]
+) -> dict[str, StressFactor]:
+    """Factors by region; none of regions that windows do not resolve.
+
+    Those of the wall are at least 1: nodal averages are larger where a region has its largest
+    stress beside the part that is resolved.
+
+    loaded : MPa, nodal averages of the loaded state by the names of `find_places`
+    """
+    found: dict[str, StressFactor] = {}
+    for name, place in ({} if wall is None else wall.places).items():
+        nodal = loaded.get(name)
+        if name.startswith(TENSION) and nodal:
+            error = None if place.error is None else place.error / nodal
+            found[place.region] = StressFactor(max(place.value / nodal, 1.0), error)
+    if root_stress is not None:
+        ends = [TOOTH_END] if root_stress.region == TOOTH_END else []
+        found |= dict.fromkeys([TOOTH_ROOT, *ends], root_factor(root_stress))
+    return found
