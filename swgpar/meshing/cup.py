@@ -8,7 +8,6 @@ from itertools import pairwise
 import numpy as np
 
 from swgpar.geometry.arrays import Floats, Ints
-from swgpar.geometry.cup_wall import with_station
 from swgpar.geometry.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.cross_section import CrossSection
 from swgpar.meshing.recipe import CupRecipe, MeshRecipe
@@ -77,10 +76,9 @@ def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
     )
     angle = np.linspace(0.0, 0.5 * np.pi, recipe.fillet + 1)[1:]
     share = symmetric_steps(recipe.closed_end, recipe.end_ratio)
-    if cup.clamping_radius is not None:
-        share = with_station(
-            share, (cup.clamping_radius - r_center) / (wall.edge - r_center), share[[0, -1]]
-        )
+    if cup.clamping_radius is not None:  # a clamped ring is not bent: one element
+        free = (cup.clamping_radius - r_center) / (wall.edge - r_center)
+        share = np.append(share * free, 1.0) if free > 0.0 else np.array([0.0, 1.0])
     return section_lines(cup, s, angle, r_center + (wall.edge - r_center) * share[1:])
 
 

@@ -53,7 +53,11 @@ class CupRecipe(Section):
 
     cylinder: int = quantity(text="elements along the cylinder", ge=1, le=400)
     fillet: int = quantity(text="elements along the fillet", ge=1, le=100)
-    closed_end: int = quantity(text="elements along the closed end", ge=1, le=400)
+    closed_end: int = quantity(
+        text="elements along closed end or flange; without its clamped ring, which has one",
+        ge=1,
+        le=400,
+    )
     end_ratio: float = quantity(
         1.0, text="length of middle over end elements, of cylinder and closed end", ge=1.0, le=20.0
     )

@@ -12,7 +12,16 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
 import swgpar
-from support.cup_shapes import CLAMPED, HAT, SHAPES, Changes, bolted, shaped, wall_volume
+from support.cup_shapes import (
+    CLAMPED,
+    HAT,
+    HAT_CLAMPED,
+    SHAPES,
+    Changes,
+    bolted,
+    shaped,
+    wall_volume,
+)
 from support.paths import DRIVERS, RECIPE
 from support.stepping import loaded
 from swgpar.analysis.bent_start import BentSpline
@@ -41,6 +50,20 @@ def test_a_contour_that_is_straight_changes_no_bit_of_the_mesh(recipe: str) -> N
     points = [{"distance": at, "thickness": thickness, "rounding": 2.0} for at in (3.1, 7.0)]
     plain, drawn = spline(shaped({}), recipe), spline(shaped({"contour": points}), recipe)
     assert np.array_equal(plain.coords, drawn.coords) and np.array_equal(plain.hexes, drawn.hexes)
+
+
+@pytest.mark.parametrize("changes", [CLAMPED, HAT_CLAMPED], ids=["cup", "hat"])
+def test_elements_of_a_clamped_end_lie_where_it_bends(changes: Changes) -> None:
+    """Those in the clamped ring left one in the flange of the silk hat: its tooth roots had 10 %
+    too much."""
+    recipe = load_recipe("forces").cup
+    case = shaped(changes)
+    lines = meridian(case.geometry.cup, recipe)
+    radius = lines.inner[lines.end :, 0]
+    begin, clamped = radius[0], case.cup.clamping_radius
+    assert len(radius) == recipe.closed_end + 2 and radius[-2] == pytest.approx(clamped)
+    assert radius[-1] == pytest.approx(case.cup.edge)
+    assert np.abs(np.diff(radius))[:-1].max() < 0.6 * abs(clamped - begin)
 
 
 @shapes
