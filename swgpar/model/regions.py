@@ -18,7 +18,10 @@ TOOTH_ROOT, TOOTH_END, UNDER_CONTACT = "tooth root", "tooth end", "flank under c
 """Regions of the roots and of the ends of the teeth; of the flanks that touch and of what is close
 below them."""
 
-WALL = ("cup wall", "fillet", "closed end", "bore", "flange", "rim of the flange")
+FILLET = "fillet"
+"""Region of the fillet before the closed end or flange, and of the wall beside it."""
+
+WALL = ("cup wall", FILLET, "closed end", "bore", "flange", "rim of the flange")
 """Regions of the wall behind the teeth."""
 
 END = 0.45
@@ -132,7 +135,7 @@ def _region_of_the_cup(
     beyond = radius - r_center if wall.outwards else r_center - radius
     if beyond > on_end and z > min(wall.faces) - near:
         return "flange" if wall.outwards else "closed end"
-    return "fillet" if z > z_center - BESIDE * wall.thickness else "cup wall"
+    return FILLET if z > z_center - BESIDE * wall.thickness else "cup wall"
 
 
 def _is_attached(cup: CupGeometry, radius: float, beside: float) -> bool:

@@ -24,7 +24,7 @@ from swgpar.meshing.sector import SectorMesh
 from swgpar.meshing.trim import trimmed
 from swgpar.meshing.wall_sector import WallCounts, WallSector, wall_sector
 from swgpar.model.drive_model import DriveModel
-from swgpar.model.regions import region_of, warning_of
+from swgpar.model.regions import FILLET, region_of, warning_of
 
 RINGS = WallCounts(4, 2), WallCounts(6, 3)
 """Elements of the rings, coarse to fine."""
@@ -48,10 +48,10 @@ CUT = 1.5
 """Distance from the cut at the back of the teeth over the thickness there from which stresses of a
 ring are read."""
 
-CLOSE, FOLLOWED = 0.6, 0.8
-"""Shares of the largest stress from which another is resolved by slices, on the ring, and from
-which it is followed to the last of them. The ring shows 0.6 of the stress in the sharpest fillets
-that are allowed, and more of others."""
+CLOSE_IN_FILLET, CLOSE, FOLLOWED = 0.6, 0.85, 0.8
+"""Shares of the largest stress from which another is resolved by slices, in the fillet and
+elsewhere, on the ring, and from which it is followed to the last of them. The ring shows 0.6 of the
+stress in the sharpest fillets that are allowed, and 0.95 and more where the wall is smooth."""
 
 DRIVE_ORDER = 2
 """Order of the displacements of the drive."""
@@ -171,15 +171,20 @@ def resolve_wall(
     return WallStress(places, levels, {name: spot.value for name, spot in first.items()})
 
 
-def _candidates(spots: Mapping[str, Spot], tension: float, close: float) -> list[str]:
-    """Stresses with the share `close` of the largest one and more, largest first. Compression is
-    read where one of the others is resolved."""
+def _candidates(
+    spots: Mapping[str, Spot], tension: float, in_fillet: float, elsewhere: float
+) -> list[str]:
+    """Stresses with these shares of the largest one and more, in the fillet and elsewhere, largest
+    first. Compression is read where one of the others is resolved."""
     least = {"s1": tension, "vm": LEAST_MISES * tension}
     found = []
     for stress, at_teeth in least.items():
         of_stress = {name: spot.value for name, spot in spots.items() if f"_{stress}" in name}
         top = max([at_teeth, *of_stress.values()])
-        found += [name for name, value in of_stress.items() if value > close * top]
+        for name, value in of_stress.items():
+            close = in_fillet if name.endswith(f"{OF_REGION}{FILLET}") else elsewhere
+            if value > close * top:
+                found.append(name)
     return sorted(found, key=lambda name: -spots[name].value)
 
 
@@ -288,7 +293,7 @@ def _on_slices(
     spots : on the finer ring;  tension : see `resolve_wall`
     """
     groups: list[tuple[Spot, list[str]]] = []
-    for name in _candidates(spots, tension, CLOSE):
+    for name in _candidates(spots, tension, CLOSE_IN_FILLET, CLOSE):
         if not any(name in names for _, names in groups):
             middle = spots[name]
             taken = [other for _, names in groups for other in names]
@@ -298,7 +303,7 @@ def _on_slices(
     for level, counts in enumerate(SLICES):
         if level == len(SLICES) - 1:
             known = {name: one.spot for name, one in found.items()}
-            followed = set(_candidates(known, tension, FOLLOWED))
+            followed = set(_candidates(known, tension, FOLLOWED, FOLLOWED))
             groups = [group for group in groups if followed & set(group[1])]
         for middle, names in groups:
             read = _read(rings[-1], counts, middle)
