@@ -29,7 +29,6 @@ PURPOSE = {
     "model": "the drive as bodies, contacts, supports and solver",
     "results": "history, tables, fields and checkpoints in a results folder, for every system",
     "run_options": "what a run is asked for beside its design",
-    "half_space": "contact of pairs of flanks on half planes and half spaces",
     "evaluation": "what follows from computed states: one typed result for each question",
     "drive_results": "the table of answers and the result of a drive, in memory or from files",
     "analysis": "a run: starts, load stepping, mesh refinement, recording, restart",

@@ -40,22 +40,26 @@ def increments(cases: Cases) -> None:
 
 
 def quadrature(cases: Cases) -> None:
-    """Gauss points of the flanks' and of the cam's contact; the reference has eight."""
-    for key in ("quadrature", "wg_quadrature"):
-        counts = (1, 2, 3, 4, 8)
+    """Lines of contact on a layer of the small cup drive; Gauss points of the cam in the plane. The
+    reference has eight."""
+    counts = (1, 2, 3, 4, 8)
+    for key, design, mesh, overrides, problem in (
+        ("quadrature", SMALL, TINY, [], "lines on a layer, small cup drive"),
+        ("wg_quadrature", PLANE, PLANE_MESHES[0], PERIOD, "quadrature"),
+    ):
         solved = [
             run(
                 cases.out / f"{key}_{n}",
-                PLANE,
-                PLANE_MESHES[0],
-                [*PERIOD, f"contact.{key}={n}"],
+                design,
+                mesh,
+                [*overrides, f"contact.{key}={n}"],
                 cases.ranks,
             )
             for n in counts
         ]
         found = {q: (solved[-1]["values"][q], "8 points") for q in MEANS}
         cases.series(
-            "quadrature",
+            problem,
             f"contact.{key}",
             solved[:-1],
             found,

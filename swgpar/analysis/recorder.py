@@ -23,6 +23,7 @@ from swgpar.evaluation.compliance import bearing_shares
 from swgpar.evaluation.contact_pressure import nodal_pressure
 from swgpar.evaluation.housing_values import housing_values, keep_largest
 from swgpar.evaluation.losses import cam_force
+from swgpar.evaluation.pair_contact import pair_contacts
 from swgpar.evaluation.place_errors import with_errors
 from swgpar.evaluation.places import Place, find_places
 from swgpar.evaluation.program_results import PointRow, point_rows
@@ -32,7 +33,6 @@ from swgpar.evaluation.stiffness import loop_rows
 from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.evaluation.windows.accuracy import Accuracy
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.half_space.pair_contact import pair_contacts
 from swgpar.input.toml_file import to_toml
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import SectorMesh

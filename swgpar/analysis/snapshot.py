@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from swgpar.analysis.predictor import KnownState
-from swgpar.contact.friction import PairKey
+from swgpar.contact.friction import CellTractions, PairKey
 from swgpar.load.load_states import LoadState
 from swgpar.petsc import PETSc
 
@@ -28,7 +26,7 @@ class Snapshot:
     residual: float
     x: PETSc.Vec
     accepted: PETSc.Vec
-    tractions: tuple[Mapping[PairKey, np.ndarray], ...]
+    tractions: tuple[Mapping[PairKey, CellTractions], ...]
     known_states: tuple[KnownState, ...]
     last: ProgramState
     before: ProgramState

@@ -44,6 +44,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     # a process that mpirun did not start needs no daemon of Open MPI, which takes long to start
     os.environ.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
+    # all of them map files of one folder: a file that another run has mapped is left alone
+    os.environ.setdefault("OMPI_MCA_sharedfp", "^sm")
     with watch.armed():
         return _main(arguments)
 

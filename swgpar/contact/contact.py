@@ -1,6 +1,6 @@
 """What the discrete problem asks of its parts: force terms, contacts, contacts with a penalty.
 
-Only flanks search for pairs and freeze segments; see `swgpar.contact.flanks.FlankContact`.
+Only flanks search for pairs and freeze cells; see `swgpar.contact.flanks.FlankContact`.
 """
 
 from __future__ import annotations
@@ -63,31 +63,35 @@ class Contact(ForceTerm, Protocol):
         this rank."""
 
 
-class PenaltyContact(Contact, Protocol):
-    """A contact enforced by a penalty and multipliers: all but the balls, whose approach is
-    elastic.
+class PressureContact(Contact, Protocol):
+    """A contact of faces: all but the balls, whose approach is elastic.
 
     `reset` begins it anew at every contact search; all other methods may follow in any order.
+    """
+
+    def reset(self) -> None:
+        """Forget gaps and pressures."""
+
+    def scale_penalty(self, share: float) -> None:
+        """Use this share of the full stiffness."""
+
+    def owned_pressure(self) -> FacePressure | None:
+        """Pressures of the last evaluation on owned faces; None without faces."""
+
+
+class PenaltyContact(PressureContact, Protocol):
+    """A contact with a rigid surface, enforced by a penalty and multipliers.
 
     multiplier : (n_face, n_q) MPa, of the augmented Lagrangian
     """
 
     multiplier: np.ndarray
 
-    def reset(self) -> None:
-        """Forget multipliers, gaps and pressures."""
-
-    def scale_penalty(self, share: float) -> None:
-        """Use this share of the full penalty."""
-
     def augment(self) -> None:
         """Take the pressures of the last evaluation as multipliers."""
 
     def penetration(self) -> float:
         """Largest penetration (mm) of the last evaluation on this rank."""
-
-    def owned_pressure(self) -> FacePressure | None:
-        """Pressures of the last evaluation on owned faces; None without faces."""
 
 
 def largest(comm: MPI.Comm, value: float) -> float:

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from swgpar.contact.flank_faces import face_samples
 from swgpar.contact.search import FlankPair
-from swgpar.contact.segments import face_samples
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.geometry.flank_deviations import GearDeviations
 from swgpar.geometry.rotation import MIRROR, rotated

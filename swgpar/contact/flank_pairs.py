@@ -8,9 +8,11 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from swgpar.contact.cells import Cells
+from swgpar.contact.contact import NO_KEYS
 from swgpar.contact.flank_deviations import FlankDeviations
+from swgpar.contact.flank_faces import FlankFaces, bilinear, lagrange
 from swgpar.contact.search import FlankPair
-from swgpar.contact.segments import FlankFaces, Segments, bilinear, lagrange
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.local_nodes import LocalNodes
@@ -75,35 +77,57 @@ class PlacedFaces:
             *(np.ascontiguousarray(np.concatenate([getattr(f, n) for f in parts])) for n in names)
         )
 
-    def cut(self, chosen: np.ndarray, segments: Segments) -> Faces:
-        """The segments of the faces `chosen` (n,) as faces of their own."""
-        face = chosen[segments.parent]
-        area = self.size[face, 0] * self.size[face, 1]
-        weights = lagrange(segments.a), lagrange(segments.b)
-        offset = np.einsum("fij,fqi,fqj->fq", self.offset[face], *weights, optimize=True)
+    def points(self, chosen: np.ndarray, a: np.ndarray, b: np.ndarray, share: np.ndarray) -> Faces:
+        """Faces (n,) of their own with points.
+
+        chosen : (n,) faces;  a, b : (n, n_q) places on them;  share : (n, n_q) of their area
+        """
+        area = self.size[chosen, 0] * self.size[chosen, 1]
+        offset = np.einsum(
+            "fij,fqi,fqj->fq", self.offset[chosen], lagrange(a), lagrange(b), optimize=True
+        )
         return Faces(
-            self.conn[face],
-            self.sixths[face],
-            self.coords[face],
-            self.normal[face],
-            bilinear(segments.a, segments.b),
-            area[:, None] * segments.share,
+            self.conn[chosen],
+            self.sixths[chosen],
+            self.coords[chosen],
+            self.normal[chosen],
+            bilinear(a, b),
+            area[:, None] * share,
             np.ascontiguousarray(offset),  # NumPy 2 may return another order
-            self.patch[face],
+            self.patch[chosen],
         )
 
-    def corners(self, chosen: np.ndarray) -> Faces:
-        """The faces `chosen` (n,) with their corners as points and zero offsets."""
-        a, b = (np.tile(v, (len(chosen), 1)) for v in ([0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]))
-        faces = self.cut(chosen, Segments(np.arange(len(chosen)), a, b, np.ones_like(a)))
-        faces.offset[:] = 0.0
-        return faces
+    def of_cells(self, cells: Cells) -> Faces:
+        """Faces of their own with the quadrature points of cells."""
+        return self.points(cells.parent, cells.a, cells.b, cells.area)
 
     def centers(self) -> Faces:
         """All faces with their middle as the only point."""
         indices = np.arange(len(self.conn))
         half = np.full((len(indices), 1), 0.5)
-        return self.cut(indices, Segments(indices, half, half, np.ones_like(half)))
+        return self.points(indices, half, half, np.ones_like(half))
+
+
+@dataclass
+class GapGradients:
+    """Gradients of gaps by the 4 nodes of the slave face and the 4 of the master's facet.
+
+    conn, sixths : (n, n_q, 8) local nodes and image flags;  vector : (n, n_q, 8, 3)
+    friction : (n, n_q, 8, 3) forces of friction on the nodes by the pressure that bounds it, where
+    that is the present one, per area
+    """
+
+    conn: np.ndarray
+    sixths: np.ndarray
+    vector: np.ndarray
+    friction: np.ndarray
+
+    @classmethod
+    def empty(cls, n: int, n_q: int) -> GapGradients:
+        """Room for those of n faces."""
+        shape = (n, n_q, 8)
+        conn, sixths = np.full(shape, -1, dtype=np.int32), np.zeros(shape, dtype=np.uint8)
+        return cls(conn, sixths, *np.zeros((2, *shape, 3)))
 
 
 class FlankPairs:
@@ -212,34 +236,46 @@ class FlankPairs:
             np.full(len(slave.corners), patch, dtype=np.int32),
         )
 
-    def block_keys(self, chosen: np.ndarray, foot_point: np.ndarray, symmetric: bool) -> np.ndarray:
-        """Keys row * n_global + column of the blocks that faces and the master facets at their foot
-        points couple.
+    def block_keys(
+        self, chosen: np.ndarray, foot_point: np.ndarray, line: np.ndarray, symmetric: bool
+    ) -> np.ndarray:
+        """Keys row * n_global + column of the blocks that lines of contact may need.
 
-        chosen : (n,) faces;  foot_point : (n, 2) mm, arc length and z on the master
+        The nodes of all faces of a line, and of the master facets at and beside their foot points,
+        couple with each other.
+
+        chosen : (n,) faces;  foot_point : (n, 2) mm, arc length and z on the master;  line : (n,)
         symmetric : keep the upper triangle only
         """
         masters = self.masters
         n_s, n_z = len(masters.s), len(masters.z)
         facet = np.column_stack(
             [
-                np.searchsorted(line, value, side="right") - 1
-                for line, value in zip((masters.s, masters.z), foot_point.T)
+                np.clip(np.searchsorted(ends, value, side="right") - 1, 0, len(ends) - 2)
+                for ends, value in zip((masters.s, masters.z), foot_point.T)
             ]
         )
-        number = self.local.number.astype(np.int64)
-        slave, patch = self.faces.conn[chosen], self.faces.patch[chosen]
-        columns = [np.where(slave >= 0, number[slave], -1)]
+        patch = self.faces.patch[chosen]
+        nodes = [self.faces.conn[chosen]]
         for di in range(-LINE_WINDOW[0], LINE_WINDOW[0] + 2):
             for dj in range(-LINE_WINDOW[1], LINE_WINDOW[1] + 2):
                 i, j = facet[:, 0] + di, facet[:, 1] + dj
                 ok = (i >= 0) & (i < n_s) & (j >= 0) & (j < n_z)
-                node = np.where(ok, masters.conn[patch, np.where(ok, i, 0), np.where(ok, j, 0)], -1)
-                columns.append(np.where(node >= 0, number[node], -1)[:, None])
-        nodes = np.concatenate(columns, axis=1)
-        row, col = nodes[:, :, None], nodes[:, None, :]
-        first = self.local.row_start
-        valid = (
-            (row >= first) & (row < first + self.local.n_own) & (col >= (row if symmetric else 0))
-        )
-        return np.unique((row * self.partition.n_global + col)[valid])
+                node = masters.conn[patch, np.where(ok, i, 0), np.where(ok, j, 0)]
+                nodes.append(np.where(ok, node, -1)[:, None])
+        return self.line_keys(np.concatenate(nodes, axis=1), line, symmetric)
+
+    def line_keys(self, nodes: np.ndarray, line: np.ndarray, symmetric: bool) -> np.ndarray:
+        """Keys of the blocks of local nodes (n, m), -1 without unknowns, that lie on the same of
+        the lines (n,)."""
+        number, first = self.local.number.astype(np.int64), self.local.row_start
+        keys = []
+        for k in np.unique(line):
+            of_line = nodes[line == k]
+            of_line = number[np.unique(of_line[of_line >= 0])]
+            row, column = (v.ravel() for v in np.meshgrid(of_line, of_line, indexing="ij"))
+            valid = (row >= first) & (row < first + self.local.n_own)
+            if symmetric:
+                valid &= column >= row
+            keys.append((row * self.partition.n_global + column)[valid])
+        return np.unique(np.concatenate([NO_KEYS, *keys]))

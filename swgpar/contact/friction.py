@@ -1,12 +1,11 @@
-"""Coulomb friction between flanks: the history of the last converged state, at fixed points of the
-material.
+"""Coulomb friction between flanks: the history of the last converged state, on the cells of that
+state.
 
-Segments are cut anew in every increment, so that their quadrature points are not the same material
-points. The tangential traction therefore lives on a uniform grid of `SAMPLES` x `SAMPLES` points of
-every slave face, between which it is interpolated. The foot point of that state is not stored: the
-point is projected again at the converged displacement, exactly. Components are those of the
-master's undeformed coordinates, arc length and z, with the current base vectors (see
-kernel/friction.hpp).
+Lines are cut anew in every increment, so that their cells are not the same. The tangential traction
+of the last state is constant on each of its cells; a new cell takes the mean over its own length.
+The foot point of that state is not stored: the point is projected again at the converged
+displacement, exactly. Components are those of the master's undeformed coordinates, arc length and
+z, with the current base vectors (see kernel/friction.hpp).
 """
 
 from __future__ import annotations
@@ -15,15 +14,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-
-from swgpar.contact.segments import Segments
-
-SAMPLES = 8
-"""Points per direction of a face on which the traction is stored, at the middles of equal cells."""
+from mpi4py import MPI
 
 STIFFNESS = 1.0
-"""Tangential stiffness over the normal penalty: a point that sticks has moved less than mu times
-its penetration."""
+"""Tangential stiffness over `contact.penalty_coef` E / module."""
 
 PairKey = tuple[int, int, int]
 """Sector of the flexible spline, side of its tooth, number of the ring gear's tooth."""
@@ -31,7 +25,7 @@ PairKey = tuple[int, int, int]
 
 @dataclass
 class Friction:
-    """Law and history at the quadrature points of the present segments; see
+    """Law and history at the quadrature points of the present cells; see
     `swgpar.kernel.contact_flanks`.
 
     coefficient : of friction;  stiffness : MPa / mm
@@ -69,65 +63,72 @@ def begin(
     return Friction(coefficient, 0.0, foot_point, gap, traction, np.zeros_like(traction))
 
 
-def sampled(segments: Segments, values: np.ndarray, face: int) -> np.ndarray:
-    """Values (n, n_q, k) at the points of segments of one face, taken to its samples (SAMPLES,
-    SAMPLES, k).
+@dataclass(frozen=True)
+class CellTractions:
+    """Tangential tractions on the cells of a pair of flanks, by lines, then along the profile.
 
-    The points of a face form a grid: linear interpolation in both directions, constant beyond the
-    outermost ones.
+    line : (n,) of the flank;  low, high : (n,) mm, ends on the slave flank;  traction : (n, 2) MPa
     """
-    mine = segments.parent == face
-    a, i = np.unique(segments.a[mine], return_inverse=True)
-    b, j = np.unique(segments.b[mine], return_inverse=True)
-    grid = np.zeros((len(a), len(b), values.shape[2]))
-    grid[i.ravel(), j.ravel()] = values[mine].reshape(-1, values.shape[2])
-    at = (np.arange(SAMPLES) + 0.5) / SAMPLES
-    to_a, to_b = (
-        np.stack([np.interp(at, x, unit) for unit in np.eye(len(x))], axis=1) for x in (a, b)
-    )
-    return np.einsum("ai,bj,ijk->abk", to_a, to_b, grid)
 
+    line: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    traction: np.ndarray
 
-def interpolated(samples: np.ndarray, segments: Segments) -> np.ndarray:
-    """Values (n, n_q, k) at the points of segments from samples (n_face, SAMPLES, SAMPLES, k) of
-    all faces."""
-    low, share = [], []
-    for x in (segments.a, segments.b):
-        position = np.clip(SAMPLES * x - 0.5, 0.0, SAMPLES - 1.0)
-        low.append(np.minimum(position.astype(np.int64), SAMPLES - 2))
-        share.append((position - low[-1])[..., None])
-    (i, j), (s, t), face = low, share, segments.parent[:, None]
-    return (1 - s) * ((1 - t) * samples[face, i, j] + t * samples[face, i, j + 1]) + s * (
-        (1 - t) * samples[face, i + 1, j] + t * samples[face, i + 1, j + 1]
-    )
+    def means(self, line: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Mean tractions (m, 2) MPa over cells of the same flank."""
+        out = np.zeros((len(line), 2))
+        for number in np.intersect1d(self.line, line):
+            mine, theirs = self.line == number, line == number
+            # the integral along the line, linear on cells and constant between them
+            ends = np.column_stack([self.low[mine], self.high[mine]]).ravel()
+            width = (self.high - self.low)[mine]
+            for c in range(2):
+                steps = np.zeros(len(ends))
+                steps[1::2] = self.traction[mine, c] * width
+                integral = np.cumsum(steps)
+                difference = np.interp(high[theirs], ends, integral) - np.interp(
+                    low[theirs], ends, integral
+                )
+                out[theirs, c] = difference / (high - low)[theirs]
+        return out
 
 
 NO_TOOTH = np.iinfo(np.int64).min
 """Stands in a file where a flank has no traction."""
 
-ROWS = ("friction/tooth", "friction/traction")
+ROWS = ("friction/tooth", "friction/cells")
 """Names of the rows in a file, by sector of the flexible spline."""
 
 
 def to_rows(
-    store: Mapping[PairKey, np.ndarray], first: int, end: int, n_face: int
+    store: Mapping[PairKey, CellTractions], first: int, end: int, comm: MPI.Comm
 ) -> dict[str, np.ndarray]:
-    """The tractions of the sectors first .. end - 1 as rows for a file.
+    """The tractions of the sectors first .. end - 1 as rows for a file; collective.
 
     Returns teeth (end - first, 2) of the ring gear that the flanks of side +1 and -1 touch, and
-    their tractions (end - first, 2, n_face, SAMPLES, SAMPLES, 2) MPa.
+    their cells (end - first, 2, n, 5): line, -1 beyond the last cell, both ends mm, tractions MPa.
     """
+    here = {key: cells for key, cells in store.items() if first <= key[0] < end}
+    most = comm.allreduce(max((len(c.line) for c in here.values()), default=0), op=MPI.MAX)
     tooth = np.full((end - first, 2), NO_TOOTH)
-    traction = np.zeros((end - first, 2, n_face, SAMPLES, SAMPLES, 2))
-    for (sector, side, ring_tooth), values in store.items():
-        if first <= sector < end:
-            entry = sector - first, int(side < 0)
-            tooth[entry], traction[entry] = ring_tooth, values
-    return dict(zip(ROWS, (tooth, traction)))
+    table = np.full((end - first, 2, max(most, 1), 5), -1.0)
+    for (sector, side, ring_tooth), cells in here.items():
+        entry = sector - first, int(side < 0)
+        tooth[entry] = ring_tooth
+        columns = np.column_stack([cells.line, cells.low, cells.high, cells.traction])
+        table[entry][: len(columns)] = columns
+    return dict(zip(ROWS, (tooth, table)))
 
 
-def from_rows(rows: Mapping[str, np.ndarray]) -> dict[PairKey, np.ndarray]:
+def from_rows(rows: Mapping[str, np.ndarray]) -> dict[PairKey, CellTractions]:
     """The tractions that `to_rows` made rows of, those of all sectors from 0 on."""
-    tooth, traction = (rows[name] for name in ROWS)
-    present = zip(*np.nonzero(tooth != NO_TOOTH))
-    return {(int(k), (1, -1)[side], int(tooth[k, side])): traction[k, side] for k, side in present}
+    tooth, table = (rows[name] for name in ROWS)
+    out = {}
+    for k, side in zip(*np.nonzero(tooth != NO_TOOTH)):
+        cells = table[k, side]
+        line, low, high, *traction = cells[cells[:, 0] >= 0.0].T
+        out[int(k), (1, -1)[side], int(tooth[k, side])] = CellTractions(
+            line.astype(np.int64), low, high, np.column_stack(traction)
+        )
+    return out

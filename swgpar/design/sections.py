@@ -153,28 +153,35 @@ class Load(Section):
 
 
 class Contact(Section):
-    """Section [contact]: friction, penalties and quadrature."""
+    """Section [contact]: friction and lines of contact of the flanks, penalty of cam and pins."""
 
     friction: float = quantity(
         0.0, text="coefficient of friction between the flanks", ge=0.0, le=1.0
     )
     penalty_coef: float = quantity(
-        50.0, text="penalty of the flanks over E / module, E of the softer gear", gt=0.0
+        50.0,
+        text="over E / module, E of the softer gear: tangential stiffness of flanks that stick, "
+        "stiffness of clamped and bolted ends and of the guide, penalty of flanks in exported jobs",
+        gt=0.0,
     )
     wg_penalty_coef: float = quantity(
         5.0, text="penalty of cam and pins over E / module, E of the flexible spline", gt=0.0
     )
     quadrature: int = quantity(
-        2, text="Gauss points per direction on segments of flank faces", ge=1, le=16
+        2, text="lines of contact on a layer of elements along the face width", ge=1, le=16
     )
     wg_quadrature: int = quantity(
         3, text="Gauss points per direction on the inner surface", ge=1, le=16
     )
     max_augmentations: int = quantity(
-        3, text="largest number of augmentations per increment", ge=0, le=50
+        3, text="largest number of augmentations of cam and pins per increment", ge=0, le=50
     )
     penetration_tolerance: float = quantity(
-        1e-3, unit="modules", text="penetration that needs no augmentation", gt=0.0, le=0.1
+        1e-3,
+        unit="modules",
+        text="penetration of cam and pins that needs no augmentation",
+        gt=0.0,
+        le=0.1,
     )
 
 

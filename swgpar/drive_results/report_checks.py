@@ -112,7 +112,7 @@ def _penetration(allowed: float, history: Mapping[str, np.ndarray]) -> Check:
     values = history["max_penetration_mm"][loaded] if len(loaded) else history["max_penetration_mm"]
     most = float(values.max(initial=0.0))
     text = (
-        f"flanks penetrate each other by up to {1000 * most:.2g} µm; good up to "
+        f"cam and pins penetrate the spline by up to {1000 * most:.2g} µm; good up to "
         f"{1000 * allowed:.2g} µm"
     )
     return Check("penetration", most <= allowed, text)

@@ -37,7 +37,7 @@ def bearing_shares(model: DriveModel, state: LoadState) -> dict[str, ComplianceS
         return {}
     problem, system = model.problem, model.solver.system
     u, balls = problem.displacement(), problem.wave_generator.balls
-    problem.tangent(u, state)
+    problem.complete_tangent(u, state)
     border, rows = problem.supports.border(u, state)
     grounding, active = problem.supports.grounding(u), problem.matrix_rows.active
     system.set_system(problem.matrix, active, grounding, border, rows, bound=np.inf)

@@ -20,7 +20,7 @@ def nodal_pressure(problem: DiscreteProblem, state: LoadState, body: BodyElement
     """
     n = len(problem.local_nodes)
     sums = np.zeros((n, 3))  # force and area, as two components of a vector of the model
-    for contact in problem.penalty_contacts:
+    for contact in problem.pressure_contacts:
         faces = contact.owned_pressure() if contact.is_active(state) else None
         if faces is not None:
             _add_nodal(faces, sums)

@@ -15,7 +15,7 @@ import meshio
 import numpy as np
 
 from swgpar.constraints.distributing_coupling import node_weights
-from swgpar.contact.segments import flank_faces
+from swgpar.contact.flank_faces import flank_faces
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.profiles import ToothProfile

@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from swgpar.fem.element_matrices import element_matrices
 from swgpar.kernel import ReferenceElements
 from swgpar.materials import Material
+from swgpar.materials.material import IN_PLANE
 from swgpar.meshing.sector import SectorMesh
 
 FLEXIBLE_SPLINE = "flexible_spline"
@@ -61,3 +64,12 @@ class Body:
             for matrices, other in zip(elements, others):
                 matrices[part] = other
         return elements
+
+    @property
+    def in_plane_elasticity(self) -> np.ndarray:
+        """Stresses xx, yy, xy by strains in a section of the gear, (3, 3) MPa: plane stress in the
+        plane model, else plane strain."""
+        material = self.materials[0]
+        if self.mesh.plane:
+            return material.plane_stress()
+        return np.ascontiguousarray(material.elasticity()[np.ix_(IN_PLANE, IN_PLANE)])

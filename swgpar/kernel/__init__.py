@@ -1,6 +1,11 @@
 """C++ kernels of elements, contact and friction, behind Cython."""
 
-from swgpar.kernel._contact import add_face_blocks, contact_flanks
+from swgpar.kernel._contact import (
+    add_contact_lines,
+    add_face_blocks,
+    add_line_compliances,
+    contact_flanks,
+)
 from swgpar.kernel._elements import (
     ReferenceElements,
     assemble_elements,
@@ -10,7 +15,9 @@ from swgpar.kernel._elements import (
 
 __all__ = [
     "ReferenceElements",
+    "add_contact_lines",
     "add_face_blocks",
+    "add_line_compliances",
     "assemble_elements",
     "contact_flanks",
     "recover_stress",

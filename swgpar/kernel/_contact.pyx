@@ -47,10 +47,24 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
         const double* traction
         double* current
         const double* lagged
+    struct MissingCompliance:
+        int n_node
+        const double* s
+        const double* green
+        double logarithm
+    void add_missing_compliance(const MissingCompliance&, int n, const double* low, const double* high, double* out)
+    struct GapGradients:
+        int32_t* conn
+        uint8_t* sixths
+        double* vector
+        double* friction
     int64_t flank_contact(const FlankBatch&, const FaceBatch&, const double* u, const double* multiplier,
                           double penalty, double opening, double reach, double beyond, double limit, const Friction& friction,
                           double* residual, const BlockRows& rows, double* gap, double* pressure, double* foot_point,
-                          double* moment)
+                          double* moment, const GapGradients& gradients)
+    int64_t add_line_tangents(int64_t n_line, const int64_t* start, int n_node, const int32_t* conn,
+                              const uint8_t* sixths, const double* left, const double* right, const double* stiffness,
+                              const BlockRows& rows)
     int64_t add_blocks(int64_t n, int m, const int32_t* conn, const uint8_t* sixths, const double* blocks,
                        const BlockRows& rows)
 
@@ -97,8 +111,17 @@ cdef Friction friction_of(str function, law, int64_t n_face, int64_t n_q) except
     return made
 
 
+cdef GapGradients gradients_of(str function, record, int64_t n_face, int64_t n_q) except *:
+    cdef tuple shape = (n_face, n_q, 8)
+    cdef int32_t[:, :, ::1] conn = checked(function, "gradients.conn", record.conn, INT32, shape, True)
+    cdef uint8_t[:, :, ::1] sixths = checked(function, "gradients.sixths", record.sixths, UINT8, shape, True)
+    cdef double[:, :, :, ::1] vector = checked(function, "gradients.vector", record.vector, DOUBLE, (*shape, 3), True)
+    cdef double[:, :, :, ::1] force = checked(function, "gradients.friction", record.friction, DOUBLE, (*shape, 3), True)
+    return GapGradients(&conn[0, 0, 0], &sixths[0, 0, 0], &vector[0, 0, 0, 0], &force[0, 0, 0, 0])
+
+
 def contact_flanks(patches, faces, u, multiplier, double penalty, double opening, double reach, double limit, residual,
-                   rows, friction=None, double rotation=0.0, moment=None, double beyond=OVERHANG):
+                   rows, friction=None, double rotation=0.0, moment=None, double beyond=OVERHANG, gradients=None):
     """Gaps, forces and tangent of slave faces against master flanks (kernel/contact.hpp, kernel/friction.hpp).
 
     Parameters
@@ -116,6 +139,7 @@ def contact_flanks(patches, faces, u, multiplier, double penalty, double opening
     rotation : rad, of the master body as a whole
     moment : (n_face,) N mm, derivative of the contact's energy with respect to `rotation`, added to with the residual
     beyond : facets by which foot points may lie past the ends of the flank, which goes on straight there
+    gradients : record that takes the gradients of the gaps (`swgpar.contact.flank_pairs.GapGradients`), or None
 
     Returns
     -------
@@ -163,6 +187,9 @@ def contact_flanks(patches, faces, u, multiplier, double penalty, double opening
     cdef Friction law = Friction(0.0, 0.0, NULL, NULL, NULL, NULL, NULL)
     if friction is not None:
         law = friction_of(name, friction, n_face, n_q)
+    cdef GapGradients g = GapGradients(NULL, NULL, NULL, NULL)
+    if gradients is not None and n_face and n_q:
+        g = gradients_of(name, gradients, n_face, n_q)
     cdef double[:, ::1] residuals
     cdef double* p_residual = NULL
     if residual is not None:
@@ -187,7 +214,7 @@ def contact_flanks(patches, faces, u, multiplier, double penalty, double opening
     cdef int64_t missing
     with nogil:
         missing = flank_contact(p, f, &uv[0, 0], &multipliers[0, 0], penalty, opening, reach, beyond, limit, law,
-                                p_residual, r, &gap[0, 0], &pressure[0, 0], &foot_point[0, 0, 0], &moments[0])
+                                p_residual, r, &gap[0, 0], &pressure[0, 0], &foot_point[0, 0, 0], &moments[0], g)
     return gap_array, pressure_array, foot_point_array, missing
 
 
@@ -207,4 +234,81 @@ def add_face_blocks(conn, sixths, blocks, rows):
         return 0
     with nogil:
         missing = add_blocks(n, m, &nodes[0, 0], &images[0, 0], &dense[0, 0, 0, 0, 0], r)
+    return missing
+
+
+def add_line_compliances(start, low, high, missing, out):
+    """Add what a body's elements lack in compliance among the cells of lines (kernel/contact_lines.hpp).
+
+    start : (n_line + 1,) int64, first cell of each line, ascending from 0 to the number of cells
+    low, high : (n_cell,) mm, ends of the cells on the flank, each within a facet
+    missing : record with s, green, logarithm (`swgpar.contact.missing_compliance.MissingCompliance`)
+    out : (n,) mm / (N/mm), the matrices (cells, cells) of the lines, one after the other; added to
+
+    Raises ValueError for arrays that do not fit each other.
+    """
+    name = "add_line_compliances"
+    cdef const double[::1] left = checked(name, "low", low, DOUBLE, (ANY,))
+    cdef const double[::1] right = checked(name, "high", high, DOUBLE, (left.shape[0],))
+    cdef const int64_t[::1] first = line_starts(name, start, left.shape[0])
+    cdef int64_t n_line = first.shape[0] - 1, k, n, size = 0
+    for k in range(n_line):
+        size += (first[k + 1] - first[k]) ** 2
+    cdef double[::1] values = checked(name, "out", out, DOUBLE, (size,), True)
+    cdef const double[::1] s = checked(name, "missing.s", missing.s, DOUBLE, (ANY,))
+    cdef int64_t n_node = s.shape[0]
+    cdef const double[:, ::1] green = checked(name, "missing.green", missing.green, DOUBLE, (n_node, n_node))
+    if n_node < 2:
+        raise ValueError(f"{name}: missing.s is ({n_node},); expected 2 nodes or more")
+    cdef MissingCompliance m = MissingCompliance(n_node, &s[0], &green[0, 0], missing.logarithm)
+    if size == 0:
+        return
+    size = 0
+    with nogil:
+        for k in range(n_line):
+            n = first[k + 1] - first[k]
+            if n > 0:
+                add_missing_compliance(m, n, &left[first[k]], &right[first[k]], &values[size])
+                size += n * n
+
+
+cdef const int64_t[::1] line_starts(str function, start, int64_t n_cell):
+    """First cells of lines, checked."""
+    cdef const int64_t[::1] first = checked(function, "start", start, INT64, (ANY,))
+    cdef int64_t n_line = first.shape[0] - 1, k
+    cdef bint ascends = n_line >= 0 and first[0] == 0 and first[n_line] == n_cell
+    for k in range(n_line):
+        ascends &= first[k] <= first[k + 1]
+    if not ascends:
+        raise ValueError(f"{function}: start ({n_line + 1},) is out of order; expected to ascend from 0 to the {n_cell} cells")
+    return first
+
+
+def add_contact_lines(start, conn, sixths, left, right, stiffness, rows):
+    """Add the tangents of lines of contact to the owned rows (kernel/contact_lines.hpp).
+
+    start : (n_line + 1,) int64, first cell of each line, ascending from 0 to the number of cells
+    conn, sixths : (n_cell, m) local nodes, -1 without unknowns, and sixths of a turn by which images are rotated
+    left, right : (n_cell, m, 3), gradients of the cells' forces and gaps by the nodes
+    stiffness : (n,) N/mm, the matrices (cells, cells) of the lines, one after the other
+    rows : record as for `contact_flanks`
+
+    Returns the number of blocks that the pattern lacks. Raises ValueError for arrays that do not fit each other.
+    """
+    name = "add_contact_lines"
+    cdef BlockRows r = rows_of(name, rows, ANY)
+    cdef const int32_t[:, ::1] nodes = indices(name, "conn", conn, INT32, (ANY, ANY), None, rows.number.shape[0])
+    cdef int64_t n_cell = nodes.shape[0], m = nodes.shape[1], k, size = 0, missing
+    cdef const uint8_t[:, ::1] images = indices(name, "sixths", sixths, UINT8, (n_cell, m), None, SIXTHS)
+    cdef const double[:, :, ::1] g = checked(name, "left", left, DOUBLE, (n_cell, m, 3))
+    cdef const double[:, :, ::1] h = checked(name, "right", right, DOUBLE, (n_cell, m, 3))
+    cdef const int64_t[::1] first = line_starts(name, start, n_cell)
+    cdef int64_t n_line = first.shape[0] - 1
+    for k in range(n_line):
+        size += (first[k + 1] - first[k]) ** 2
+    cdef const double[::1] s = checked(name, "stiffness", stiffness, DOUBLE, (size,))
+    if n_cell == 0 or m == 0:
+        return 0
+    with nogil:
+        missing = add_line_tangents(n_line, &first[0], m, &nodes[0, 0], &images[0, 0], &g[0, 0, 0], &h[0, 0, 0], &s[0], r)
     return missing

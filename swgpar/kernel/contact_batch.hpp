@@ -2,6 +2,7 @@
 #pragma once
 
 #include "contact.hpp"
+#include "contact_lines.hpp"
 #include "friction.hpp"
 
 namespace swgpar {
@@ -54,6 +55,15 @@ struct FaceBatch {  // slave faces and their quadrature points
   const std::int32_t* patch;  // (n_face) master patch
 };
 
+// What the gap of each quadrature point has as gradient, by its 4 slave and 4 master nodes; null
+// pointers: not wanted.
+struct GapGradients {
+  std::int32_t* conn = nullptr;    // (n_face, n_q, 8)
+  std::uint8_t* sixths = nullptr;  // (n_face, n_q, 8)
+  double* vector = nullptr;        // (n_face, n_q, 8, 3)
+  double* friction = nullptr;      // (n_face, n_q, 8, 3) nodal forces of friction by the pressure
+};
+
 // Gaps (mm), pressures (MPa) and foot points (s, z; mm) at the quadrature points of all faces; adds
 // the contact forces to `residual`, the tangent to `rows` and the energy's derivative by the
 // rotation of the master body to `moment`.
@@ -64,8 +74,8 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
                                   const double* u, const double* multiplier, double penalty,
                                   double opening, double reach, double beyond, double limit,
                                   const Friction& friction, double* residual, const BlockRows& rows,
-                                  double* gap, double* pressure, double* foot_point,
-                                  double* moment) {
+                                  double* gap, double* pressure, double* foot_point, double* moment,
+                                  const GapGradients& gradients) {
   std::int64_t missing = 0;
   for (std::int64_t k = 0; k < faces.n_face; ++k) {
     const Patch patch = patches.patch(faces.patch[k]);
@@ -96,7 +106,7 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
       gap[kq] = f.gap - faces.offset[kq] + opening;
       const double p = multiplier[kq] - penalty * gap[kq];
       const double bounding = friction.lagged == nullptr ? p : friction.lagged[kq];
-      if (p <= 0.0 && bounding <= 0.0) continue;
+      if (p <= 0.0 && bounding <= 0.0 && gradients.vector == nullptr) continue;
       if (p > 0.0) pressure[kq] = p;
       const double e = f.eta, z = f.zeta, w = faces.weight[kq];
       const double m[4] = {(1 - e) * (1 - z), e * (1 - z), (1 - e) * z, e * z};
@@ -104,6 +114,14 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
       for (int a = 0; a < 4; ++a) {
         conn[4 + a] = patch.node(f.i + di[a], f.j + dj[a]);
         sixths[4 + a] = patch.image(f.i + di[a], f.j + dj[a]);
+      }
+      if (gradients.vector != nullptr) {
+        for (int a = 0; a < 8; ++a) {
+          gradients.conn[8 * kq + a] = conn[a];
+          gradients.sixths[8 * kq + a] = sixths[a];
+          const double share = a < 4 ? shape[a] : -m[a - 4];
+          for (int c = 0; c < 3; ++c) gradients.vector[3 * (8 * kq + a) + c] = share * f.normal[c];
+        }
       }
       if (p > 0.0 && residual != nullptr) {
         for (int a = 0; a < 4; ++a) {
@@ -118,7 +136,7 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
       if (friction.coefficient == 0.0 || bounding <= 0.0) continue;
       const Vec2 length(patch.s[f.i + 1] - patch.s[f.i], patch.z[f.j + 1] - patch.z[f.j]);
       const Traction t = traction(f, length, Vec2(foot_point[2 * kq], foot_point[2 * kq + 1]),
-                                  friction, kq, bounding, penalty);
+                                  friction, kq, bounding);
       if (!t.acts) continue;
       const Motion motion(f, shape);
       if (residual != nullptr) {
@@ -128,11 +146,33 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
           add_nodal(residual, conn[a], sixths[a], force.segment<3>(3 * a));
         moment[k] += w * motion.by_rotation(f).dot(motion.x.transpose() * t.value);
       }
+      if (gradients.friction != nullptr && friction.lagged == nullptr) {
+        const Eigen::Matrix<double, 24, 1> force =
+            motion.foot.transpose() * (motion.x.transpose() * by_pressure(t, motion, friction));
+        for (int c = 0; c < 24; ++c) gradients.friction[24 * kq + c] = force[c];
+      }
       if (rows.values != nullptr)
         missing += add_friction_tangent(
             f, t, motion, f.straight ? Vec3::Zero().eval() : patch.third_derivative(f.i), conn,
             sixths, w, penalty, bounding, std::min(1.0, limit / bounding), friction, rows);
     }
+  }
+  return missing;
+}
+
+// Adds the tangents of lines of contact, cells start[k] .. start[k + 1] - 1 of line k; see
+// `add_line_tangent`. stiffness : the lines' matrices, one after the other.
+inline std::int64_t add_line_tangents(std::int64_t n_line, const std::int64_t* start, int n_node,
+                                      const std::int32_t* conn, const std::uint8_t* sixths,
+                                      const double* left, const double* right,
+                                      const double* stiffness, const BlockRows& rows) {
+  std::int64_t missing = 0;
+  for (std::int64_t k = 0; k < n_line; ++k) {
+    const int n_cell = static_cast<int>(start[k + 1] - start[k]);
+    const std::int64_t first = start[k] * n_node;
+    missing += add_line_tangent(n_cell, n_node, conn + first, sixths + first, left + 3 * first,
+                                right + 3 * first, stiffness, rows);
+    stiffness += static_cast<std::int64_t>(n_cell) * n_cell;
   }
   return missing;
 }

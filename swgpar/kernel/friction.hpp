@@ -9,10 +9,9 @@
 //   T_trial = (t_n + eps phi (xi - xi_n))^a a_a,    T = T_trial min(1, mu p / |T_trial|).
 //
 // phi is the part of the increment in which the point touches: 1 where it did before, else the gap
-// closes in proportion to the increment and phi = d / (g_n + d), d = p / penalty the depth that
-// carries p. Virtual work T . a_a dxi^a: forces and moments of both bodies balance, and the work is
-// that of T along the path of the foot point also where the quadrature point lies below the exact
-// surface.
+// closes in proportion to the increment and phi = d / (g_n + d), d = p / eps the depth that carries
+// p. Virtual work T . a_a dxi^a: forces and moments of both bodies balance, and the work is that of
+// T along the path of the foot point also where the quadrature point lies below the exact surface.
 #pragma once
 
 #include "contact.hpp"
@@ -45,14 +44,14 @@ struct Traction {
 };
 
 inline Traction traction(const FootPoint& f, const Vec2& length, const Vec2& xi,
-                         const Friction& law, std::int64_t kq, double pressure, double penalty) {
+                         const Friction& law, std::int64_t kq, double pressure) {
   Traction t;
   const Vec2 before(law.foot_point[2 * kq], law.foot_point[2 * kq + 1]);
   if (!(before[0] == before[0])) return t;
   t.acts = true;
-  const double gap = std::max(0.0, law.gap[kq]), depth = pressure / penalty;
+  const double gap = std::max(0.0, law.gap[kq]), depth = pressure / law.stiffness;
   t.phi = depth / (gap + depth);
-  t.phi_p = gap / ((gap + depth) * (gap + depth) * penalty);
+  t.phi_p = gap / ((gap + depth) * (gap + depth) * law.stiffness);
   t.slip = (xi - before).cwiseQuotient(length);
   const Vec2 old(law.traction[2 * kq], law.traction[2 * kq + 1]);
   t.coefficient = old.cwiseQuotient(length) + law.stiffness * t.phi * t.slip;
@@ -106,6 +105,16 @@ struct Motion {
                           -f.x_zeta.dot(height_rate));
   }
 };
+
+// Derivative of the traction by the pressure that bounds it.
+inline Vec3 by_pressure(const Traction& t, const Motion& v, const Friction& law) {
+  const Vec3 trial = law.stiffness * t.phi_p * (v.x * t.slip);
+  if (!t.slips) return trial;
+  const double size = t.trial.norm();
+  const Vec3 along = t.trial / size;
+  const double share = t.value.norm() / size;
+  return law.coefficient * along + share * (trial - along.dot(trial) * along);
+}
 
 // Adds w times the derivative of the nodal forces T . x_a foot_a. `share` bounds the geometric
 // terms as the pressure's limit does those of the normal force. third : third derivative of the

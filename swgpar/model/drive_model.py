@@ -44,9 +44,9 @@ from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
 from swgpar.solve.solve_state import NewtonSettings
 
-PRESSURE_LIMIT = 0.02
-"""Bound of contact pressures in the tangent's geometric terms, as a share of E: above any real
-pressure."""
+PRESSURE_LIMIT, FLANK_PRESSURE_LIMIT = 0.02, 0.2
+"""Bounds of contact pressures in the tangent's geometric terms, as shares of E: above any real
+pressure. Narrow cells of flanks have larger ones where a tip slides over a tip."""
 
 EDGE = 1.0 + 1e-9
 """Factor on the width of a rigid surface: points on its edge belong to it."""
@@ -315,11 +315,11 @@ def build_flank_contacts(
                 FixedRing()
                 if fixed
                 else FloatingRing(supports.couplings[RING_COUPLING], partition.comm),
-                order=design.contact.quadrature,
+                lines_on_layer=design.contact.quadrature,
                 crowning=design.crowning,
-                penalty=design.penalty("flexible_spline", name),
+                stick_stiffness=design.penalty("flexible_spline", name),
                 max_gap=foot_reach(design.drive.module, design.largest_backlash),
-                pressure_limit=PRESSURE_LIMIT * design.modulus_of("flexible_spline", name),
+                pressure_limit=FLANK_PRESSURE_LIMIT * design.modulus_of("flexible_spline", name),
                 friction_coefficient=design.contact.friction,
             )
         )

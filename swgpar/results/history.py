@@ -110,7 +110,7 @@ DECLARED = (
     Column("output_torque_Nmm", "N·mm", "load on the output"),
     Column("torque_balance_Nmm", "N·mm", "what is left of the sum of torques that must vanish"),
     Column("pairs_in_contact", "", "pairs of flanks in contact, in the whole drive", whole=True),
-    Column("max_penetration_mm", "mm", "largest penetration of a contact"),
+    Column("max_penetration_mm", "mm", "largest penetration of cam and pins"),
     Column("newton_iterations", "", "Newton iterations of the increment", whole=True),
     Column("wall_s", "s", "wall time of the increment"),
     Column(

@@ -7,7 +7,7 @@ decreased meanwhile. It sticks where the residual does not decrease at all. It a
 has at most `MAX_ITERATIONS_FACTOR` times as many; `solver.max_cutbacks` limits the halvings.
 
 The cycle breaker combines a line search that ends on the descending side (`LineSearch.descending`)
-with frozen segments of the flanks and, with friction, given bounds. Why the active set cannot cycle
+with frozen cells of the flanks and, with friction, given bounds. Why the active set cannot cycle
 then, and what follows, is in docs/theory/newton_step.md ("Cycle breaker").
 """
 

@@ -19,14 +19,13 @@ from swgpar.solve.solve_state import NewtonSettings, Phase, SolveState
 from swgpar.solve.time_limit import passed
 
 SOFT_TOLERANCE = 1e-2
-"""Residual over contact force at which a run with softened penalties ends."""
+"""Residual over contact force at which a run with softened contact ends."""
 
 FREEZING_POWER = 0.6
-"""Power of the tolerance that gives the relative residual below which segments are frozen.
+"""Power of the tolerance that gives the relative residual below which cells are frozen.
 
-Newton's iteration is then quadratic: the next step or the one after it is the last. With segments
-frozen at 1e-3 the input torque depends on the path to the solution by 4e-5 where teeth are wedged,
-at 1e-4 by 1e-6. Frozen later, a solve takes some iterations more."""
+Newton's iteration is then quadratic: the next step or the one after it is the last. Frozen
+earlier, the state depends on the path to it. Frozen later, a solve takes some iterations more."""
 
 MAX_REPEATED_SEARCHES = 12
 """Contact searches of a solve because nodes have moved: each begins the iteration anew."""
@@ -56,7 +55,7 @@ class Verdict(enum.Enum):
 class Decision:
     """What follows from a residual.
 
-    near_solution : the segments of the flanks are to be frozen
+    near_solution : the cells of the flanks are to be frozen
     cycles : contacts do not settle, the cycle is to be broken
     search_is_outdated : nodes have moved far since the last contact search
     goal : N, residual at which the iteration ends at the latest; None where it has not been asked

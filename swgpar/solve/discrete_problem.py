@@ -13,11 +13,18 @@ from mpi4py import MPI
 
 from swgpar.constraints.supports import Supports
 from swgpar.contact.clearance import FlankClearance
-from swgpar.contact.contact import NO_KEYS, Contact, ForceTerm, PenaltyContact, largest
+from swgpar.contact.contact import (
+    NO_KEYS,
+    Contact,
+    ForceTerm,
+    PenaltyContact,
+    PressureContact,
+    largest,
+)
 from swgpar.contact.flank_state import SearchRange
 from swgpar.contact.flanks import FlankContact
-from swgpar.contact.friction import PairKey
-from swgpar.contact.frozen_segments import FrozenSegments
+from swgpar.contact.friction import CellTractions, PairKey
+from swgpar.contact.frozen_cells import FrozenCells
 from swgpar.contact.search import FlankPair, facing_flanks
 from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
@@ -85,9 +92,9 @@ class DiscreteProblem:
     phases : wall seconds
 
     Attributes:
-    contacts : all of them;  penalty_contacts : those with multipliers;  force_terms : all that is
-    evaluated
-    segments : freezing of the flanks' segments;  torque_control : of the output's motion
+    contacts : all of them;  penalty_contacts : those with multipliers;  pressure_contacts : of
+    faces;  force_terms : all that is evaluated
+    cells : freezing of the flanks' cells;  torque_control : of the output's motion
     x : state vector: displacements (mm) and multipliers;  accepted : the last state found in
     equilibrium
     matrix : the tangent of the last `tangent`;  rows : its blocks on this rank;  matrix_rows :
@@ -117,9 +124,10 @@ class DiscreteProblem:
         self.wave_generator = wave_generator or WaveGeneratorContacts()
         self.flanks, self.contact_search = list(flanks), contact_search
         surfaces = self.wave_generator.of_inner_surface
-        self.penalty_contacts: list[PenaltyContact] = [*surfaces, *flanks]
+        self.penalty_contacts: list[PenaltyContact] = list(surfaces)
+        self.pressure_contacts: list[PressureContact] = [*surfaces, *flanks]
         self.contacts: list[Contact] = [*self.wave_generator.all, *flanks]
-        self.segments = FrozenSegments(self.flanks, partition.comm)
+        self.cells = FrozenCells(self.flanks, partition.comm)
         self.force_terms: list[ForceTerm] = [*self.contacts, *boundary_terms]
         outermost = 0.0 if contact_search is None else contact_search.outer_radius
         clearances = [
@@ -231,7 +239,7 @@ class DiscreteProblem:
 
     def reset_contacts(self) -> None:
         """Begin all contacts anew with the pairs and faces of the last search."""
-        for contact in self.penalty_contacts:
+        for contact in self.pressure_contacts:
             contact.reset()
 
     def moved_since_search(self) -> float:
@@ -353,7 +361,7 @@ class DiscreteProblem:
         positive definite, so that MUMPS factorises it without pivoting whether it is or not.
 
         It lacks the second variation of a coupling's rotation, the motion of the cuts between
-        segments, and pressures beyond the bound of the geometric terms. The multipliers couple
+        cells, and pressures beyond the bound of the geometric terms. The multipliers couple
         through the border (`BorderedSystem`).
 
         Returns keys (n,) of contact blocks on this rank that have no room in it.
@@ -368,6 +376,14 @@ class DiscreteProblem:
         with self.phases("insert"):
             fill_matrix(self.matrix, self.rows, self.matrix_rows)
         return missing
+
+    def complete_tangent(self, u: np.ndarray, state: LoadState) -> None:
+        """Fill `matrix` with the tangent at u (n_local, 3) mm, with room for all of its blocks;
+        collective."""
+        missing = self.tangent(u, state)
+        if self.partition.comm.allreduce(len(missing), op=MPI.MAX):
+            self.extend_pattern(missing)
+            self.tangent(u, state)
 
     def _round_off(self) -> float:
         """Norm (N) of the forces that follow from a last-digit error of every position."""
@@ -394,7 +410,7 @@ class DiscreteProblem:
 
     def scale_penalties(self, share: float) -> None:
         """Use this share of the full penalty in every contact."""
-        for contact in self.penalty_contacts:
+        for contact in self.pressure_contacts:
             contact.scale_penalty(share)
 
     def penetration(self) -> float:
@@ -436,7 +452,7 @@ class DiscreteProblem:
         self.elements.renew_pattern()
         self.pattern = None
 
-    def resume(self, tractions: dict[PairKey, np.ndarray]) -> None:
+    def resume(self, tractions: dict[PairKey, CellTractions]) -> None:
         """Take x and these tractions of the flanks of the ring gear as an accepted state."""
         self.x.copy(self.accepted)
         self.flanks_of(RING_GEAR).resume(tractions)

@@ -3,8 +3,8 @@
 A solve goes through phases (`Phase`), each one run of SNES, whose outcome decides which follows:
 
     SOFTENED   contact is being established: reduced penalties, loose tolerance
-    FULL       full penalties; segments of the flanks are cut anew until the solution is near
-    FROZEN     cycle breaker: frozen segments, frozen friction bounds, descending line search
+    FULL       full penalties; cells of the flanks are placed anew until the solution is near
+    FROZEN     cycle breaker: frozen cells, frozen friction bounds, descending line search
     AUGMENTED  multipliers take over the pressures, until the penetration is below its tolerance
 """
 
@@ -37,8 +37,8 @@ from swgpar.solve.solve_state import (
     SolveState,
 )
 
-SOFT_PENALTIES = (1e-3, 3e-2)
-"""Shares of the penalty of the first rough runs, while contact is established."""
+SOFT_PENALTIES = (1e-3, 3e-2, 0.3)
+"""Shares of the contacts' stiffness in the first rough runs, while contact is established."""
 
 MAX_FURTHER_SEARCHES = 3
 """Further contact searches of a solve, where flanks touch that the last search left out."""
@@ -185,22 +185,22 @@ class NewtonSolver:
         if decision.goal is not None:
             self.system.set_goal(decision.goal)
         if decision.near_solution:
-            self.problem.segments.freeze()
+            self.problem.cells.freeze()
         if decision.cycles:
             text = "   contacts do not settle in Newton iteration %d: descending line search"
             logger.info(text, its)
             self._break_cycle()
 
     def _break_cycle(self) -> None:
-        """Search descending, and once per solve with frozen segments and friction bounds."""
+        """Search descending, and once per solve with frozen cells and friction bounds."""
         state = self.state
         self.line_search.descending = True
-        if not state.breaker.started and not self.problem.segments.are_frozen():
-            self.problem.segments.freeze()
-            self.problem.segments.freeze_friction_bounds()
-            state.breaker.active = state.breaker.started = self.problem.segments.are_frozen()
+        if not state.breaker.started and not self.problem.cells.are_frozen():
+            self.problem.cells.freeze()
+            self.problem.cells.freeze_friction_bounds()
+            state.breaker.active = state.breaker.started = self.problem.cells.are_frozen()
             if state.breaker.active:
-                logger.info("   segments of the flanks are frozen until the contacts have settled")
+                logger.info("   cells of the flanks are frozen until the contacts have settled")
 
     # -- solve -------------------------------------------------------------------------------------
 
@@ -233,7 +233,7 @@ class NewtonSolver:
                 state.softenings.insert(0, state.penalty_share)
             elif state.phase is Phase.SOFTENED:
                 state.breaker = CycleBreaker()
-                self.problem.segments.release()
+                self.problem.cells.release()
             elif state.phase is Phase.FROZEN:
                 self._after_frozen(state)
             else:
@@ -276,7 +276,7 @@ class NewtonSolver:
         """Search anew, or extend the pattern, as the run that was interrupted needs it."""
         if state.outdated_search:
             state.repeated_searches += 1
-            # a search releases the segments and forgets the multipliers
+            # a search releases the cells and forgets the multipliers
             state.breaker, state.before_augmentation = CycleBreaker(), None
             self.problem.search(state.load_state)
         else:
@@ -295,11 +295,11 @@ class NewtonSolver:
         breaker, before = state.breaker, state.before_augmentation
         if breaker.solution is not None and state.iterations < state.max_iterations:
             logger.info(
-                "   the frozen segments stay: with segments cut anew the contacts do not settle"
+                "   the frozen cells stay: with cells placed anew the contacts do not settle"
             )
-            x, segments = breaker.solution
+            x, cells = breaker.solution
             x.copy(self.problem.x)
-            self.problem.segments.restore(segments)
+            self.problem.cells.restore(cells)
             breaker.solution = None
         elif before is not None:
             self._take_back(state, before)
@@ -312,15 +312,15 @@ class NewtonSolver:
             state.result = SolveResult(False, state.iterations, state.residual, text)
 
     def _after_frozen(self, state: SolveState) -> None:
-        """Repeat with bounds from present pressures until they agree; then cut segments anew."""
+        """Repeat with bounds from present pressures until they agree; then place cells anew."""
         breaker = state.breaker
-        change, top = self.problem.segments.freeze_friction_bounds()
+        change, top = self.problem.cells.freeze_friction_bounds()
         if breaker.rounds < MAX_FRICTION_ROUNDS and change > FRICTION_AGREEMENT * top:
             breaker.rounds += 1
             return
         breaker.active = False
-        breaker.solution = self.problem.x.copy(), self.problem.segments.saved()
-        self.problem.segments.release()
+        breaker.solution = self.problem.x.copy(), self.problem.cells.saved()
+        self.problem.cells.release()
 
     def _after_converged(self, state: SolveState) -> None:
         """Search again where contact was overlooked; else augment if it penetrates; else accept."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from swgpar.contact.flank_state import ActiveSegments
+from swgpar.contact.flank_state import ActiveCells
 from swgpar.load.load_states import LoadState
 from swgpar.petsc import PETSc
 from swgpar.solve.active_set_cycles import VisitedSets
@@ -62,16 +62,16 @@ class NewtonSettings:
 class CycleBreaker:
     """State of the cycle breaker in one solve; see `swgpar.solve.active_set_cycles`.
 
-    active : segments and friction bounds are frozen, and the line search is descending
+    active : cells and friction bounds are frozen, and the line search is descending
     started : it is or was active; afterwards the iteration starts close to the solution
     rounds : problems with given friction bounds that were solved
-    solution : found with frozen segments, until the iteration with segments cut anew converges
+    solution : found with frozen cells, until the iteration with cells placed anew converges
     """
 
     active: bool = False
     started: bool = False
     rounds: int = 0
-    solution: tuple[PETSc.Vec, list[ActiveSegments | None]] | None = None
+    solution: tuple[PETSc.Vec, list[ActiveCells | None]] | None = None
 
 
 @dataclass

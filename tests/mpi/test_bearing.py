@@ -138,7 +138,9 @@ def test_shares_of_compliance() -> None:
         )
     change = [after - before for before, after in zip(*states)]
     work = np.sum(change[2] * 1e-3 * change[3]) / (change[0] * change[1])
-    parallel_assert(shares["torsional"].balls == pytest.approx(work, rel=1e-3))
+    # the forces on the race turn with its normals, which the work of the loads does not see: 1.2 %
+    # here, the same with loads that differ by 0.1, 1 and 10 %
+    parallel_assert(shares["torsional"].balls == pytest.approx(work, rel=0.015))
     for share in shares.values():
         parallel_assert(
             0.0 < share.balls < 1.0 and 0.0 < share.race < 1.0 and share.balls + share.race < 1.0
@@ -148,10 +150,11 @@ def test_shares_of_compliance() -> None:
 
 @pytest.mark.parallel(1)
 def test_stiff_balls_take_no_share() -> None:
-    """Balls a thousand times as stiff yield a hundredth at the same force."""
+    """Balls a thousand times as stiff yield a hundredth at the same force, but for the turn of the
+    forces with the race."""
     soft, stiff = jumped(*BEARING), jumped(*BEARING, "wave_generator.bearing.stiffness_factor=1e3")
     shares = [bearing_shares(one.model, one.load_state)["torsional"].balls for one in (soft, stiff)]
-    assert abs(shares[1]) < 0.01 * shares[0]
+    assert abs(shares[1]) < 0.015 * shares[0]
     stiffness = [
         stepper.problem.wave_generator.balls.balls.spring.stiffness for stepper in (stiff, soft)
     ]

@@ -28,7 +28,7 @@ HARDEST = [
     ("gaps, plane reference", "c_P=0.7"),
     ("overlap, plane", "c_P=1.05"),
     ("increments, plane", "increment=10"),
-    ("penalty without augmentation, plane", "penalty_coef=5000"),
+    ("penalty without augmentation, plane", "wg_penalty_coef=500"),
 ]
 
 

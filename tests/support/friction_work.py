@@ -3,82 +3,91 @@ states."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.contact.cells import Cells
 from swgpar.contact.flank_pairs import Faces
 from swgpar.contact.flanks import FlankContact
-from swgpar.contact.segments import Segments
 from swgpar.fem.body import RING_GEAR
 from swgpar.kernel import contact_flanks
 
 
 @dataclass
 class Forces:
-    """Tangential forces (N) on the points of the flanks of a state, and where these are on the
-    master (mm)."""
+    """Tangential forces (N) on the points of the cells of a state, and where these are on the
+    master (mm).
+
+    keys : of the pairs then;  depth : mm, pressure over the tangential stiffness
+    """
 
     keys: list
-    segments: Segments
+    cells: Cells
     force: np.ndarray
     foot_point: np.ndarray
+    depth: np.ndarray
 
 
-def foot_points(flanks: FlankContact, faces: Faces, u: np.ndarray) -> np.ndarray:
-    """Foot points (n_face, n_q, 2) mm, arc length and z on the master, at displacement u (n_local,
-    3) mm."""
+NO_FORCES = Forces(
+    [],
+    Cells(np.zeros(0, dtype=np.int64), *np.zeros((4, 0))),
+    *np.zeros((2, 0, 2, 2)),
+    np.zeros((0, 2)),
+)
+
+
+def on_master(flanks: FlankContact, faces: Faces, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Gaps (n_face, n_q) mm and foot points (n_face, n_q, 2) mm, arc length and z on the master, at
+    displacement u (n_local, 3) mm."""
     rotation = flanks.ring_motion.ring_rotation(u)
-    settings = (
-        flanks.penalty,
-        0.0,
-        flanks.max_gap,
-        flanks.pressure_limit,
-        None,
-        None,
-        None,
-        rotation,
-    )
-    return contact_flanks(
+    settings = (0.0, 0.0, flanks.max_gap, flanks.pressure_limit, None, None, None, rotation)
+    gap, _, foot_point, _ = contact_flanks(
         flanks.flank_pairs.masters, faces, u, np.zeros_like(faces.weight), *settings
-    )[2]
+    )
+    return gap, foot_point
+
+
+def touching(gap: np.ndarray, depth: np.ndarray) -> np.ndarray:
+    """Part of an increment in which a point touches that does at one end of it: the law's own rule
+    (kernel/friction.hpp). gap : mm, at the other end"""
+    apart = np.maximum(gap, 0.0)
+    return np.divide(depth, apart + depth, out=np.ones_like(depth), where=apart > 0.0)[..., None]
 
 
 def forces(stepper: LoadStepper) -> tuple[Forces, float]:
     """Forces of the present state, and their work over the slip since the one before; metric taken
     as one."""
     flanks, u = stepper.problem.flanks_of(RING_GEAR), stepper.problem.displacement()
-    active = flanks.saved_segments()
+    active = flanks.saved_cells()
     if active is None or active.friction is None:
-        none = np.zeros((0, 4, 2))
-        return Forces(
-            [], Segments(np.zeros(0, dtype=np.int64), *np.zeros((3, 0, 4))), none, none
-        ), 0.0
-    place = foot_points(flanks, active.faces, u)
-    force = active.faces.weight[..., None] * active.friction.current
+        return NO_FORCES, 0.0
+    _, place = on_master(flanks, active.faces, u)
+    law, keys = active.friction, [p.key for p in flanks.pairs]
+    force = active.faces.weight[..., None] * law.current
     force[~flanks.flank_pairs.owned[active.faces.patch]] = 0.0
-    work = float(np.nansum(force * (place - active.friction.foot_point)))
-    return Forces([p.key for p in flanks.pairs], active.segments, force, place), work
+    depth = active.pressure / law.stiffness
+    slip = touching(law.gap, depth) * (place - law.foot_point)
+    work = float(np.nansum(force * slip))
+    return Forces(keys, active.placed.cells, force, place, depth), work
 
 
 def onward(stepper: LoadStepper, old: Forces) -> float:
     """Work of the forces of the state before over the slip since then."""
     flanks, u = stepper.problem.flanks_of(RING_GEAR), stepper.problem.displacement()
     now = {p.key: k for k, p in enumerate(flanks.pairs)}
-    pair, local = np.divmod(old.segments.parent, flanks.n_face)
+    pair, local = np.divmod(old.cells.parent, flanks.n_face)
     new = np.array([now.get(key, -1) for key in old.keys], dtype=np.int64)[pair]
     keep = np.flatnonzero((new >= 0) & (np.abs(old.force).sum(axis=(1, 2)) > 0.0))
     if not len(keep):
         return 0.0
-    part = Segments(
-        np.arange(len(keep)), *(getattr(old.segments, n)[keep] for n in ("a", "b", "share"))
-    )
-    place = foot_points(
-        flanks, flanks.flank_pairs.faces.cut(new[keep] * flanks.n_face + local[keep], part), u
-    )
-    return float(np.nansum(old.force[keep] * (place - old.foot_point[keep])))
+    others = (getattr(old.cells, f.name)[keep] for f in fields(Cells) if f.name != "parent")
+    part = Cells(new[keep] * flanks.n_face + local[keep], *others)
+    gap, place = on_master(flanks, flanks.flank_pairs.faces.of_cells(part), u)
+    slip = touching(gap, old.depth[keep]) * (place - old.foot_point[keep])
+    return float(np.nansum(old.force[keep] * slip))
 
 
 class FrictionWork:

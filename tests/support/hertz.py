@@ -4,28 +4,69 @@ meshes of blocks."""
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
-from support.contact_blocks import Blocks, block, master
-from swgpar.contact.flank_pairs import PlacedFaces
-from swgpar.contact.segments import SAMPLES, face_corners
-from swgpar.materials import Isotropic
+from support.contact_blocks import Block, Blocks, Surface, arc_block
+from support.element_mesh import ElementMesh
+from swgpar.materials import Isotropic, Material
 
-YOUNG = 210e3
-POISSON = 0.3
-RADIUS = 1000.0
-SIZE = 50.0
-"""MPa, of both bodies; mm, radius, height and width of the blocks. The half width is about 1 mm:
-strains are 5e-4."""
+STEEL = Isotropic(E=210e3, nu=0.3)
 
-APPROACH, FINE, GROWTH = 2.2e-3, 1.3, 0.8
-"""mm, of the far sides; half widths with equal elements; logarithm of the growth beyond, times
-elements on one."""
+HALF_WIDTH = 0.2
+"""mm, that the approach is made for."""
 
-STIFFNESS, AUGMENTATIONS = 2.0, 2
-"""Penalty over E and the elements' size, as of the flanks on fine meshes. It leaves a penetration
-of a few per cent of the cylinder's height over the contact, before that is augmented away."""
+RADIUS = 4000.0 * HALF_WIDTH
+"""mm. Strains are 1e-4."""
+
+SIZE = 24.0
+"""mm, height and half the length of the blocks: many half widths, and some of the longest
+elements."""
+
+WIDTH = np.array([0.0, 1.0])
+"""mm, places of the nodes along the line: plane strain."""
+
+
+def graded(element: float, fine: float, length: float, growth: float) -> np.ndarray:
+    """Nodes of [0, length]: elements of this length up to `fine`, then ever longer ones."""
+    steps = [element] * int(np.ceil(fine / element))
+    while sum(steps) < length:
+        steps.append(steps[-1] * growth)
+    return np.concatenate([[0.0], np.cumsum(steps) * length / sum(steps)])
+
+
+def plane_modulus(material: Material) -> float:
+    """E / (1 - nu²), MPa."""
+    return material.modulus / (1.0 - material.poisson**2)
+
+
+@cache
+def centre_yields(material: Material) -> float:
+    """Displacement (mm) of the middle of the contact towards the far side of a block under Hertz's
+    pressure of 1 N/mm on `HALF_WIDTH`: by linear elements, without a contact.
+
+    Half of the block, by symmetry, with ten elements on the half width. On 20, and on elements that
+    grow half as fast beyond, it is 0.1 % larger.
+    """
+    line = graded(0.1 * HALF_WIDTH, 1.5 * HALF_WIDTH, SIZE, 1.1)
+    block = arc_block(line, line, WIDTH, Surface((0.0, 0.0), 0.0, -1, RADIUS), material)
+    mesh = ElementMesh(block.points, block.hexes, material)
+    load, fixed = np.zeros_like(block.points), np.zeros(block.points.shape, dtype=bool)
+    fixed[:, 2] = True
+    fixed[np.abs(block.points[:, 0]) < 1e-9, 0] = True
+    fixed[np.abs(block.points[:, 1] - SIZE) < 1e-9] = True
+    t, w = np.polynomial.legendre.leggauss(20)
+    for k, (low, high) in enumerate(zip(line, line[1:])):
+        x = 0.5 * (low + high) + 0.5 * (high - low) * t
+        pressure = np.sqrt(np.maximum(1.0 - (x / HALF_WIDTH) ** 2, 0.0))
+        pressure *= 2.0 / (np.pi * HALF_WIDTH)
+        share = (x - low) / (high - low)
+        for node, shape in ((k, 1.0 - share), (k + 1, share)):
+            force = 0.5 * (high - low) * (w * pressure * shape).sum()
+            load[block.nodes[node], 1] += 0.5 * force
+    u = mesh.solve(fixed, np.zeros_like(load), load)
+    return float(u[block.nodes[0, 0], 1])
 
 
 @dataclass(frozen=True)
@@ -33,21 +74,24 @@ class Hertz:
     """What was found, and the half-plane solution for the load that was found (Johnson, Contact
     Mechanics, 4.2).
 
-    unknowns : of the mesh in the plane;  x, p (n,) : places and pressures of the cylinder's surface
-    nodes, mm, MPa
-    load : N/mm;  found_half_width : mm, from the second moment of the pressure
+    materials : of the block and of the cylinder;  approach : mm, of the far sides;  load : N/mm
+    unknowns : nodes of the mesh;  iterations : of Newton
+    x, p, width (n,) : places (mm), pressures (MPa) and widths (mm) of the cells of a line
     """
 
+    materials: tuple[Material, Material]
+    approach: float
+    load: float
     unknowns: int
+    iterations: int
     x: np.ndarray
     p: np.ndarray
-    load: float
-    found_half_width: float
+    width: np.ndarray
 
     @property
     def modulus(self) -> float:
-        """E* of two bodies of one material, in plane strain."""
-        return YOUNG / (2.0 * (1.0 - POISSON**2))
+        """E* in plane strain."""
+        return 1.0 / sum(1.0 / plane_modulus(material) for material in self.materials)
 
     @property
     def peak(self) -> float:
@@ -60,94 +104,97 @@ class Hertz:
         return float(np.sqrt(4.0 * self.load * RADIUS / (np.pi * self.modulus)))
 
     @property
+    def found_half_width(self) -> float:
+        """From the second moment of the pressure: that of a semi-ellipse is b² / 4."""
+        force = self.p * self.width
+        middle = (force * self.x).sum() / force.sum()
+        moment = (force * ((self.x - middle) ** 2 + self.width**2 / 12.0)).sum()
+        return 2.0 * float(np.sqrt(moment / force.sum()))
+
+    @property
+    def exact_approach(self) -> float:
+        """mm, for the load that was found: the logarithm of the half width tells it from that of
+        `centre_yields`."""
+        return self.load * sum(
+            centre_yields(material)
+            + 2.0 / (np.pi * plane_modulus(material)) * np.log(HALF_WIDTH / self.half_width)
+            for material in self.materials
+        )
+
+    @property
     def deviation(self) -> float:
-        """Largest deviation of the nodal pressures within 0.9 half widths, over the peak
-        pressure."""
-        exact = self.peak * np.sqrt(np.maximum(1.0 - (self.x / self.half_width) ** 2, 0.0))
-        return float(np.abs(self.p - exact)[self.x < 0.9 * self.half_width].max() / self.peak)
+        """Largest deviation of the pressure within 0.9 half widths, over the peak pressure."""
+        middle = (self.p * self.width * self.x).sum() / (self.p * self.width).sum()
+        place = (self.x - middle) / self.half_width
+        exact = self.peak * np.sqrt(np.maximum(1.0 - place**2, 0.0))
+        return float(np.abs(self.p - exact)[np.abs(place) < 0.9].max() / self.peak)
 
 
-def spacing(fine: float, length: float, growth: float) -> np.ndarray:
-    """Nodes of [0, length]: elements of size `fine` up to FINE, then ever longer ones."""
-    steps = [fine] * int(np.ceil(FINE / fine))
-    while sum(steps) < length:
-        steps.append(steps[-1] * growth)
-    return np.concatenate([[0.0], np.cumsum(steps) * length / sum(steps)])
+def flank_line(element: float) -> np.ndarray:
+    """Nodes of a contact surface, equal elements of about this length on -SIZE .. SIZE."""
+    count = round(2.0 * SIZE / element)
+    return np.linspace(-SIZE, SIZE, count + 1)
 
 
-def hertz(on_half_width: int, order: int = 2, incompatible: bool = True) -> Hertz:
-    """Half of the problem, by symmetry, in plane strain.
+def hertz(
+    ratio: float,
+    place: float = 0.0,
+    *,
+    materials: tuple[Material, Material] = (STEEL, STEEL),
+    other: float = 1.125,
+    incompatible: bool = True,
+) -> Hertz:
+    """Press the cylinder on the block.
 
-    on_half_width : elements of the cylinder on a half width; the block has a ninth fewer, so that
-    meshes do not match
-    order : Gauss points per direction on a segment
+    ratio : length of the cylinder's elements over the half width;  place : of the contact's middle
+    in an element, 0 at a node
+    other : length of the block's elements over that of the cylinder's, so that meshes do not match
     """
-    growth, z = float(np.exp(GROWTH / on_half_width)), np.array([0.0, 1.0])
-    fine, line = (spacing(size / on_half_width, SIZE, growth) for size in (1.0, 1.125))
-    lower, lower_hexes, lower_grid = block(line, -line[::-1], z)
-    upper, upper_hexes, upper_grid = block(fine, fine, z)
-    upper[:, 1] += (RADIUS - np.sqrt(RADIUS**2 - upper[:, 0] ** 2)) * (1.0 - upper[:, 1] / SIZE)
-    points, first = np.vstack([lower, upper]), len(lower)
-    hexes = np.vstack([lower_hexes, upper_hexes + first])
-    # the nodes of both surfaces come first
-    surface = np.concatenate([lower_grid[:, -1].ravel(), first + upper_grid[:, 0].ravel()])
-    order_of = np.concatenate([surface, np.setdiff1d(np.arange(len(points)), surface)])
-    number = np.argsort(order_of)
-    points, hexes = points[order_of], number[hexes]
-    flanks = master(
-        np.column_stack([line, 0.0 * line]), np.tile([1.0, 0.0], (len(line), 1)), line, z, 0
+    element = ratio * HALF_WIDTH
+    blocks = cylinder_on_block(element, place, materials, other, incompatible)
+    exact = Hertz(materials, 0.0, 0.0, 0, 0, *np.zeros((3, 0)))
+    load = 0.25 * np.pi * exact.modulus * HALF_WIDTH**2 / RADIUS
+    approach = load * sum(centre_yields(material) for material in materials)
+    u = np.zeros_like(blocks.points)
+    u[blocks.first :, 1] = -approach
+    pressed = blocks.press(u, np.zeros_like(u))
+    line = pressed.line == pressed.line[0]
+    return Hertz(
+        materials,
+        approach,
+        -float(pressed.contact[blocks.first :, 1].sum()),
+        len(u),
+        blocks.iterations,
+        pressed.x[line],
+        pressed.pressure[line],
+        pressed.width[line],
     )
-    flanks.conn[0] = number[lower_grid[:, -1]]
-    placed = cylinder_faces(points, face_corners(number[first + upper_grid[:, 0]]).astype(np.int32))
+
+
+def cylinder_on_block(
+    element: float,
+    place: float,
+    materials: tuple[Material, Material],
+    other: float,
+    incompatible: bool,
+) -> Blocks:
+    """Both bodies with their far sides held."""
+    bodies: list[Block] = []
+    for length, facing, radius, material in (
+        (other * element, 1, np.inf, materials[0]),
+        (element, -1, RADIUS, materials[1]),
+    ):
+        line, depth = flank_line(length), graded(length, 4.0 * length, SIZE, 1.2)
+        step = line[1] - line[0]
+        # the middle of the line is a node or the middle of an element
+        shift = (0.5 * step if len(line) % 2 == 0 else 0.0) + (place * step if facing < 0 else 0.0)
+        line = line + shift
+        bodies.append(
+            arc_block(line, depth, WIDTH, Surface((0.0, 0.0), line[0], facing, radius), material)
+        )
+    lower, upper = bodies
+    points = np.vstack([lower.points, upper.points])
     fixed = np.zeros(points.shape, dtype=bool)
     fixed[:, 2] = True
-    fixed[points[:, 0] < 1e-12, 0] = True
-    fixed[np.abs(points[:, 1]) > SIZE - 1e-12, 1] = True
-    u = np.zeros_like(points)
-    u[number[first + upper_grid.ravel()], 1] = -APPROACH
-    penalty = STIFFNESS * YOUNG * on_half_width
-    blocks = Blocks(
-        points,
-        hexes,
-        len(surface),
-        flanks,
-        placed,
-        fixed,
-        Isotropic(E=YOUNG, nu=POISSON),
-        penalty,
-        order,
-    )
-    blocks.incompatible = incompatible
-    faces, pressure, contact = blocks.press(u, np.zeros_like(points), AUGMENTATIONS)
-    # pressure as it is reported: by nodes, force over area
-    force, area = np.zeros(len(points)), np.zeros(len(points))
-    np.add.at(force, faces.conn, np.einsum("fq,fqa->fa", faces.weight * pressure, faces.shape))
-    np.add.at(area, faces.conn, np.einsum("fq,fqa->fa", faces.weight, faces.shape))
-    nodes = number[first + upper_grid[:, 0, 0]]
-    place = np.einsum("fqa,fa->fq", faces.shape, points[faces.conn][..., 0])
-    weight = faces.weight * pressure
-    # a semi-ellipse of half width b has the second moment b^2 / 4
-    half_width = 2.0 * float(np.sqrt((weight * place**2).sum() / weight.sum()))
-    load = -2.0 * float(contact[number[first + upper_grid[:, 0]], 1].sum())
-    return Hertz(
-        len(points), points[nodes, 0] + u[nodes, 0], force[nodes] / area[nodes], load, half_width
-    )
-
-
-def cylinder_faces(points: np.ndarray, conn: np.ndarray) -> PlacedFaces:
-    """Faces (n, 4) of the cylinder, with the height of their chords over the arc, whose centre is
-    at height RADIUS."""
-    chord = points[conn[:, 1]] - points[conn[:, 0]]
-    length = np.linalg.norm(chord, axis=1)
-    normal = np.column_stack([chord[:, 1], -chord[:, 0], 0.0 * length]) / length[:, None]
-    on_chord = points[conn[:, 0], None] + SAMPLES[:, None] * chord[:, None]
-    below = RADIUS - np.hypot(on_chord[..., 0], RADIUS - on_chord[..., 1])
-    return PlacedFaces(
-        conn,
-        np.zeros_like(conn, dtype=np.uint8),
-        points[conn],
-        normal,
-        np.column_stack([length, np.ones(len(length))]),
-        np.repeat(below[:, :, None], len(SAMPLES), axis=2),
-        np.zeros(len(conn), np.int32),
-    )
+    fixed[np.abs(np.abs(points[:, 1]) - SIZE) < 1e-9] = True
+    return Blocks(lower, upper, fixed, incompatible=incompatible)

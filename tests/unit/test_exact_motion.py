@@ -177,7 +177,7 @@ def test_conjugate_teeth_transmit_without_error(name: str) -> None:
 
 
 def test_a_ring_on_four_rollers_is_an_elastica() -> None:
-    """A quarter of it by shooting: two free pieces, whose inner force changes along the normal at
+    """A quarter of it by shooting: two free divided, whose inner force changes along the normal at
     the roller."""
     rollers = {"type": "four_roller", "beta": 25.0, "r_4": 15.0, "face_width": 10.0}
     design = swgpar.load_design(PLANE, {"wave_generator": rollers})
@@ -195,13 +195,13 @@ def test_a_ring_on_four_rollers_is_an_elastica() -> None:
 
         return solve_ivp(rates, (0.0, length), start, rtol=1e-11, atol=1e-13, dense_output=True).sol
 
-    def pieces(unknown: np.ndarray) -> tuple[Any, Any]:
+    def divided(unknown: np.ndarray) -> tuple[Any, Any]:
         height, bend, across, along, contact = unknown
         first = piece(np.array([0.0, height, np.pi, bend]), contact, (across, 0.0))
         return first, piece(first(contact), quarter - contact, (0.0, along))
 
     def missed(unknown: np.ndarray) -> np.ndarray:
-        first, second = pieces(unknown)
+        first, second = divided(unknown)
         _, _, across, along, contact = unknown
         touching, end = first(contact), second(quarter - contact)
         away = touching[:2] - center
@@ -220,7 +220,7 @@ def test_a_ring_on_four_rollers_is_an_elastica() -> None:
     begin[4] = np.radians(25.0) * line.radius
     solution, _, found, text = fsolve(missed, begin, xtol=1e-12, full_output=True)
     assert found == 1, text
-    first, second = pieces(solution)
+    first, second = divided(solution)
     theta = np.linspace(0.0, 0.5 * np.pi, 91)
     s = np.minimum(theta * line.radius, quarter)
     early = s < solution[4]

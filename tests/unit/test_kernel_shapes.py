@@ -23,7 +23,9 @@ from support.element_mesh import ElementMesh
 from swgpar.contact.flank_pairs import Faces
 from swgpar.gear_trains.kernel import MESH, MESH_ERROR, SHAFT, GearboxKernel, PlanetaryStepKernel
 from swgpar.kernel import (
+    add_contact_lines,
     add_face_blocks,
+    add_line_compliances,
     assemble_elements,
     contact_flanks,
     recover_stress,
@@ -107,6 +109,12 @@ def flank() -> Values:
         "rotation": 0.0,
         "moment": np.zeros(1),
         "beyond": 1e-4,
+        "gradients": SimpleNamespace(
+            conn=np.zeros((1, 2, 8), np.int32),
+            sixths=np.zeros((1, 2, 8), np.uint8),
+            vector=np.zeros((1, 2, 8, 3)),
+            friction=np.zeros((1, 2, 8, 3)),
+        ),
     }
 
 
@@ -116,6 +124,32 @@ def face_blocks() -> Values:
         "sixths": np.zeros((1, 3), np.uint8),
         "blocks": np.ones((1, 3, 3, 3, 3)),
         "rows": Rows(N_OWN, n_local=9),
+    }
+
+
+def contact_lines() -> Values:
+    """Two lines, of two cells and of one, whose gaps depend on three nodes each."""
+    return {
+        "start": np.array([0, 2, 3]),
+        "conn": np.array([[0, 1, 8], [1, 2, -1], [3, 4, 8]], dtype=np.int32),
+        "sixths": np.zeros((3, 3), np.uint8),
+        "left": np.ones((3, 3, 3)),
+        "right": np.ones((3, 3, 3)),
+        "stiffness": np.ones(5),
+        "rows": Rows(N_OWN, n_local=9),
+    }
+
+
+def line_compliances() -> Values:
+    """Two lines, of two cells and of one, on a flank of three nodes."""
+    return {
+        "start": np.array([0, 2, 3]),
+        "low": np.array([0.1, 0.3, 0.7]),
+        "high": np.array([0.3, 0.5, 0.8]),
+        "missing": SimpleNamespace(
+            s=np.array([0.0, 0.5, 1.0]), green=np.zeros((3, 3)), logarithm=1e-5
+        ),
+        "out": np.zeros(5),
     }
 
 
@@ -221,8 +255,17 @@ CALLS = [
         "contact_flanks",
         contact_flanks,
         flank,
-        ("residual", "moment", "rows.values", "friction.current"),
-        ("residual", "moment", "rows", "friction", "friction.lagged"),
+        (
+            "residual",
+            "moment",
+            "rows.values",
+            "friction.current",
+            "gradients.conn",
+            "gradients.sixths",
+            "gradients.vector",
+            "gradients.friction",
+        ),
+        ("residual", "moment", "rows", "friction", "friction.lagged", "gradients"),
         {
             "patches.conn": (-1, 16),
             "patches.sixths": (0, 6),
@@ -238,6 +281,21 @@ CALLS = [
         ("rows.values",),
         indices={"conn": (-1, 9), "sixths": (0, 6)},
         free=(("rows.number", 0),),
+    ),
+    Call(
+        "add_contact_lines",
+        add_contact_lines,
+        contact_lines,
+        ("rows.values",),
+        indices={"conn": (-1, 9), "sixths": (0, 6)},
+        free=(("rows.number", 0), ("start", 0)),  # a line may have no cells
+    ),
+    Call(
+        "add_line_compliances",
+        add_line_compliances,
+        line_compliances,
+        ("out",),
+        free=(("start", 0),),
     ),
     Call(
         "reference_elements",
@@ -381,6 +439,22 @@ def test_rows_lie_within_their_blocks(starts: list[int]) -> None:
         match=r"^add_face_blocks: rows.start .*; expected to ascend from 0 to the 21 blocks",
     ):
         add_face_blocks(**values)
+
+
+@pytest.mark.parametrize("start", [[0, 4, 3], [1, 2, 3], [0, 2, 2], [0, -1, 3]])
+@pytest.mark.parametrize(
+    ("function", "arguments"),
+    [(add_contact_lines, contact_lines), (add_line_compliances, line_compliances)],
+    ids=["add_contact_lines", "add_line_compliances"],
+)
+def test_lines_have_all_cells(
+    function: Callable[..., Any], arguments: Callable[[], Values], start: list[int]
+) -> None:
+    with pytest.raises(
+        ValueError,
+        match=rf"^{function.__name__}: start .*; expected to ascend from 0 to the 3 cells",
+    ):
+        function(**arguments() | {"start": np.array(start)})
 
 
 @pytest.mark.parametrize("n_own", [-1, 10])

@@ -17,6 +17,7 @@ from swgpar.constraints.boundary_conditions import DeadLoad, PrescribedDisplacem
 from swgpar.constraints.distributing_coupling import node_weights
 from swgpar.constraints.supports import Supports
 from swgpar.errors import ConvergenceError
+from swgpar.evaluation.flank_loads import flank_forces, line_loads, nodal_forces
 from swgpar.evaluation.torques import torques
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.body_layout import BodyLayout
@@ -26,7 +27,6 @@ from swgpar.fem.stress import principal
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.geometry.rotation import rotated
-from swgpar.half_space.flank_loads import flank_forces, line_loads, nodal_forces
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe

@@ -1,10 +1,11 @@
-"""Contact of every touching pair of flanks: force, line load, and the local pressure that no mesh
-of a drive resolves.
+"""Contact of every touching pair of flanks: force, line load, and the pressure.
 
-The mesh gives the force of a pair, its place along the face width, and the motion of both teeth.
-The exact flanks are moved with their teeth. In the plane model the gap between them goes into the
-line contact of two half planes (`contact.line_contact`), in the cup model into the contact of two
-half spaces over a patch (`contact.patch_contact`).
+In the plane model the pressure is that of the contact law, which joins the mesh to the half plane
+(`swgpar.contact.contact_lines`), on cells that are finer than those of the solution. In space the
+load of a line ends within a layer of elements, where the law's lines do not know each other: the
+mesh gives the force of a pair and its place along the face width, the exact flanks are moved with
+their teeth, and the gap between them goes into the contact of two half spaces over a patch
+(`swgpar.evaluation.patch_contact`).
 """
 
 from __future__ import annotations
@@ -17,14 +18,15 @@ import numpy as np
 from scipy.integrate import trapezoid
 
 from swgpar.contact.flanks import FlankContact
+from swgpar.contact.pressed_lines import PressedLine
 from swgpar.contact.search import FlankPair
+from swgpar.evaluation.flank_loads import LineLoad, flank_forces, line_loads
+from swgpar.evaluation.line_contact import largest_shear
+from swgpar.evaluation.moved_teeth import MovedTooth
+from swgpar.evaluation.patch_contact import CELLS_ACROSS, PatchContact, patch_contact
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import read_field
 from swgpar.geometry.rotation import SIXTHS, rotated
-from swgpar.half_space.flank_loads import LineLoad, flank_forces, line_loads
-from swgpar.half_space.line_contact import LineContact, line_contact
-from swgpar.half_space.moved_teeth import MovedTooth
-from swgpar.half_space.patch_contact import PatchContact, patch_contact
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.materials import contact_modulus
@@ -40,6 +42,9 @@ WIDTH = 0.05
 COARSE, FINE = 401, 21
 """Points along a profile, and between three of them, among which that of the least gap is looked
 for."""
+
+STRIPS = 48
+"""Strips of a line on which its pressure is reported in the plane."""
 
 END = 1e-6
 """Distance over the module from the end of a profile within which a contact lies on an edge."""
@@ -165,11 +170,17 @@ def _contacts(model: DriveModel, state: LoadState, flanks: FlankContact) -> list
     moved, facing = moved_teeth(model, [pairs[k] for k in resolved], flanks)
     materials = (model.design.materials[layout.name] for layout in (spline, flanks.ring.layout))
     modulus = contact_modulus(*materials, plane_stress=model.design.drive.model == "plane")
+    lines: dict[tuple[int, int], list[PressedLine]] = {}
+    for line in flanks.pressed_lines(model.problem.displacement(), state):
+        lines.setdefault((line.pair.sector, line.pair.side), []).append(line)
     failed = []
     for k, teeth, ring_teeth in zip(resolved, moved, facing):
         load = loads[pairs[k].sector - first, pairs[k].side]
         try:
-            carried[k] = _with_pressure(carried[k], model, load, teeth, ring_teeth, modulus)
+            of_pair = lines.get((pairs[k].sector, pairs[k].side), [])
+            carried[k] = _with_pressure(
+                carried[k], model, load, of_pair, teeth, ring_teeth, modulus
+            )
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             failed.append(f"tooth {pairs[k].sector}: {error}")
     contacts = [contact for part in model.comm.allgather(carried) for contact in part]
@@ -263,40 +274,53 @@ def _with_pressure(
     contact: PairContact,
     model: DriveModel,
     load: LineLoad,
+    lines: list[PressedLine],
     teeth: Neighbours,
     ring_teeth: Neighbours,
     modulus: float,
 ) -> PairContact:
-    """The contact of a pair with its local pressure. modulus : E*, MPa"""
+    """The contact of a pair with its local pressure.
+
+    lines : of the contact law, which tells the pressure in the plane, and in space where half
+    spaces find no contact: at the end of the face width;  modulus : E*, MPa
+    """
     tooth, facing = teeth[1], ring_teeth[1]
     along = load.load @ load.direction
-    gap = _Gap(tooth, facing)
-    if model.design.drive.model == "plane":
-        found = _line(model, gap, load, modulus)
-        shape, width, reaches = found, float(np.ptp(load.z)), False
-        station = ContactStation(
-            z_mm=0.0,
-            line_load_Nmm=float(along[0]),
-            s_mm=found.middle,
-            half_width_mm=found.half_width,
-            pressure_MPa=found.peak,
-            first_cell_mm=float(found.x[0]),
-            cell_width_mm=float(found.x[1] - found.x[0]),
-            cell_length_mm=width,
-            cells_MPa=tuple(found.pressure.tolist()),
-        )
-        stations: tuple[ContactStation, ...] = (station,)
-    else:
-        patch = _patch(model, gap, load, along, contact.force_N, modulus)
-        shape, reaches = patch.strongest, patch.reaches
+    gap, plane = _Gap(tooth, facing), model.design.drive.model == "plane"
+    patch = None
+    if not plane:
+        try:
+            patch = _patch(model, gap, load, along, contact.force_N, modulus)
+        except (ArithmeticError, np.linalg.LinAlgError):
+            if not lines:
+                raise
+    if patch is not None:
+        strongest, reaches = patch.strongest, patch.reaches
+        at_end, shear = strongest.at_end, strongest.largest_shear()
         stations = patch_stations(patch)
         width = len(patch.z) * patch.cell_length
+    elif lines:
+        strips = STRIPS if plane else CELLS_ACROSS
+        stations = tuple(_station(line, strips) for line in lines)
+        line = max(lines, key=lambda one: one.largest)
+        near = END * model.design.drive.module
+        at_end = bool(line.low[0] < near or line.high[-1] > tooth.profile.length - near)
+        low, high = facing.ends
+        reaches = not plane and any(
+            one.z - one.length < low or one.z + one.length > high for one in lines
+        )
+        width = sum(one.length for one in lines)
+        shear = largest_shear(
+            line.low, line.high, line.pressure, _station(line, strips).half_width_mm
+        )
+    else:
+        return contact
     top = max(stations, key=lambda station: station.pressure_MPa)
     ends = top.s_mm + top.half_width_mm * np.array([[-1.0], [1.0]])
     ring_tip = gap.foot(ends, np.array([top.z_mm])).min() < END * model.design.drive.module
     places = {
         "end of the face width": reaches,
-        f"tip of the {tooth.body.replace('_', ' ')}": shape.at_end,
+        f"tip of the {tooth.body.replace('_', ' ')}": at_end,
         f"tip of the {facing.body.replace('_', ' ')}": ring_tip,
     }
     edges = [place for place, reached in places.items() if reached]
@@ -309,7 +333,7 @@ def _with_pressure(
         radius_mm=float(np.hypot(*middle)),
         pressure_MPa=top.pressure_MPa,
         half_width_mm=top.half_width_mm,
-        shear_MPa=shape.largest_shear(),
+        shear_MPa=shear,
         sliding_mm_s=_sliding(model, gap, teeth, ring_teeth, top)
         * model.design.load.input_speed
         * np.pi
@@ -317,6 +341,23 @@ def _with_pressure(
         edge=int(bool(edges)),
         edge_place=" and the ".join(edges),
         stations=stations,
+    )
+
+
+def _station(line: PressedLine, strips: int) -> ContactStation:
+    """The contact at a station, with its pressure on equal strips."""
+    width, (low, high) = (line.high[-1] - line.low[0]) / strips, line.ends
+    pressure = line.strips(strips)
+    return ContactStation(
+        z_mm=line.z,
+        line_load_Nmm=line.line_load,
+        s_mm=0.5 * (low + high),
+        half_width_mm=0.5 * (high - low),
+        pressure_MPa=float(pressure.max()),
+        first_cell_mm=float(line.low[0] + 0.5 * width),
+        cell_width_mm=float(width),
+        cell_length_mm=line.length,
+        cells_MPa=tuple(pressure.tolist()),
     )
 
 
@@ -389,18 +430,6 @@ class _Gap:
         s = s[self(s, z).argmin(axis=0), np.arange(len(z))]
         fine = s + np.linspace(-1.0, 1.0, FINE)[:, None] * length / (COARSE - 1)
         return fine[self(fine, z).argmin(axis=0), np.arange(len(z))]
-
-
-def _line(model: DriveModel, gap: _Gap, load: LineLoad, modulus: float) -> LineContact:
-    middle = np.zeros(1)
-    width, size = WIDTH * model.design.drive.module, float(np.linalg.norm(load.load[0]))
-    return line_contact(
-        lambda s: gap(s[:, None], middle)[:, 0],
-        float(gap.least_at(middle)[0]),
-        width,
-        size,
-        modulus,
-    )
 
 
 def _patch(

@@ -15,7 +15,7 @@ from functools import partial
 
 import numpy as np
 
-from swgpar.half_space.line_contact import LineContact, contact_end
+from swgpar.evaluation.line_contact import LineContact, contact_end
 
 CELLS_ACROSS, CELLS_ALONG = 24, 28
 """Cells of constant pressure over the width and along the length of the grid."""

@@ -1,10 +1,5 @@
-"""Pressure of the flanks by contact of half planes and half spaces, on meshes that do and do not
-resolve it.
-
-In the plane reference drive the resolving mesh has 200 elements along every flank, about a fifth of
-the half width of the contact long, in layers that get thinner towards it. The cam and the flanks
-have twenty times the usual penalty there.
-"""
+"""Stiffness and pressure of the flanks by their law, on meshes that do not resolve their
+contact."""
 
 from __future__ import annotations
 
@@ -23,19 +18,23 @@ from swgpar.meshing.recipe import make_recipe
 DESIGN, CUP, OUT = (
     "drivers/plane_half_turn.toml",
     "drivers/cup_45deg.toml",
-    Path("results/bench/line_contact"),
+    Path("results/bench/contact_pressure"),
 )
 
-TORQUES = (0.5, 2.0, 8.0)
-"""N·m."""
+TORQUES = (2.0, 8.0)
+"""N·m, of the plane drive."""
 
-FINE = {"flank": 200, "layers": 8, "layer_ratio": 1.6}
-"""Counts of both gears that resolve the contact; the others are those of the recipe plane."""
-
-MESHES = ("plane_coarse", "resolved")
-
-WIDTHS = (6, 10, 16, 24)
+WIDTHS = (6, 12)
 """Elements over the face width of the cup drive."""
+
+FLANKS, REDUCTIONS = (9, 18, 36), (0.97, 1.0)
+"""Elements along a flank of the plane drive, and `ring_gear.c_P`: few and many pairs touch."""
+
+LAYERS = {"flexible_spline": 2, "ring_gear": 1}
+BODIES = {"root": 12, "under": 6, "rim": 6}
+"""Other counts of the plane drive: layers of each gear, and those of both."""
+
+STIFFNESS = ["c_P", "elements along a flank", "K1", "K2", "K3"]
 
 CUP_HEAD = [
     "elements over the width",
@@ -50,22 +49,20 @@ CUP_HEAD = [
 HEAD = [
     "torque N·m",
     "tooth",
-    "mesh",
+    "elements along a flank",
     "line load N/mm",
     "half width mm",
-    "by line contact",
-    "on the mesh",
+    "pressure by the law",
+    "nodal mean on the mesh",
 ]
 
 
-def recipe(mesh: str) -> str:
-    """The mesh as an option of the run."""
-    if mesh != "resolved":
-        return mesh
-    content = swgpar.load_mesh("plane").model_dump(exclude_none=True)
-    for gear in ("flexible_spline", "ring_gear"):
-        content[gear] |= FINE
-    return str(written("resolved", content))
+def recipe(count: int) -> Path:
+    """Mesh of the plane drive with so many elements along a flank."""
+    content = swgpar.load_mesh("plane_coarse").model_dump(exclude_none=True)
+    for gear, layers in LAYERS.items():
+        content[gear] |= BODIES | {"layers": layers, "flank": count}
+    return written(f"flank_{count}", content)
 
 
 def written(name: str, content: dict[str, Any]) -> Path:
@@ -76,12 +73,28 @@ def written(name: str, content: dict[str, Any]) -> Path:
     return path
 
 
-def rows(torque: float, mesh: str, ranks: int) -> list[list[str]]:
-    """Both pressures of the loaded pairs under a torque."""
-    folder = OUT / f"{mesh}_{torque:g}"
-    stiff = ["contact.penalty_coef=1000"] if mesh == "resolved" else []
-    overrides = [f"load.torque={torque:g}", "steps.rotation=0", "steps.bent_start=true", *stiff]
-    run(folder, DESIGN, overrides, ranks, recipe(mesh))
+def stiffness_rows(reduction: float, count: int, ranks: int) -> list[str]:
+    """Torsional stiffness of the plane drive, 10³ N·m/rad, mean over positions."""
+    folder = OUT / f"stiffness_{reduction:g}_{count}"
+    overrides = ["stiffness.torque=2", "stiffness.mesh_error=false"]
+    run(
+        folder,
+        DESIGN,
+        [f"ring_gear.c_P={reduction:g}", *overrides],
+        ranks,
+        recipe(count),
+        plain=False,
+    )
+    summary = swgpar.open_result(folder).summary
+    found = [summary[f"stiffness.{name}"].value for name in STIFFNESS[2:]]
+    return [f"{reduction:g}", f"{count}", *(f"{value / 1e3:.1f}" for value in found)]
+
+
+def rows(torque: float, count: int, ranks: int) -> list[list[str]]:
+    """Pressures of the loaded pairs of the plane drive under a torque."""
+    folder = OUT / f"plane_{count}_{torque:g}"
+    overrides = [f"load.torque={torque:g}", "steps.rotation=0", "steps.bent_start=true"]
+    run(folder, DESIGN, overrides, ranks, recipe(count))
     result = swgpar.open_result(folder)
     peak = result.flank_pressure().pressure.max(axis=(2, 3))
     found = []
@@ -92,7 +105,7 @@ def rows(torque: float, mesh: str, ranks: int) -> list[list[str]]:
             [
                 f"{torque:g}",
                 f"{tooth}",
-                mesh,
+                f"{count}",
                 f"{result.pairs['line_load_Nmm'][k]:.2f}",
                 f"{result.pairs['half_width_mm'][k]:.4f}",
                 f"{result.pairs['pressure_MPa'][k]:.0f}",
@@ -133,11 +146,20 @@ def main() -> None:
     options.add_argument("--page", type=Path, help="page that gets the table")
     arguments = options.parse_args()
     found = [
-        row for torque in TORQUES for mesh in MESHES for row in rows(torque, mesh, arguments.ranks)
+        row
+        for torque in TORQUES
+        for count in FLANKS
+        for row in rows(torque, count, arguments.ranks)
+    ]
+    stiffness = [
+        stiffness_rows(reduction, count, arguments.ranks)
+        for reduction in REDUCTIONS
+        for count in FLANKS
     ]
     tables = {
-        "line_contact": markdown([HEAD, *found]),
-        "patch_contact": markdown(
+        "stiffness": markdown([STIFFNESS, *stiffness]),
+        "plane_pressure": markdown([HEAD, *found]),
+        "cup_pressure": markdown(
             [CUP_HEAD, *(row for width in WIDTHS for row in cup_rows(width, arguments.ranks))]
         ),
     }

@@ -1,4 +1,4 @@
-"""Freezing of the segments of all flanks: near the solution, and while a cycle of the contacts is
+"""Freezing of the cells of all flanks: near the solution, and while a cycle of the contacts is
 broken."""
 
 from __future__ import annotations
@@ -8,12 +8,12 @@ from collections.abc import Sequence
 from mpi4py import MPI
 
 from swgpar.contact.contact import largest
-from swgpar.contact.flank_state import ActiveSegments
+from swgpar.contact.flank_state import ActiveCells
 from swgpar.contact.flanks import FlankContact
 
 
-class FrozenSegments:
-    """Freezes and releases the segments of several contacts of flanks together.
+class FrozenCells:
+    """Freezes and releases the cells of several contacts of flanks together.
 
     flanks : the contacts;  comm : communicator
     """
@@ -22,23 +22,23 @@ class FrozenSegments:
         self.flanks, self.comm = flanks, comm
 
     def freeze(self) -> None:
-        """Freeze the segments."""
+        """Freeze the cells."""
         for flanks in self.flanks:
-            flanks.freeze_segments()
+            flanks.freeze_cells()
 
     def release(self) -> None:
-        """Cut the segments anew in every evaluation."""
+        """Place the cells anew in every evaluation."""
         for flanks in self.flanks:
-            flanks.release_segments()
+            flanks.release_cells()
 
     def are_frozen(self) -> bool:
-        """Whether segments are frozen on any rank: many ranks have no flanks in reach.
+        """Whether cells are frozen on any rank: many ranks have no flanks in reach.
         Collective."""
         frozen = any(flanks.frozen for flanks in self.flanks)
         return bool(self.comm.allreduce(int(frozen), op=MPI.MAX))
 
     def freeze_friction_bounds(self) -> tuple[float, float]:
-        """Let the present pressures bound the friction on frozen segments.
+        """Let the present pressures bound the friction on frozen cells.
 
         Returns the largest change of these pressures and the largest of them, MPa, over all ranks;
         0 without friction.
@@ -47,11 +47,11 @@ class FrozenSegments:
         change, top = (largest(self.comm, max(of_all)) for of_all in zip(*values))
         return change, top
 
-    def saved(self) -> list[ActiveSegments | None]:
-        """The present segments, for `restore`."""
-        return [flanks.saved_segments() for flanks in self.flanks]
+    def saved(self) -> list[ActiveCells | None]:
+        """The present cells, for `restore`."""
+        return [flanks.saved_cells() for flanks in self.flanks]
 
-    def restore(self, saved: Sequence[ActiveSegments | None]) -> None:
-        """Freeze the segments that were saved."""
-        for flanks, segments in zip(self.flanks, saved):
-            flanks.restore_segments(segments)
+    def restore(self, saved: Sequence[ActiveCells | None]) -> None:
+        """Freeze the cells that were saved."""
+        for flanks, cells in zip(self.flanks, saved):
+            flanks.restore_cells(cells)

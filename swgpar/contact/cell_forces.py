@@ -1,0 +1,145 @@
+"""The law of contact lines on placed cells: their ends on both flanks, forces, pressures and
+tangent."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from swgpar.contact import contact_lines
+from swgpar.contact.cell_placement import PlacedCells
+from swgpar.contact.contact_lines import LineForces, Strips
+from swgpar.contact.flank_pairs import FlankPairs, GapGradients
+from swgpar.contact.flank_state import ActiveCells
+from swgpar.contact.missing_compliance import MissingCompliance
+from swgpar.contact.pressed_lines import PressedLine
+from swgpar.fem.elements import BodyElements
+from swgpar.fem.sparse import BlockRows
+from swgpar.kernel import add_contact_lines
+
+EDGE_ZONE, EDGE_SOFTNESS = 0.05, 0.02
+"""Zone at the ends of the master's flank, in facets, and thickness of the elastic layer that cells
+have at the very end, in facets: a flank that slides over an end loses its force there
+continuously, where half planes would lose it at once."""
+
+
+class CellForces:
+    """What acts on cells of a pair of bodies.
+
+    slave, master : elements of the flexible spline and of the ring gear
+
+    Attributes
+    ----------
+    missing : what the elements under the flanks of both lack in compliance
+    n_face, n_layer : faces and layers of a slave flank;  z : (n_layer + 1,) mm, ends of the layers
+    """
+
+    def __init__(self, slave: BodyElements, master: BodyElements) -> None:
+        self.missing = _missing(slave), _missing(master)
+        self.z = slave.layout.mesh.flanks[0].z
+        self.n_layer = len(self.z) - 1
+        self.n_face = (len(self.missing[0].s) - 1) * self.n_layer
+
+    def measured(self, pairs: FlankPairs, placed: PlacedCells, foot: np.ndarray) -> ActiveCells:
+        """Cells with their ends on both flanks; foot : (n, n_q) mm, arc lengths of their points on
+        the master."""
+        cells, n = placed.cells, len(placed.line)
+        size = pairs.faces.size[cells.parent]
+        start = self.missing[0].s[cells.parent % self.n_face // self.n_layer]
+        slave = Strips(start + cells.low * size[:, 0], start + cells.high * size[:, 0])
+        has_foot = np.isfinite(foot).all(axis=1)
+        middle = np.where(has_foot, foot.mean(axis=1), 0.0)
+        # two Gauss points tell the ends of a cell
+        half = np.where(has_foot, 0.5 * np.sqrt(3.0) * np.abs(foot[:, 1] - foot[:, 0]), 1.0)
+        return ActiveCells(
+            flank_pairs=pairs,
+            placed=placed,
+            slave=slave,
+            master=Strips(middle - half, middle + half),
+            has_foot=has_foot,
+            softness=self._edge_softness(middle) / (slave.high - slave.low),
+            length=size[:, 1] * cells.share,
+            friction=None,
+            gap=np.full(n, np.inf),
+            forces=LineForces(np.zeros(n), []),
+            pressure=np.zeros_like(placed.faces.weight),
+        )
+
+    def _edge_softness(self, middle: np.ndarray) -> np.ndarray:
+        """Compliance (n,) mm / MPa of cells at places (n,) mm near the ends of the master's
+        flank."""
+        master = self.missing[1]
+        out, facets = np.zeros(len(middle)), np.diff(master.s)
+        for end, facet in ((master.s[0], facets[0]), (master.s[-1], facets[-1])):
+            near = np.maximum(0.0, 1.0 - np.abs(middle - end) / (EDGE_ZONE * facet))
+            out += EDGE_SOFTNESS * facet / master.modulus * near
+        return out
+
+    def press(self, active: ActiveCells, gap: np.ndarray, share: float) -> None:
+        """Set gaps, forces and pressures of the cells.
+
+        gap : (n, n_q) mm, at their points;  share : of the stiffness that acts
+        """
+        active.gap = np.where(active.has_foot, gap.mean(axis=1), np.inf)
+        active.forces = contact_lines.forces(
+            active.placed.line,
+            active.gap,
+            (active.slave, active.master),
+            self.missing,
+            active.softness,
+            share,
+        )
+        pressure = active.forces.force / active.width
+        active.pressure = np.repeat(pressure[:, None], gap.shape[1], axis=1)
+
+    def pressed_lines(self, active: ActiveCells) -> list[PressedLine]:
+        """Pressures of the pairs whose flexible-spline tooth this rank owns."""
+        pairs, lines = active.flank_pairs, []
+        carries = (active.forces.force > 0.0) & pairs.owned[active.faces.patch]
+        for line in np.unique(active.placed.line[carries]):
+            on = np.flatnonzero(carries & (active.placed.line == line))
+            layer = active.parent[on[0]] % self.n_layer
+            station = active.placed.cells.station[on[0]]
+            lines.append(
+                PressedLine(
+                    pair=pairs.pairs[active.faces.patch[on[0]]],
+                    z=float(self.z[layer] + station * (self.z[layer + 1] - self.z[layer])),
+                    length=float(active.length[on[0]]),
+                    low=active.slave.low[on],
+                    high=active.slave.high[on],
+                    facing_tip=float(active.master.low[on].min()),
+                    pressure=active.pressure[on, 0],
+                )
+            )
+        return lines
+
+
+def add_line_tangents(
+    active: ActiveCells, chosen: np.ndarray, gradients: GapGradients, rows: BlockRows
+) -> int:
+    """Add the tangents of the lines that carry; returns the number of missing blocks.
+
+    chosen : (n,) cells, ascending, whose gradients these are
+    """
+    lines = active.forces.lines
+    if not lines:
+        return 0
+    start = np.cumsum([0, *(len(cells) for cells, _ in lines)])
+    at = np.searchsorted(chosen, np.concatenate([cells for cells, _ in lines]))
+    gap = 0.5 * gradients.vector[at].reshape(len(at), -1, 3)
+    force = gap - 0.5 * gradients.friction[at].reshape(len(at), -1, 3)
+    length = active.length[chosen[at]]
+    return add_contact_lines(
+        start,
+        np.ascontiguousarray(gradients.conn[at].reshape(len(at), -1)),
+        np.ascontiguousarray(gradients.sixths[at].reshape(len(at), -1)),
+        np.ascontiguousarray(length[:, None, None] * force),
+        gap,
+        np.concatenate([stiffness.ravel() for _, stiffness in lines]),
+        rows,
+    )
+
+
+def _missing(body: BodyElements) -> MissingCompliance:
+    """What the elements under the flanks of a body lack in compliance."""
+    mesh, of = body.layout.mesh, body.layout.body
+    return MissingCompliance(mesh, mesh.flanks[0], of.in_plane_elasticity, of.incompatible)

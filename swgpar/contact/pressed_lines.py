@@ -1,0 +1,61 @@
+"""Pressure along the profile on the lines of contact of a pair of flanks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgpar.contact.search import FlankPair
+
+
+@dataclass(frozen=True)
+class PressedLine:
+    """The cells that carry on a line of contact.
+
+    pair : of flanks;  z, length : mm, station along the face width and its share of it
+    low, high : (n,) mm, ends of the cells, arc lengths from the tip of the flexible spline's tooth,
+    ascending;  facing_tip : mm, least arc length from the tip of the ring gear's tooth
+    pressure : (n,) MPa, constant on each cell
+    """
+
+    pair: FlankPair
+    z: float
+    length: float
+    low: np.ndarray
+    high: np.ndarray
+    facing_tip: float
+    pressure: np.ndarray
+
+    @property
+    def line_load(self) -> float:
+        """N/mm"""
+        return float(self.pressure @ (self.high - self.low))
+
+    @property
+    def largest(self) -> float:
+        """Largest pressure, MPa."""
+        return float(self.pressure.max())
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Ends (mm) of the contact in its outermost cells: the square of the pressure falls
+        linearly to them."""
+        if len(self.pressure) == 1:
+            return float(self.low[0]), float(self.high[0])
+        return self._end(0, 1), self._end(-1, -1)
+
+    def _end(self, k: int, inward: int) -> float:
+        half = 0.5 * float(self.high[k] - self.low[k])
+        outer, inner = self.pressure[[k, k + inward]] ** 2
+        beyond = 2.0 * half * outer / (inner - outer) if inner > outer else half
+        middle = 0.5 * float(self.low[k] + self.high[k])
+        return middle - inward * min(float(beyond), half)
+
+    def strips(self, number: int) -> np.ndarray:
+        """Mean pressures (number,) MPa on equal strips between the ends of the contact."""
+        ends = np.linspace(self.low[0], self.high[-1], number + 1)
+        places = np.column_stack([self.low, self.high]).ravel()
+        steps = np.zeros(len(places))
+        steps[1::2] = self.pressure * (self.high - self.low)
+        return np.diff(np.interp(ends, places, np.cumsum(steps))) / np.diff(ends)
