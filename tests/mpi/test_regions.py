@@ -28,5 +28,5 @@ def test_any_number_of_ranks_gives_the_same(model: str) -> None:
     for name, place in found.items():
         parallel_assert(place.value == pytest.approx(alone[name].value, rel=1e-3, abs=1e-3), name)
         parallel_assert(place.region == alone[name].region, name)
-    in_cup = {name.split(OF_REGION)[1] for name in found} & {"cup wall", "closed end", "bore"}
+    in_cup = {name.split(OF_REGION)[1] for name in found} & {"cup wall", "fillet", "bore"}
     parallel_assert(len(in_cup) == (3 if model == "cup" else 0))
