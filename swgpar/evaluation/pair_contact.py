@@ -10,8 +10,9 @@ their teeth, and the gap between them goes into the contact of two half spaces o
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -170,16 +171,26 @@ def _contacts(model: DriveModel, state: LoadState, flanks: FlankContact) -> list
     moved, facing = moved_teeth(model, [pairs[k] for k in resolved], flanks)
     materials = (model.design.materials[layout.name] for layout in (spline, flanks.ring.layout))
     modulus = contact_modulus(*materials, plane_stress=model.design.drive.model == "plane")
-    lines: dict[tuple[int, int], list[PressedLine]] = {}
-    for line in flanks.pressed_lines(model.problem.displacement(), state):
-        lines.setdefault((line.pair.sector, line.pair.side), []).append(line)
+    u = model.problem.displacement()
+
+    @cache
+    def lines() -> dict[tuple[int, int], list[PressedLine]]:
+        """Of the contact law, by sector and side: in space few pairs ask for them, or none."""
+        found: dict[tuple[int, int], list[PressedLine]] = {}
+        for line in flanks.pressed_lines(u, state):
+            found.setdefault((line.pair.sector, line.pair.side), []).append(line)
+        return found
+
+    def of_pair(pair: FlankPair) -> list[PressedLine]:
+        return lines().get((pair.sector, pair.side), [])
+
     failed = []
     for k, teeth, ring_teeth in zip(resolved, moved, facing):
         load = loads[pairs[k].sector - first, pairs[k].side]
         try:
-            of_pair = lines.get((pairs[k].sector, pairs[k].side), [])
+            of_this = partial(of_pair, pairs[k])
             carried[k] = _with_pressure(
-                carried[k], model, load, of_pair, teeth, ring_teeth, modulus
+                carried[k], model, load, of_this, teeth, ring_teeth, modulus
             )
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             failed.append(f"tooth {pairs[k].sector}: {error}")
@@ -274,26 +285,29 @@ def _with_pressure(
     contact: PairContact,
     model: DriveModel,
     load: LineLoad,
-    lines: list[PressedLine],
+    lines_of_law: Callable[[], list[PressedLine]],
     teeth: Neighbours,
     ring_teeth: Neighbours,
     modulus: float,
 ) -> PairContact:
     """The contact of a pair with its local pressure.
 
-    lines : of the contact law, which tells the pressure in the plane, and in space where half
-    spaces find no contact: at the end of the face width;  modulus : E*, MPa
+    lines_of_law : those of the contact law, which tells the pressure in the plane, and in space
+    where half spaces find no contact: at the end of the face width;  modulus : E*, MPa
     """
     tooth, facing = teeth[1], ring_teeth[1]
     along = load.load @ load.direction
     gap, plane = _Gap(tooth, facing), model.design.drive.model == "plane"
-    patch = None
-    if not plane:
-        try:
+    patch, lines = None, []
+    try:
+        if plane:
+            lines = lines_of_law()
+        else:
             patch = _patch(model, gap, load, along, contact.force_N, modulus)
-        except (ArithmeticError, np.linalg.LinAlgError):
-            if not lines:
-                raise
+    except (ArithmeticError, np.linalg.LinAlgError):
+        lines = lines_of_law()
+        if not lines:
+            raise
     if patch is not None:
         strongest, reaches = patch.strongest, patch.reaches
         at_end, shear = strongest.at_end, strongest.largest_shear()
@@ -302,7 +316,7 @@ def _with_pressure(
     elif lines:
         strips = STRIPS if plane else CELLS_ACROSS
         stations = tuple(_station(line, strips) for line in lines)
-        line = max(lines, key=lambda one: one.largest)
+        line, station = max(zip(lines, stations), key=lambda one: one[0].largest)
         near = END * model.design.drive.module
         at_end = bool(line.low[0] < near or line.high[-1] > tooth.profile.length - near)
         low, high = facing.ends
@@ -310,9 +324,7 @@ def _with_pressure(
             one.z - one.length < low or one.z + one.length > high for one in lines
         )
         width = sum(one.length for one in lines)
-        shear = largest_shear(
-            line.low, line.high, line.pressure, _station(line, strips).half_width_mm
-        )
+        shear = largest_shear(line.low, line.high, line.pressure, station.half_width_mm)
     else:
         return contact
     top = max(stations, key=lambda station: station.pressure_MPa)
