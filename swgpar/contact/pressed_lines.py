@@ -43,14 +43,10 @@ class PressedLine:
         linearly to them."""
         if len(self.pressure) == 1:
             return float(self.low[0]), float(self.high[0])
-        return self._end(0, 1), self._end(-1, -1)
-
-    def _end(self, k: int, inward: int) -> float:
-        half = 0.5 * float(self.high[k] - self.low[k])
-        outer, inner = self.pressure[[k, k + inward]] ** 2
-        beyond = 2.0 * half * outer / (inner - outer) if inner > outer else half
-        middle = 0.5 * float(self.low[k] + self.high[k])
-        return middle - inward * min(float(beyond), half)
+        return (
+            contact_end(self.low, self.high, self.pressure, 0, 1),
+            contact_end(self.low, self.high, self.pressure, -1, -1),
+        )
 
     def strips(self, number: int) -> np.ndarray:
         """Mean pressures (number,) MPa on equal strips between the ends of the contact."""
@@ -59,3 +55,18 @@ class PressedLine:
         steps = np.zeros(len(places))
         steps[1::2] = self.pressure * (self.high - self.low)
         return np.diff(np.interp(ends, places, np.cumsum(steps))) / np.diff(ends)
+
+
+def contact_end(
+    low: np.ndarray, high: np.ndarray, pressure: np.ndarray, k: int, inward: int
+) -> float:
+    """End (mm) of a contact beside its outermost strip k, or the end of that strip: the square of
+    the pressure falls linearly to it.
+
+    low, high : (n,) mm, ends of the strips;  pressure : (n,) MPa;  inward : 1 or -1, to the next
+    strip
+    """
+    half = 0.5 * float(high[k] - low[k])
+    outer, inner = pressure[[k, k + inward]] ** 2
+    beyond = 2.0 * half * outer / (inner - outer) if inner > outer else half
+    return 0.5 * float(low[k] + high[k]) - inward * min(float(beyond), half)

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from swgpar.contact.pressed_lines import contact_end
+
 STRIPS, ACROSS = 64, 24
 """Strips of constant pressure; least number of them in the contact."""
 
@@ -109,7 +111,8 @@ def line_contact(
             )
             low, high = max(low, middle - half), min(high, middle + half)
         else:
-            left, right = contact_end(x, pressure, first, 1), contact_end(x, pressure, last, -1)
+            strips = edges[:-1], edges[1:], pressure
+            left, right = contact_end(*strips, first, 1), contact_end(*strips, last, -1)
             beside = gap(np.array([x[first] - size, x[last] + size]))
             return LineContact(
                 x,
@@ -119,15 +122,6 @@ def line_contact(
                 bool(not np.isfinite(beside).all()),
             )
     raise ArithmeticError(f"no contact was found for a line load of {load:g} N/mm")
-
-
-def contact_end(x: np.ndarray, pressure: np.ndarray, k: int, inward: int) -> float:
-    """End (mm) of the contact beside its outermost strip k, or the end of that strip: p² falls
-    linearly to it."""
-    half = 0.5 * (x[1] - x[0])
-    outer, inner = pressure[k] ** 2, pressure[k + inward] ** 2
-    beyond = 2.0 * half * outer / (inner - outer) if inner > outer else half
-    return float(x[k] - inward * min(beyond, half))
 
 
 def _pressure(gap: np.ndarray, size: float, load: float, modulus: float) -> np.ndarray:

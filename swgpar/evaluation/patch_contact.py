@@ -15,7 +15,8 @@ from functools import partial
 
 import numpy as np
 
-from swgpar.evaluation.line_contact import LineContact, contact_end
+from swgpar.contact.pressed_lines import contact_end
+from swgpar.evaluation.line_contact import LineContact
 
 CELLS_ACROSS, CELLS_ALONG = 24, 28
 """Cells of constant pressure over the width and along the length of the grid."""
@@ -288,9 +289,8 @@ class _Grid:
         acts = np.flatnonzero(pressure)
         if len(acts) == 1:
             return self.t[acts[0]] - 0.5 * self.dt, self.t[acts[0]] + 0.5 * self.dt
-        return contact_end(self.t, pressure, acts[0], 1), contact_end(
-            self.t, pressure, acts[-1], -1
-        )
+        strips = self.t - 0.5 * self.dt, self.t + 0.5 * self.dt, pressure
+        return contact_end(*strips, acts[0], 1), contact_end(*strips, acts[-1], -1)
 
     def _body_ends_beside(self, pressure: np.ndarray) -> bool:
         """Whether the body ends beside the contact by the pressure (n_t, n_z) MPa in any column."""
