@@ -11,8 +11,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from swgpar.answers.answer import AnswerKind, declared_answers
 from swgpar.drive_results.summary import ANSWER_GROUPS
-from swgpar.evaluation.answers import AnswerKind, declared_answers
 from swgpar.evaluation.step_values import StepValues
 
 

@@ -25,7 +25,7 @@ from page import markdown, put, write_results
 from support.commands import environment, on_ranks
 from support.paths import DRIVERS
 from support.sensible_drives import MESHES, SensibleDrive, sensible_drives
-from swgpar.evaluation.answers import NO_LIMIT
+from swgpar.answers.answer import NO_LIMIT
 from swgpar.input.toml_file import read_toml
 
 OUT = Path("results/bench/effectivity")

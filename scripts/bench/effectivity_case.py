@@ -20,9 +20,9 @@ from mpi4py import MPI
 
 import swgpar
 from swgpar.analysis.shortcuts import SAMPLES
+from swgpar.answers.answer import Answer
 from swgpar.errors import SwgparError
-from swgpar.evaluation.answers import Answer
-from swgpar.evaluation.windows import root_stress
+from swgpar.largest_stress import root_stress
 from swgpar.meshing.recipe_counts import resized
 
 PARTS: dict[str, tuple[str, ...]] = {

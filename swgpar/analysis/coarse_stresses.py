@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from swgpar.errors import ConvergenceError, InputError
-from swgpar.evaluation.place_errors import CoarseStresses
-from swgpar.evaluation.places import find_places
-from swgpar.evaluation.windows.wall_stress import CoarseWall, resolves_wall, ring_stresses
+from swgpar.largest_stress.place_errors import CoarseStresses
+from swgpar.largest_stress.places import find_places
+from swgpar.largest_stress.wall_stress import CoarseWall, ring_stresses
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import wall_ratio
 from swgpar.model.drive_model import DriveModel
+from swgpar.model.regions import resolves_wall
 
 
 def coarse_stresses(

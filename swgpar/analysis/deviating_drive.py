@@ -26,7 +26,6 @@ from swgpar.design.deviations import Deviations, gear_deviations
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS
 from swgpar.errors import ConvergenceError
-from swgpar.evaluation.torques import torques
 from swgpar.evaluation.transmission_error import TurnPoint
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.partition import split
@@ -35,6 +34,7 @@ from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import coarser
 from swgpar.model.drive_model import DriveModel
+from swgpar.model.torques import torques
 from swgpar.petsc import PETSc
 
 NEAR = 0.06

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from swgpar.analysis.shortcuts import finds_contacts
-from swgpar.evaluation.pair_contact import pair_contacts
-from swgpar.evaluation.windows.root_stress import RootStress, resolve_root_stress
+from swgpar.flank_pressure.pair_contact import pair_contacts
+from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress
 from swgpar.load.load_states import LoadState
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import body_ratio, coarsened, contact_ratio, with_contact_of

@@ -19,7 +19,6 @@ from swgpar.evaluation.largest_contact import largest_contact
 from swgpar.evaluation.load_sharing import LoadSharing, load_sharing
 from swgpar.evaluation.losses import DriveLosses, evaluate_losses
 from swgpar.evaluation.numerics import evaluate_numerics
-from swgpar.evaluation.places import LargestStresses
 from swgpar.evaluation.program_results import stage_ends
 from swgpar.evaluation.ratcheting import evaluate_ratcheting
 from swgpar.evaluation.rigid_clearance import rigid_clearance
@@ -30,6 +29,7 @@ from swgpar.evaluation.stiffness import torsional_stiffness
 from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.evaluation.stress_factors import root_factor, stress_factors
 from swgpar.evaluation.transmission_error import evaluate_turns
+from swgpar.largest_stress.places import LargestStresses
 from swgpar.load.load_program import stiffness_program
 from swgpar.load.negligible_torque import negligible_torque
 from swgpar.petsc import PETSc

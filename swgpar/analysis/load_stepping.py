@@ -12,12 +12,12 @@ from swgpar.analysis.predictor import KnownState, predict
 from swgpar.analysis.snapshot import ProgramState, Snapshot
 from swgpar.analysis.step_bounds import steps_needed
 from swgpar.errors import ConvergenceError
-from swgpar.evaluation.torques import torques
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import logger
 from swgpar.model.drive_model import DriveModel
+from swgpar.model.torques import torques
 from swgpar.solve.solve_state import SolveResult
 
 MAX_KNOWN_STATES = 40

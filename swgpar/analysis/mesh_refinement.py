@@ -26,8 +26,8 @@ from swgpar.analysis.forecast import fits, forecast
 from swgpar.analysis.saved_state import StartStates
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError, SwgparError
-from swgpar.evaluation.place_errors import CoarseStresses
-from swgpar.evaluation.windows.root_stress import (
+from swgpar.largest_stress.place_errors import CoarseStresses
+from swgpar.largest_stress.root_stress import (
     FEWEST_LEVELS,
     LEVELS,
     MOST_LEVELS,

@@ -20,23 +20,23 @@ from swgpar.drive_results.summary import DriveSummary
 from swgpar.drive_results.summary_file import summary_from, summary_to_json
 from swgpar.evaluation.bearing_loads import ball_rows
 from swgpar.evaluation.compliance import bearing_shares
-from swgpar.evaluation.contact_pressure import nodal_pressure
 from swgpar.evaluation.housing_values import housing_values, keep_largest
 from swgpar.evaluation.losses import cam_force
-from swgpar.evaluation.pair_contact import pair_contacts
-from swgpar.evaluation.place_errors import with_errors
-from swgpar.evaluation.places import Place, find_places
 from swgpar.evaluation.program_results import PointRow, point_rows
-from swgpar.evaluation.resolved_places import with_windows
 from swgpar.evaluation.result_frame import history_rows, nodal_fields
 from swgpar.evaluation.stiffness import loop_rows
 from swgpar.evaluation.stress_cycle import StressCycle
-from swgpar.evaluation.windows.accuracy import Accuracy
 from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.input.toml_file import to_toml
+from swgpar.largest_stress.accuracy import Accuracy
+from swgpar.largest_stress.place_errors import with_errors
+from swgpar.largest_stress.places import Place, find_places
+from swgpar.largest_stress.resolved_places import with_windows
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import SectorMesh
 from swgpar.model.drive_model import DriveModel
+from swgpar.model.nodal_pressure import nodal_pressure
 from swgpar.results import history
 from swgpar.results.atomic import agreed, on_root, write_from_root
 from swgpar.results.field_sources import FieldParts

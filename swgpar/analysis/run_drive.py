@@ -32,14 +32,15 @@ from swgpar.evaluation.period import continued, require_samples
 from swgpar.evaluation.ratcheting import has_fallen
 from swgpar.evaluation.result_frame import history_rows
 from swgpar.evaluation.transmission_error import period_rows
-from swgpar.evaluation.windows.root_stress import RootStress, resolve_root_stress, with_angle
-from swgpar.evaluation.windows.wall_stress import WallStress, resolve_wall, resolves_wall
+from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress, with_angle
+from swgpar.largest_stress.wall_stress import WallStress, resolve_wall
 from swgpar.load.load_sequence import LoadSequence, load_sequence
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
 from swgpar.meshing.recipe_counts import body_ratio
 from swgpar.model.drive_model import DriveModel, build_drive_model
+from swgpar.model.regions import resolves_wall
 from swgpar.petsc import warn_of_unused_options
 from swgpar.results.atomic import on_all
 from swgpar.results.folder import RECIPE, open_log, prepare

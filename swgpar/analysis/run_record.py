@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from swgpar.evaluation.bearing_loads import ComplianceShares
-from swgpar.evaluation.place_errors import CoarseStresses
-from swgpar.evaluation.places import Place
 from swgpar.evaluation.ratcheting import TorquePoint
 from swgpar.evaluation.slip_error import SlipCheck
-from swgpar.evaluation.windows.accuracy import Accuracy
-from swgpar.evaluation.windows.root_stress import RootStress
-from swgpar.evaluation.windows.wall_stress import WallStress
+from swgpar.largest_stress.accuracy import Accuracy
+from swgpar.largest_stress.place_errors import CoarseStresses
+from swgpar.largest_stress.places import Place
+from swgpar.largest_stress.root_stress import RootStress
+from swgpar.largest_stress.wall_stress import WallStress
 from swgpar.results.history import Row
 
 

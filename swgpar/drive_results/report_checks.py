@@ -13,10 +13,10 @@ from swgpar.drive_results.summary import BodySizes, DriveSummary
 from swgpar.evaluation.jamming import ENERGY
 from swgpar.evaluation.largest_contact import LargestContact
 from swgpar.evaluation.numerics import BALANCE, Numerics
-from swgpar.evaluation.places import APART, LargestStresses
 from swgpar.evaluation.rotation import Rotation
-from swgpar.evaluation.windows.accuracy import Accuracy
-from swgpar.evaluation.windows.root_stress import RootStress
+from swgpar.largest_stress.accuracy import Accuracy
+from swgpar.largest_stress.places import APART, LargestStresses
+from swgpar.largest_stress.root_stress import RootStress
 from swgpar.load.negligible_torque import negligible_torque
 from swgpar.results.history import loaded_increments
 

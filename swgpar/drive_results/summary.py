@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
+from swgpar.answers.answer import Answer, AnswerGroup, AnswerKind
+from swgpar.answers.table import AnswerTable
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
 from swgpar.evaluation.bearing_loads import BallLoads
 from swgpar.evaluation.fatigue import SafetyAndLife
 from swgpar.evaluation.housing_values import HousingStresses
@@ -15,7 +15,6 @@ from swgpar.evaluation.largest_contact import LargestContact
 from swgpar.evaluation.load_sharing import LoadSharing
 from swgpar.evaluation.losses import DriveLosses
 from swgpar.evaluation.numerics import Numerics
-from swgpar.evaluation.places import LargestStresses
 from swgpar.evaluation.program_results import ProgramStages
 from swgpar.evaluation.ratcheting import RatchetingTorque
 from swgpar.evaluation.rigid_clearance import RigidClearance
@@ -24,8 +23,9 @@ from swgpar.evaluation.slip_error import SlipError
 from swgpar.evaluation.step_values import StepValues
 from swgpar.evaluation.stiffness import TorsionalStiffness
 from swgpar.evaluation.transmission_error import TransmissionError
-from swgpar.evaluation.windows.accuracy import Accuracy
-from swgpar.evaluation.windows.root_stress import RootStress
+from swgpar.largest_stress.accuracy import Accuracy
+from swgpar.largest_stress.places import LargestStresses
+from swgpar.largest_stress.root_stress import RootStress
 
 ANSWER_GROUPS: dict[str, type[AnswerGroup]] = {
     "stiffness": TorsionalStiffness,
@@ -67,7 +67,7 @@ class BodySizes:
 
 
 @dataclass(frozen=True)
-class DriveSummary(Mapping[str, Answer]):
+class DriveSummary(AnswerTable):
     """What a whole run gives: a mapping of answers by name, and what they are made of.
 
     recipe : the mesh recipe, by name or path
@@ -136,18 +136,9 @@ class DriveSummary(Mapping[str, Answer]):
         ]
         return sections if self.design.output.root_stress else [*sections, RootStress]
 
-    @cached_property
-    def _answers(self) -> dict[str, Answer]:
-        return {answer.name: answer for group in self.groups() for answer in group.answers()}
-
-    def __getitem__(self, name: str) -> Answer:
-        return self._answers[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._answers)
-
-    def __len__(self) -> int:
-        return len(self._answers)
+    def answers(self) -> Iterator[Answer]:
+        for group in self.groups():
+            yield from group.answers()
 
 
 def known_answers(design: DriveDesign) -> dict[str, AnswerKind]:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from swgpar.answers.answer import AnswerGroup, AnswerKind, answer, evaluation, part_answers
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import AnswerGroup, AnswerKind, answer, evaluation, part_answers
 from swgpar.evaluation.bearing_life import BearingSeries, million_turns
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel

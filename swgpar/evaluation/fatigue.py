@@ -9,8 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import (
+from swgpar.answers.answer import (
     AnswerGroup,
     AnswerKind,
     answer,
@@ -19,6 +18,7 @@ from swgpar.evaluation.answers import (
     part_answers,
     place_text,
 )
+from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.fatigue_criteria import (
     CriticalPlane,
     critical_plane,
@@ -28,11 +28,11 @@ from swgpar.evaluation.fatigue_criteria import (
     goodman,
     normal_stress,
 )
-from swgpar.evaluation.places import APART_DISTANCE, near_contact
 from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.evaluation.stress_factors import StressFactor
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal
+from swgpar.largest_stress.places import APART_DISTANCE, near_contact
 from swgpar.load.load_states import Stage
 from swgpar.model.regions import warning_of
 from swgpar.results.sector_fields import SectorFields

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from swgpar.answers.answer import AnswerGroup, answer, evaluation
 from swgpar.contact.contact import largest
-from swgpar.evaluation.answers import AnswerGroup, answer, evaluation
 from swgpar.fem.body import RING_GEAR
 from swgpar.model.drive_model import DriveModel
 

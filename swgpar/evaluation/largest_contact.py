@@ -8,8 +8,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import (
+from swgpar.answers.answer import (
     NO_ESTIMATE,
     Answer,
     AnswerGroup,
@@ -19,6 +18,7 @@ from swgpar.evaluation.answers import (
     part_answers,
     with_no_limit,
 )
+from swgpar.design.drive_design import DriveDesign
 from swgpar.results.history import Row
 
 EDGE = "no property of the drive, and the stress at the teeth may be off by more than its error"

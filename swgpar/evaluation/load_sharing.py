@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.evaluation.answers import AnswerGroup, AnswerKind, answer, evaluation, part_answers
+from swgpar.answers.answer import AnswerGroup, AnswerKind, answer, evaluation, part_answers
 from swgpar.results.history import Row
 
 

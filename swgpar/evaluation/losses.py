@@ -13,8 +13,8 @@ from dataclasses import astuple
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.answers.answer import AnswerGroup, answer, evaluation
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import AnswerGroup, answer, evaluation
 from swgpar.evaluation.stress_cycle import StressCycle, elements_of_rank
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.log import logger

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from swgpar.evaluation.answers import AnswerGroup, answer, evaluation
+from swgpar.answers.answer import AnswerGroup, answer, evaluation
 from swgpar.results.history import Row
 
 BALANCE = 1e-4

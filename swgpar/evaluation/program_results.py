@@ -8,9 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
-from swgpar.design.kinematics import Kinematics
-from swgpar.evaluation.answers import (
+from swgpar.answers.answer import (
     NO_ESTIMATE,
     Answer,
     AnswerGroup,
@@ -19,6 +17,8 @@ from swgpar.evaluation.answers import (
     evaluation,
     part_answers,
 )
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.kinematics import Kinematics
 from swgpar.load.load_program import ProgramPoint
 from swgpar.load.load_states import Stage
 from swgpar.results.history import Row, wrapped

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.answers.answer import AnswerGroup, answer, evaluation
 from swgpar.design.kinematics import Kinematics
 from swgpar.design.program_sections import Ratcheting
-from swgpar.evaluation.answers import AnswerGroup, answer, evaluation
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.model.drive_model import DriveModel
 

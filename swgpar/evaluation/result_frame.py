@@ -12,8 +12,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from swgpar.answers.answer import answer, evaluation
 from swgpar.design.kinematics import Kinematics
-from swgpar.evaluation.answers import answer, evaluation
 from swgpar.fem.stress import rotated_tensor
 from swgpar.geometry.rotation import rotated
 from swgpar.model.drive_model import DriveModel

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from swgpar.answers.answer import Answer, AnswerGroup, AnswerKind, answer, evaluation
 from swgpar.checks.clearance import Clearance
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind, answer, evaluation
 
 
 @evaluation

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import (
+from swgpar.answers.answer import (
     Answer,
     AnswerGroup,
     AnswerKind,
@@ -16,11 +15,12 @@ from swgpar.evaluation.answers import (
     known_quotient,
     part_answers,
 )
+from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.jamming import energy_remark, jamming_remark
 from swgpar.evaluation.numerics import torque_left
 from swgpar.evaluation.period import of_period, sampling_error
-from swgpar.evaluation.places import STRESSES, Place
 from swgpar.evaluation.result_frame import InputTorque, input_torque
+from swgpar.largest_stress.places import STRESSES, Place
 from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import Stage
 from swgpar.results.history import DECLARED, Row, column, transmission_error

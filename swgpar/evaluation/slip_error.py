@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from swgpar.answers.answer import AnswerGroup, AnswerKind, answer, evaluation
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import AnswerGroup, AnswerKind, answer, evaluation
 
 SLIP_TOLERANCE = 0.01
 """Largest share of the input torque, or of the output's rotation in an increment, that half the

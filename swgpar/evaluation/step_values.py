@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import (
+from swgpar.answers.answer import (
     Answer,
     AnswerGroup,
     AnswerKind,
@@ -13,6 +12,7 @@ from swgpar.evaluation.answers import (
     evaluation,
     part_answers,
 )
+from swgpar.design.drive_design import DriveDesign
 from swgpar.load.load_states import Stage
 from swgpar.results.history import Row, columns_of
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from swgpar.evaluation.answers import Answer, AnswerGroup, answer, evaluation, with_error
+from swgpar.answers.answer import Answer, AnswerGroup, answer, evaluation, with_error
 from swgpar.evaluation.program_results import PointRow, work_by_torque
 from swgpar.load.load_program import (
     BRANCHES,

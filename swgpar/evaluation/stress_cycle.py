@@ -17,13 +17,13 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.evaluation.period import sample_of
-from swgpar.evaluation.places import pressed_nodes
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import split
 from swgpar.fem.stress import rotated_tensor
 from swgpar.geometry.rotation import rotation_between
+from swgpar.largest_stress.places import pressed_nodes
 from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel

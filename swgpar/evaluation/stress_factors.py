@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from swgpar.evaluation.places import OF_REGION
-from swgpar.evaluation.windows.root_stress import RootStress
-from swgpar.evaluation.windows.wall_stress import WallStress
+from swgpar.largest_stress.places import OF_REGION
+from swgpar.largest_stress.root_stress import RootStress
+from swgpar.largest_stress.wall_stress import WallStress
 from swgpar.model.regions import TOOTH_END, TOOTH_ROOT
 
 TENSION = f"fs_s1{OF_REGION}"

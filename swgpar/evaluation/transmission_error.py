@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from swgpar.answers.answer import AnswerGroup, answer, evaluation
 from swgpar.design.deviations import Deviations, TiltedOffset
 from swgpar.design.kinematics import Kinematics
 from swgpar.design.sections import GearName
-from swgpar.evaluation.answers import AnswerGroup, answer, evaluation
 from swgpar.evaluation.period import of_period
 from swgpar.evaluation.result_frame import shown_output
 from swgpar.load.load_sequence import LoadSequence

@@ -6,14 +6,14 @@ import csv
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
-from functools import cached_property
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.evaluation.answers import NO_ESTIMATE, Answer
+from swgpar.answers.answer import NO_ESTIMATE, Answer
+from swgpar.answers.table import AnswerTable
 from swgpar.gear_trains.common_sections import TrainDesign
 from swgpar.gear_trains.published import Comparison, numbered
 from swgpar.results import history
@@ -48,7 +48,7 @@ class Computed:
 
 
 @dataclass(frozen=True)
-class TrainSummary(Mapping[str, Answer], Generic[D]):
+class TrainSummary(AnswerTable, Generic[D]):
     """What a whole run of a gear train gives: a mapping of answers by name.
 
     A quantity of several numbers has an answer for each: ``braked_B[1]``, ``braked_B[2]``.
@@ -68,22 +68,9 @@ class TrainSummary(Mapping[str, Answer], Generic[D]):
     design: D
     known: Mapping[str, Quantity]
 
-    @cached_property
-    def _answers(self) -> dict[str, Answer]:
-        return {
-            answer.name: answer
-            for name, found in self.quantities.items()
-            for answer in _answers_of(name, self.known[name], np.atleast_1d(found).tolist())
-        }
-
-    def __getitem__(self, name: str) -> Answer:
-        return self._answers[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._answers)
-
-    def __len__(self) -> int:
-        return len(self._answers)
+    def answers(self) -> Iterator[Answer]:
+        for name, found in self.quantities.items():
+            yield from _answers_of(name, self.known[name], np.atleast_1d(found).tolist())
 
 
 def _answers_of(name: str, kind: Quantity, numbers: list[float]) -> Iterator[Answer]:

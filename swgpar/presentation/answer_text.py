@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from swgpar.evaluation.answers import Answer
+from swgpar.answers.answer import Answer
 from swgpar.results.page import Row, Table, number
 
 NOTHING = 1e-9

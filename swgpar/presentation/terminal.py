@@ -11,8 +11,8 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from swgpar.answers.answer import AnswerGroup
 from swgpar.drive_results.summary import DriveSummary
-from swgpar.evaluation.answers import AnswerGroup
 from swgpar.log import console
 from swgpar.presentation.answer_text import error_text, remark_text, value_text
 

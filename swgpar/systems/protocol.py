@@ -11,7 +11,7 @@ from typing import Any, Generic, Protocol, TypeVar
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.evaluation.answers import NO_LIMIT, Answer
+from swgpar.answers.answer import NO_LIMIT, Answer
 from swgpar.input.design import Design
 from swgpar.meshing import MeshRecipe
 from swgpar.results.figure_set import FigureSet

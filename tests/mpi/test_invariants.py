@@ -14,10 +14,10 @@ from support.stepping import MODELS, WORLD, assert_agree, loaded, rotate, small
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.contact.contact import NO_KEYS
 from swgpar.contact.flank_state import ActiveCells
-from swgpar.evaluation.contact_pressure import nodal_pressure
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.stress import body_fields
 from swgpar.load.load_states import LoadState
+from swgpar.model.nodal_pressure import nodal_pressure
 from swgpar.petsc import PETSc
 from swgpar.solve.active_set_cycles import VisitedSets
 from swgpar.solve.discrete_problem import ResidualInfo

@@ -14,11 +14,11 @@ from support.cup_shapes import CLAMPED, shaped
 from support.paths import RECIPE
 from support.stepping import WORLD, loaded, small
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.evaluation.windows.convergence import HIGHEST_ORDER, error_of
-from swgpar.evaluation.windows.local_problem import MARGIN, SECTORS, LocalProblem
-from swgpar.evaluation.windows.root_stress import resolve_root_stress
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal
+from swgpar.largest_stress.convergence import HIGHEST_ORDER, error_of
+from swgpar.largest_stress.local_problem import MARGIN, SECTORS, LocalProblem
+from swgpar.largest_stress.root_stress import resolve_root_stress
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.model.regions import END
 

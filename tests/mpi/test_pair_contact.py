@@ -12,8 +12,8 @@ from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
 from support.stepping import WORLD, Row, loaded, rotate, small
-from swgpar.evaluation.pair_contact import PairContact, moved_teeth, pair_contacts
 from swgpar.fem.body import RING_GEAR
+from swgpar.flank_pressure.pair_contact import PairContact, moved_teeth, pair_contacts
 from swgpar.materials import Isotropic, contact_modulus
 
 CLOCKWISE = "clockwise"

@@ -15,7 +15,7 @@ from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.checks.design_file import load_design
 from swgpar.constraints.distributing_coupling import ROTATION
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.pair_contact import pair_contacts
+from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.load.load_sequence import load_sequence
 
 TORQUE = 1000.0

@@ -9,7 +9,7 @@ from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
 from support.stepping import WORLD, loaded, small
-from swgpar.evaluation.places import OF_REGION, Place, find_places
+from swgpar.largest_stress.places import OF_REGION, Place, find_places
 
 
 @lru_cache

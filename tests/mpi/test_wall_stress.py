@@ -15,16 +15,16 @@ from support.cup_shapes import HAT, HAT_CLAMPED, Changes, shaped
 from support.paths import RECIPE
 from support.stepping import WORLD, loaded
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.evaluation.places import OF_REGION, find_places
-from swgpar.evaluation.windows import wall_stress
-from swgpar.evaluation.windows.wall_stress import (
+from swgpar.fem.stress import principal
+from swgpar.largest_stress import wall_stress
+from swgpar.largest_stress.places import OF_REGION, find_places
+from swgpar.largest_stress.wall_stress import (
     RINGS,
     CoarseWall,
     WallStress,
     resolve_wall,
     ring_stresses,
 )
-from swgpar.fem.stress import principal
 from swgpar.meshing.wall_sector import WallCounts
 from swgpar.model.regions import sector_regions
 

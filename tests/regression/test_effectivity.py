@@ -13,7 +13,7 @@ import pytest
 
 import swgpar
 from support.sensible_drives import MESHES, SensibleDrive, sensible_drives
-from swgpar.evaluation.windows import root_stress
+from swgpar.largest_stress import root_stress
 from swgpar.meshing.recipe_counts import refined
 
 SEED, MOST_TEETH, DRIVES = 7, 80, 3

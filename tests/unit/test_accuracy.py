@@ -27,14 +27,14 @@ from swgpar.analysis.mesh_refinement import ChosenMesh, choose_mesh
 from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
-from swgpar.evaluation.windows.root_stress import (
+from swgpar.input.toml_file import to_toml
+from swgpar.largest_stress.root_stress import (
     BETWEEN,
     ENDS,
     LEVELS,
     RootStress,
     resolve_root_stress,
 )
-from swgpar.input.toml_file import to_toml
 from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe_counts import (

@@ -12,9 +12,9 @@ from rich.console import Console
 
 import swgpar
 from support.paths import DATA
+from swgpar.answers.answer import NO_ESTIMATE, joined_error, known_quotient
 from swgpar.drive_results.report_checks import checks
 from swgpar.drive_results.summary_file import summary_from, summary_to_json
-from swgpar.evaluation.answers import NO_ESTIMATE, joined_error, known_quotient
 from swgpar.presentation import terminal
 from swgpar.presentation.answer_text import error_text, value_text
 from swgpar.presentation.drive_report import drive_report

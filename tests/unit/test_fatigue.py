@@ -8,10 +8,10 @@ import pytest
 import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
+from swgpar.answers.answer import declared_answers
 from swgpar.checks.design_file import load_design
 from swgpar.design.sections import Fatigue
 from swgpar.errors import InputError
-from swgpar.evaluation.answers import declared_answers
 from swgpar.evaluation.fatigue import SafetyAndLife, _life
 from swgpar.evaluation.fatigue_criteria import (
     critical_plane,

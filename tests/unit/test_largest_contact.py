@@ -10,10 +10,10 @@ import pytest
 
 import swgpar
 from support.paths import DRIVERS
+from swgpar.answers.answer import NO_ESTIMATE, NO_LIMIT, Answer
 from swgpar.drive_results.report_checks import checks
-from swgpar.evaluation.answers import NO_ESTIMATE, NO_LIMIT, Answer
 from swgpar.evaluation.largest_contact import LargestContact, largest_contact
-from swgpar.evaluation.pair_contact import PairContact
+from swgpar.flank_pressure.pair_contact import PairContact
 from swgpar.results.history import Row
 from swgpar.systems.drive import DRIVE
 

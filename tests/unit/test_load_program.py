@@ -11,8 +11,8 @@ import pytest
 
 from support.stepping import small
 from swgpar.analysis.shortcuts import with_shortcuts
+from swgpar.answers.answer import NO_ESTIMATE
 from swgpar.errors import InputError
-from swgpar.evaluation.answers import NO_ESTIMATE
 from swgpar.evaluation.program_results import work_by_torque
 from swgpar.evaluation.ratcheting import (
     AT_TEETH,

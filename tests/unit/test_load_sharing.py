@@ -10,7 +10,7 @@ import pytest
 import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.evaluation.answers import declared_answers
+from swgpar.answers.answer import declared_answers
 from swgpar.evaluation.load_sharing import LoadSharing, Spread, load_sharing
 from swgpar.systems.drive import DRIVE
 

@@ -18,8 +18,8 @@ from support.element_problems import arc, solve
 from support.markdown import examples
 from support.paths import DESIGN, ROOT
 from swgpar.checks.design_file import load_design
-from swgpar.evaluation.line_contact import line_contact
 from swgpar.fem.element_matrices import element_matrices
+from swgpar.flank_pressure.line_contact import line_contact
 from swgpar.materials import Isotropic, Material, contact_modulus
 
 STEEL, ALUMINIUM = Isotropic(E=210e3, nu=0.29), Isotropic(E=70e3, nu=0.33)

@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from swgpar.evaluation.patch_contact import Gap, patch_contact
+from swgpar.flank_pressure.patch_contact import Gap, patch_contact
 from swgpar.materials import Isotropic, contact_modulus
 
 E = contact_modulus(*[Isotropic(E=210e3, nu=0.29)] * 2, plane_stress=False)

@@ -12,11 +12,11 @@ from support.paths import DESIGN, RECIPE, REFERENCE
 from support.small_drive import PLANE
 from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.place_errors import CoarseStresses, with_errors
-from swgpar.evaluation.places import APART, Place, inside_teeth, root_nodes
 from swgpar.evaluation.rotation import GEAR_STRESSES
-from swgpar.evaluation.windows.local_problem import tooth_nodes
-from swgpar.evaluation.windows.root_stress import BETWEEN, RootStress
+from swgpar.largest_stress.local_problem import tooth_nodes
+from swgpar.largest_stress.place_errors import CoarseStresses, with_errors
+from swgpar.largest_stress.places import APART, Place, inside_teeth, root_nodes
+from swgpar.largest_stress.root_stress import BETWEEN, RootStress
 from swgpar.meshing import SectorMesh, load_recipe
 from swgpar.meshing.tooth_sector import build_sector
 from swgpar.model.regions import AVERAGE, BACK, region_of

@@ -20,8 +20,8 @@ from swgpar.design.sections import GEARS
 from swgpar.drive_results.report_checks import checks
 from swgpar.errors import InputError
 from swgpar.evaluation.transmission_error import TorqueOverTurns, TransmissionError
-from swgpar.evaluation.windows.root_stress import BETWEEN, RootStress
 from swgpar.geometry.rotation import rotated
+from swgpar.largest_stress.root_stress import BETWEEN, RootStress
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.presentation.deformed_figures import deformed
 from swgpar.presentation.drive_drawing import draw_drive

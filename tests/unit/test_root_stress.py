@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from swgpar.evaluation.windows.convergence import error_of
-from swgpar.evaluation.windows.local_problem import WindowStress
-from swgpar.evaluation.windows.root_stress import (
+from swgpar.largest_stress.convergence import error_of
+from swgpar.largest_stress.local_problem import WindowStress
+from swgpar.largest_stress.root_stress import (
     BETWEEN,
     ENDS,
     candidates,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from swgpar.evaluation.places import Place
-from swgpar.evaluation.resolved_places import with_windows
 from swgpar.evaluation.stress_factors import stress_factors
-from swgpar.evaluation.windows.wall_stress import WallStress
+from swgpar.largest_stress.places import Place
+from swgpar.largest_stress.resolved_places import with_windows
+from swgpar.largest_stress.wall_stress import WallStress
 
 
 def place(value: float, region: str, error: float | None = None) -> Place:

@@ -16,8 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import (
+from swgpar.answers.answer import (
     Answer,
     AnswerGroup,
     AnswerKind,
@@ -28,11 +27,12 @@ from swgpar.evaluation.answers import (
     place_text,
     with_no_limit,
 )
-from swgpar.evaluation.places import root_nodes
-from swgpar.evaluation.windows.convergence import error_of
-from swgpar.evaluation.windows.local_problem import SECTORS, LocalProblem, WindowStress, tooth_nodes
+from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal
+from swgpar.largest_stress.convergence import error_of
+from swgpar.largest_stress.local_problem import SECTORS, LocalProblem, WindowStress, tooth_nodes
+from swgpar.largest_stress.places import root_nodes
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from swgpar.answers.answer import NO_ESTIMATE, AnswerGroup, AnswerKind, answer, evaluation
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.answers import NO_ESTIMATE, AnswerGroup, AnswerKind, answer, evaluation
 
 
 @evaluation

@@ -18,13 +18,13 @@ from swgpar.constraints.boundary_conditions import PrescribedDisplacement
 from swgpar.constraints.distributing_coupling import ROTATION, DistributingCoupling, NodeMeans
 from swgpar.constraints.supports import SPLINE_COUPLING, Supports
 from swgpar.errors import ConvergenceError
-from swgpar.evaluation.windows.local_problem import STIFFNESS
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.rotation import rotated
+from swgpar.largest_stress.local_problem import STIFFNESS
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing.interpolation import interpolation_at

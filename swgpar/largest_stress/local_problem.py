@@ -17,14 +17,13 @@ from swgpar.constraints.boundary_conditions import DeadLoad, PrescribedDisplacem
 from swgpar.constraints.distributing_coupling import node_weights
 from swgpar.constraints.supports import Supports
 from swgpar.errors import ConvergenceError
-from swgpar.evaluation.flank_loads import flank_forces, line_loads, nodal_forces
-from swgpar.evaluation.torques import torques
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.stress import principal
 from swgpar.fem.vectors import read_field, write_field
+from swgpar.flank_pressure.flank_loads import flank_forces, line_loads, nodal_forces
 from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.geometry.rotation import rotated
 from swgpar.load.load_states import LoadState, Stage
@@ -36,6 +35,7 @@ from swgpar.meshing.tooth_sector import build_sector
 from swgpar.meshing.trim import trimmed
 from swgpar.model.drive_model import DriveModel
 from swgpar.model.regions import END, region_of, warning_of
+from swgpar.model.torques import torques
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from swgpar.evaluation.places import Place
-from swgpar.evaluation.windows.root_stress import RootStress
-from swgpar.evaluation.windows.wall_stress import CoarseWall
 from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.largest_stress.places import Place
+from swgpar.largest_stress.root_stress import RootStress
+from swgpar.largest_stress.wall_stress import CoarseWall
 from swgpar.model.regions import TOOTH_ROOT
 
 NODAL_ORDER = 1

@@ -12,12 +12,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.places import OF_REGION, Place
-from swgpar.evaluation.windows.convergence import error_of
-from swgpar.evaluation.windows.wall_problem import Source, WallProblem
 from swgpar.fem.body import FLEXIBLE_SPLINE, STRESS_PREFIXES
 from swgpar.fem.stress import principal
+from swgpar.largest_stress.convergence import error_of
+from swgpar.largest_stress.places import OF_REGION, Place
+from swgpar.largest_stress.wall_problem import Source, WallProblem
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.meshing.sector import SectorMesh
@@ -108,11 +107,6 @@ class WallStress:
     places: Mapping[str, Place]
     levels: Mapping[str, tuple[float, ...]]
     on_ring: Mapping[str, float]
-
-
-def resolves_wall(design: DriveDesign) -> bool:
-    """Whether rings resolve the wall of a design. Their columns are too wide for bolts."""
-    return design.output.root_stress and design.has_cup and not design.is_bolted
 
 
 def wall_start(model: DriveModel) -> float:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from swgpar.evaluation.answers import (
+from swgpar.answers.answer import (
     Answer,
     AnswerGroup,
     AnswerKind,
@@ -20,12 +20,12 @@ from swgpar.evaluation.answers import (
     with_error,
     with_no_limit,
 )
-from swgpar.evaluation.contact_pressure import nodal_pressure
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.load.load_states import LoadState
 from swgpar.meshing.sector import SectorMesh
 from swgpar.model.drive_model import DriveModel
+from swgpar.model.nodal_pressure import nodal_pressure
 from swgpar.model.regions import END, NEAR, warning_of
 
 TOUCHED = 0.02

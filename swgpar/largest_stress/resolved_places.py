@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from swgpar.evaluation.place_errors import MOST_LOST
-from swgpar.evaluation.places import APART, OF_REGION, Place
-from swgpar.evaluation.windows.root_stress import RootStress
-from swgpar.evaluation.windows.wall_stress import WallStress
 from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.largest_stress.place_errors import MOST_LOST
+from swgpar.largest_stress.places import APART, OF_REGION, Place
+from swgpar.largest_stress.root_stress import RootStress
+from swgpar.largest_stress.wall_stress import WallStress
 from swgpar.model.regions import UNDER_CONTACT, WALL
 
 STRESSES = "fs_s1", "fs_s3", "fs_vm"

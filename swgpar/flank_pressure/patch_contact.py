@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 
 from swgpar.contact.pressed_lines import contact_end
-from swgpar.evaluation.line_contact import LineContact
+from swgpar.flank_pressure.line_contact import LineContact
 
 CELLS_ACROSS, CELLS_ALONG = 24, 28
 """Cells of constant pressure over the width and along the length of the grid."""

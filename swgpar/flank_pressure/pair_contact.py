@@ -5,7 +5,7 @@ In the plane model the pressure is that of the contact law, which joins the mesh
 load of a line ends within a layer of elements, where the law's lines do not know each other: the
 mesh gives the force of a pair and its place along the face width, the exact flanks are moved with
 their teeth, and the gap between them goes into the contact of two half spaces over a patch
-(`swgpar.evaluation.patch_contact`).
+(`swgpar.flank_pressure.patch_contact`).
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from scipy.integrate import trapezoid
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.pressed_lines import PressedLine
 from swgpar.contact.search import FlankPair
-from swgpar.evaluation.flank_loads import LineLoad, flank_forces, line_loads
-from swgpar.evaluation.line_contact import largest_shear
-from swgpar.evaluation.moved_teeth import MovedTooth
-from swgpar.evaluation.patch_contact import CELLS_ACROSS, PatchContact, patch_contact
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import read_field
+from swgpar.flank_pressure.flank_loads import LineLoad, flank_forces, line_loads
+from swgpar.flank_pressure.line_contact import largest_shear
+from swgpar.flank_pressure.moved_teeth import MovedTooth
+from swgpar.flank_pressure.patch_contact import CELLS_ACROSS, PatchContact, patch_contact
 from swgpar.geometry.rotation import SIXTHS, rotated
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger

@@ -1,0 +1,1 @@
+"""Numbers that a run gives, as values with units, errors and places."""

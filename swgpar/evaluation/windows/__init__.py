@@ -1,1 +1,0 @@
-"""Windows on finer meshes that resolve the stress at the teeth."""

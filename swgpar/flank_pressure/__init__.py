@@ -1,0 +1,1 @@
+"""Pressure where flanks touch: lines and patches of pairs of teeth."""

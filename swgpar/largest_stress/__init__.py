@@ -1,0 +1,1 @@
+"""The largest stresses of bodies: places, and finer meshes that resolve them."""
