@@ -1,5 +1,5 @@
 """What a design may have and what deserves a word: teeth that overlap, torques that are too small
-to be resolved."""
+to be resolved, plastics."""
 
 from __future__ import annotations
 
@@ -16,5 +16,11 @@ def remarks(design: DriveDesign) -> list[str]:
         sentences.append(
             f"load.torque = {torque:g} N·m counts as none: up to {0.001 * negligible:.3g} N·m it "
             f"is too small beside the bending of the flexible spline"
+        )
+    plastic = [body for body, material in design.materials.items() if material.creeps]
+    if plastic:
+        sentences.append(
+            f"plastics creep, and the model has no creep: stresses and stiffness of "
+            f"{', '.join(plastic)} are those of a short load"
         )
     return sentences

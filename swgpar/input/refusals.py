@@ -6,7 +6,7 @@ from __future__ import annotations
 import difflib
 import json
 from collections.abc import Iterable, Sequence
-from typing import Any, get_args, get_origin
+from typing import Any, Literal, get_args, get_origin
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
@@ -109,7 +109,8 @@ def sentence(model: type[Section], error: ValidationError) -> str:
     if _section_classes(field):
         return _bad_section(field, kind, key, value)
     if kind == "literal_error":
-        names = get_args(field.annotation)
+        parts = (field.annotation, *get_args(field.annotation))  # of an optional key too
+        names = [name for part in parts if get_origin(part) is Literal for name in get_args(part)]
         return f"{key} = {show(value)} is not available: allowed {_choices(names)}"
     return _bad_value(field, kind, key, value)
 

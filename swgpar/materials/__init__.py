@@ -5,6 +5,16 @@ To add a law, see docs/howto/own_material.md.
 
 from swgpar.materials.isotropic import Isotropic
 from swgpar.materials.laws import ChosenMaterial, OptionalMaterial
+from swgpar.materials.library import LIBRARY
 from swgpar.materials.material import Material, contact_modulus
+from swgpar.materials.transversely_isotropic import TransverselyIsotropic
 
-__all__ = ["ChosenMaterial", "Isotropic", "Material", "OptionalMaterial", "contact_modulus"]
+__all__ = [
+    "LIBRARY",
+    "ChosenMaterial",
+    "Isotropic",
+    "Material",
+    "OptionalMaterial",
+    "TransverselyIsotropic",
+    "contact_modulus",
+]

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
+from pydantic import model_validator
 
 from swgpar.input.quantities import quantity
+from swgpar.materials.library import LIBRARY
 from swgpar.materials.material import Material
 
 
@@ -14,8 +16,24 @@ class Isotropic(Material):
     """Hooke's law with two constants."""
 
     type: Literal["isotropic"] = quantity("isotropic", text="law of the material")
+    name: Literal[tuple(LIBRARY)] | None = quantity(  # type: ignore[valid-type]
+        None, text="material of the library, which gives E, nu and density where they are missing"
+    )
     E: float = quantity(unit="MPa", text="modulus of elasticity", gt=0.0)
     nu: float = quantity(text="Poisson's ratio", ge=0.0, le=0.499)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _take_from_the_library(cls, keys: Any) -> Any:
+        named = LIBRARY.get(str(keys.get("name"))) if isinstance(keys, dict) else None
+        if named is None:
+            return keys
+        return {"E": named.E, "nu": named.nu, "density": named.density, **keys}
+
+    @property
+    def creeps(self) -> bool:
+        """Whether the library knows it as a plastic."""
+        return self.name is not None and LIBRARY[self.name].creeps
 
     @property
     def modulus(self) -> float:

@@ -8,8 +8,9 @@ from pydantic import BeforeValidator, Field
 
 from swgpar.input.quantities import default_type
 from swgpar.materials.isotropic import Isotropic
+from swgpar.materials.transversely_isotropic import TransverselyIsotropic
 
-Law = Isotropic
+Law = Isotropic | TransverselyIsotropic
 """All laws, with | between them: docs/howto/own_material.md."""
 
 _BY_TYPE = (Field(discriminator="type"), BeforeValidator(default_type("isotropic")))

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import model_validator
 from pydantic_core import PydanticCustomError
 
-from swgpar.input.quantities import WHOLE_SECTION, Section
+from swgpar.input.quantities import WHOLE_SECTION, Section, quantity
 
 IN_PLANE = [0, 1, 3]
 """Components xx, yy and xy among xx, yy, zz, xy, yz, zx."""
@@ -22,6 +22,8 @@ class Material(Section):
     the sector, x is tangential there, and z is the axis of the drive. Components are xx, yy, zz,
     xy, yz, zx, with engineering shear strains.
     """
+
+    density: float | None = quantity(None, unit="kg/m³", text="density", ge=100.0, le=30e3)
 
     @model_validator(mode="after")
     def _is_stable(self) -> Self:
@@ -44,6 +46,11 @@ class Material(Section):
         """Stresses xx, yy, xy by these strains where zz, yz and zx are free of stress, (3, 3)
         MPa."""
         return _inverse(self.compliance()[np.ix_(IN_PLANE, IN_PLANE)])
+
+    @property
+    def creeps(self) -> bool:
+        """Whether it is known to creep: then a state of a run is that of a short load."""
+        return False
 
     @property
     def modulus(self) -> float:

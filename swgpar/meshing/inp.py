@@ -69,6 +69,12 @@ def _constants(material: Material, plane_stress: bool) -> str:
     )
 
 
+def _density(material: Material) -> str:
+    """Lines of the density, in t/mm³ with lengths in mm and forces in N; empty where it is not
+    given."""
+    return "" if material.density is None else f"*DENSITY\n{1e-12 * material.density:.12g}\n"
+
+
 def write_inp(
     path: Path,
     drive: meshio.Mesh,
@@ -120,6 +126,7 @@ def write_inp(
             file.write(
                 f"*MATERIAL, NAME={body.upper()}_MATERIAL\n"
                 f"*ELASTIC{_constants(materials[body], plane_stress)}\n"
+                f"{_density(materials[body])}"
             )
         for body in drive.cell_sets:
             file.write(f"*SOLID SECTION, ELSET={body.upper()}, MATERIAL={body.upper()}_MATERIAL\n")

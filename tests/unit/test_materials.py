@@ -16,11 +16,20 @@ import pytest
 from support.element_mesh import ElementMesh
 from support.element_problems import arc, solve
 from support.markdown import examples
+from support.own_law import check_patch
 from support.paths import DESIGN, ROOT
 from swgpar.checks.design_file import load_design
+from swgpar.checks.remarks import remarks
+from swgpar.errors import InputError
 from swgpar.fem.element_matrices import element_matrices
 from swgpar.flank_pressure.line_contact import line_contact
-from swgpar.materials import Isotropic, Material, contact_modulus
+from swgpar.materials import (
+    LIBRARY,
+    Isotropic,
+    Material,
+    TransverselyIsotropic,
+    contact_modulus,
+)
 
 STEEL, ALUMINIUM = Isotropic(E=210e3, nu=0.29), Isotropic(E=70e3, nu=0.33)
 
@@ -111,13 +120,80 @@ def test_bodies_fall_back_on_the_material_of_the_drive() -> None:
     assert design.modulus_of("flexible_spline", "ring_gear") == 70e3
 
 
+def test_a_name_gives_what_is_missing() -> None:
+    sections = ('ring_gear.material={name="7075-T6", nu=0.34}', "ring_gear.material.density=2800.0")
+    material = load_design(DESIGN, sections).materials["ring_gear"]
+    assert (material.modulus, material.poisson) == pytest.approx((71e3, 0.34))
+    assert material.density == 2800.0
+    with pytest.raises(InputError, match='ring_gear.material.name = "wood" is not available'):
+        load_design(DESIGN, ['ring_gear.material={name="wood"}'])
+
+
+def test_plastics_are_known_to_creep() -> None:
+    design = load_design(DESIGN, ['flexible_spline.material={name="PLA"}'])
+    assert any(
+        "creep" in sentence and "flexible_spline" in sentence for sentence in remarks(design)
+    )
+    assert not any("creep" in sentence for sentence in remarks(load_design(DESIGN)))
+
+
+def test_the_page_has_the_library() -> None:
+    lines = PAGE.read_text(encoding="utf-8").splitlines()
+    first = lines.index("| name | material | E (MPa) | nu | density (kg/m³) | source |") + 2
+    assert lines[first : first + len(LIBRARY) + 1] == [
+        *(
+            f"| `{name}` | {m.text} | {m.E:g} | {m.nu:g} | {m.density:g} | {m.source} |"
+            for name, m in LIBRARY.items()
+        ),
+        "",
+    ]
+
+
+LAYERS = TransverselyIsotropic(E=3000.0, nu=0.35, E_z=2400.0, nu_z=0.3, G_z=900.0)
+
+
+def test_layers_pass_the_patch_test() -> None:
+    check_patch(LAYERS)
+
+
+def test_layers_that_are_alike_in_all_directions_are_isotropic() -> None:
+    alike = TransverselyIsotropic(E=3000.0, nu=0.35, E_z=3000.0, nu_z=0.35, G_z=3000.0 / 2.7)
+    assert alike.elasticity() == pytest.approx(Isotropic(E=3000.0, nu=0.35).elasticity(), rel=1e-12)
+    assert alike.contact_compliance() == pytest.approx((1.0 - 0.35**2) / 3000.0, rel=1e-14)
+
+
+def test_layers_do_not_depend_on_the_angle_about_the_axis() -> None:
+    """Lekhnitskii: a rotation about z leaves the law as it is."""
+    c, s = np.cos(0.7), np.sin(0.7)
+    stresses = np.array(  # xx, yy, zz, xy, yz, zx in axes rotated by 0.7 about z
+        [
+            [c * c, s * s, 0.0, 2.0 * c * s, 0.0, 0.0],
+            [s * s, c * c, 0.0, -2.0 * c * s, 0.0, 0.0],
+            [0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+            [-c * s, c * s, 0.0, c * c - s * s, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, c, -s],
+            [0.0, 0.0, 0.0, 0.0, s, c],
+        ]
+    )
+    compliance = LAYERS.compliance()
+    assert stresses.T @ compliance @ stresses == pytest.approx(compliance, rel=1e-12, abs=1e-18)
+
+
+def test_layers_that_yield_energy_are_refused() -> None:
+    section = (
+        'ring_gear.material={type="transversely_isotropic", E=3e3, nu=0.3, E_z=2e3, G_z=900.0,'
+    )
+    with pytest.raises(InputError, match="ring_gear.material is a material that yields energy"):
+        load_design(DESIGN, [section + " nu_z=0.99}"])
+
+
 def test_a_law_is_added_as_the_page_says(tmp_path: Path) -> None:
     """The file and the registry of the page, in a copy of the package: a patch test and a design
     with that law."""
     law, registry = examples(PAGE, "python")
     package = tmp_path / "swgpar"
     shutil.copytree(ROOT / "swgpar", package, ignore=shutil.ignore_patterns("__pycache__"))
-    (package / "materials" / "transversely_isotropic.py").write_text(law, encoding="utf-8")
+    (package / "materials" / "bulk_and_shear.py").write_text(law, encoding="utf-8")
     added, chosen = registry.strip().split("\n\n")
     laws = (package / "materials" / "laws.py").read_text(encoding="utf-8")
     extended = rf"{added}\n\nLaw = \1 | {chosen.rpartition(' | ')[2]}\n"

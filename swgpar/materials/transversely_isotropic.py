@@ -1,0 +1,36 @@
+"""A law with one stiffness in the plane xy and another one along z: layers of a printed part."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from swgpar.input.quantities import quantity
+from swgpar.materials.material import Material
+
+
+class TransverselyIsotropic(Material):
+    """The same in all directions of the plane xy, which is that of the layers."""
+
+    type: Literal["transversely_isotropic"] = quantity(
+        "transversely_isotropic", text="law of the material"
+    )
+    E: float = quantity(unit="MPa", text="modulus of elasticity in the plane xy", gt=0.0)
+    nu: float = quantity(text="Poisson's ratio in the plane xy", gt=-1.0, lt=1.0)
+    E_z: float = quantity(unit="MPa", text="modulus of elasticity along z", gt=0.0)
+    nu_z: float = quantity(
+        text="contraction in the plane xy over the stretch along z, under a stress along z",
+        gt=-1.0,
+        lt=1.0,
+    )
+    G_z: float = quantity(unit="MPa", text="shear modulus of the planes yz and zx", gt=0.0)
+
+    def compliance(self) -> np.ndarray:
+        """Strains by stresses, (6, 6) 1/MPa."""
+        shear = 2.0 * (1.0 + self.nu) / self.E
+        stretch = [1.0 / self.E, 1.0 / self.E, 1.0 / self.E_z]
+        out = np.diag([*stretch, shear, 1.0 / self.G_z, 1.0 / self.G_z])
+        out[0, 1] = out[1, 0] = -self.nu / self.E
+        out[:2, 2] = out[2, :2] = -self.nu_z / self.E_z
+        return out
