@@ -28,10 +28,10 @@ from matplotlib.figure import Figure
 from swgpar.geometry.cams import Cam
 from swgpar.geometry.cams.arcs import arcs
 from swgpar.geometry.cams.elliptical import EllipticalCam
-from swgpar.geometry.cams.four_roller import four_roller
 from swgpar.geometry.cams.harmonic import HarmonicCam
 from swgpar.geometry.cams.parabolic import Side, parabolic, solve_quarter
 from swgpar.geometry.cams.piecewise import Parabola
+from swgpar.geometry.cams.rollers import RollerCam, rollers
 from swgpar.geometry.cams.simplified import simplified
 
 R_FS = 10.0
@@ -47,7 +47,7 @@ PARTS = {"parabola": "#8c4fb0", "connector": "#2d9a57", "lateral": "#d07a20"}
 def base(ax: Axes, cam: Cam, title: str) -> None:
     """Cam, axes and the undeformed inner circle of the spline."""
     outline = cam.outline(1440)
-    parts = np.array_split(outline, 4) if title == "four_roller" else [outline]
+    parts = np.array_split(outline, cam.count) if isinstance(cam, RollerCam) else [outline]
     for part in parts:
         ax.fill(*part.T, fc=CAM, alpha=0.55, ec=INK, lw=1.0)
     ax.plot(*arc((0, 0), R_FS, 0, 360).T, color=SPLINE, lw=0.9, ls="--")
@@ -197,7 +197,7 @@ def draw_asymmetric(ax: Axes) -> None:
 
 def draw_rollers(ax: Axes) -> None:
     beta, radius = np.radians(32.0), 3.2
-    cam = four_roller(A, beta, radius)
+    cam = rollers(A - radius, beta, radius, "r_4")
     base(ax, cam, "four_roller")
     ax.plot(*arc((0, 0), A, 20, 160).T, color=INK, lw=0.6, ls=":")
     label(ax, (-9.2, 9.6), "circle of radius $a$", color=INK)
@@ -210,6 +210,23 @@ def draw_rollers(ax: Axes) -> None:
     )
     angle_mark(ax, (0, 0), 4.2, 90.0, 90.0 - np.degrees(beta), r"$\beta$", out=1.2)
     dimension(ax, (0, 0), tuple(-A * unit), "$a$", at=tuple(-0.35 * A * unit + (0.9, 0)))
+    ax.plot(*arc((0, 0), cam.reach, 0, 360).T, color=NOTE, lw=0.5, ls=":")
+    on_circle = tuple(cam.reach * unit * (1, -1))
+    leader(ax, (0.0, -5.6), "circle of the centres,\ncentre_radius", on_circle)
+
+
+def draw_two_rollers(ax: Axes) -> None:
+    radius = 4.2
+    cam = rollers(A - radius, 0.0, radius, "r_2")
+    base(ax, cam, "two_roller")
+    c = np.array(cam.center)
+    ax.plot(*c, "+", color=NOTE, ms=9)
+    dimension(
+        ax, tuple(c), tuple(c + radius * np.array([1.0, 0.0])), "$r_2$", at=(c[0] + 2.2, c[1] + 0.7)
+    )
+    dimension(ax, (0, 0), tuple(-c), "centre_radius", at=(3.2, -0.5 * cam.reach))
+    dimension(ax, (-7.5, 0), (-7.5, A), "$r_{fs} + w_0$", at=(-9.4, 0.5 * A))
+    ax.plot([-7.9, 0], [A, A], color=NOTE, lw=0.5)
 
 
 def draw_pins(ax: Axes) -> None:
@@ -251,6 +268,7 @@ def cams() -> Figure:
         draw_parabolic,
         draw_asymmetric,
         draw_rollers,
+        draw_two_rollers,
         partial(draw_harmonic, lobes=2),
         partial(draw_harmonic, lobes=3),
         draw_pins,
@@ -278,6 +296,7 @@ REFERENCE = {
         "left": {"a_p": 0.0097, "C_p": 0.51, "r_c": 10.0},
     },
     "four_roller": {"type": "four_roller", "beta": 10.0, "r_4": 8.0},
+    "two_roller": {"type": "two_roller", "r_2": 20.0},
 }
 """Wave generators of the studies of the reference drive."""
 

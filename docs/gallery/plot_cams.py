@@ -27,6 +27,7 @@ CAMS = {
         "left": {"a_p": 0.0097, "C_p": 0.51, "r_c": 10.0},
     },
     "four rollers": {"type": "four_roller", "beta": 25.0, "r_4": 15.0},
+    "two rollers": {"type": "two_roller", "r_2": 20.0},
 }
 
 reference = swgpar.load_design(DRIVERS / "plane_half_turn.toml")
@@ -43,12 +44,12 @@ figure, axes = plt.subplots(1, len(designs), figsize=(12.0, 3.0), sharey=True, l
 angle = np.linspace(0.0, 2.0 * np.pi, 721)
 for panel, (name, design) in zip(axes, designs.items()):
     outline = design.cam().outline(3600)
-    rollers = name == "four rollers"
+    rollers = {"four rollers": 4, "two rollers": 2}.get(name, 0)
     if not rollers:
         radius = np.hypot(*outline.T)
         outline *= (1.0 + 4.0 * (1.0 - design.inner_radius / radius))[:, None]
     circle = design.inner_radius * np.stack([np.sin(angle), np.cos(angle)])
-    for part in np.array_split(outline, 4 if rollers else 1):
+    for part in np.array_split(outline, rollers or 1):
         panel.plot(*np.vstack([part, part[:1]]).T, color="tab:orange")
     panel.plot(*circle, "--", color="0.6", linewidth=0.8)
     panel.set(aspect="equal", xlabel="x (mm)")

@@ -6,7 +6,7 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.bearing import smallest_curvature_radius
-from swgpar.geometry.cams import FourRoller
+from swgpar.geometry.cams import FourRoller, TwoRoller
 from swgpar.input.require import require, require_available
 
 SECTION = "wave_generator.bearing"
@@ -17,9 +17,9 @@ def check_bearing(design: DriveDesign) -> None:
     """Raise InputError for the first size of the bearing that does not fit the others."""
     bearing, sizes, output = design.bearing, design.bearing_sizes, design.output
     require_available(
-        not isinstance(design.wave_generator, FourRoller),
+        not isinstance(design.wave_generator, FourRoller | TwoRoller),
         SECTION,
-        'wave_generator.type = "four_roller"',
+        f'wave_generator.type = "{design.wave_generator.type}"',
         "with cams whose curve an inner race can follow",
     )
     lobes = f"wave_generator.lobes = {design.wave_generator.lobes}"

@@ -22,7 +22,8 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
     """Quantities that follow from a design: names with units, and values. `swgpar check` prints
     them."""
     spline, ring = design.profile("flexible_spline"), design.profile("ring_gear")
-    cam, half, every = design.cam(), 0.5 * design.deflection, clearances(design)
+    cam, line, every = design.cam(), design.tooth_motion().line, clearances(design)
+    lobe, valley = line.deflections
     driving = "ring gear" if design.kinematics.wave_generator_is_fixed else "wave generator"
     return {
         f"ratio ({driving} / output)": design.kinematics.input_ratio,
@@ -32,6 +33,9 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         "taut length of cam / inner perimeter - 1": taut_length(cam)
         / (2.0 * np.pi * design.inner_radius)
         - 1.0,
+        "stretch of the neutral line": line.stretch,
+        "radial deflection at the major axis (mm)": lobe,
+        "radial deflection at the major axis (modules)": lobe / design.drive.module,
         "travel of the pins (mm)": pin_travel(
             cam, design.inner_radius, design.wave_generator.lobes
         ),
@@ -48,11 +52,11 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         "root land, ring gear (mm)": ring.root_land,
         "tip of spline to root of ring, major axis (mm)": ring.r_root_circle
         - spline.r_tip_circle
-        - half,
+        - lobe,
         "tip of ring to root of spline, major axis (mm)": ring.r_tip_circle
         - spline.r_root_circle
-        - half,
-        "tips at the minor axis (mm)": ring.r_tip_circle - spline.r_tip_circle + half,
+        - lobe,
+        "tips at the minor axis (mm)": ring.r_tip_circle - spline.r_tip_circle - valley,
         **_clearance(every[0]),
         **_dynamic_spline(design),
         **_clearance(*every[1:]),
@@ -106,15 +110,15 @@ def _dynamic_spline(design: DriveDesign) -> dict[str, float]:
     if design.dynamic_spline is None:
         return {}
     spline, second = design.profile("flexible_spline"), design.profile("dynamic_spline")
-    half = 0.5 * design.deflection
+    lobe, _ = design.tooth_motion().line.deflections
     low, high = design.axial_range("ring_gear")
     return {
         "face width of the ring gear (mm)": high - low,
         "backlash of the dynamic spline (mm)": design.backlash_of("dynamic_spline"),
         "tip of spline to root of dynamic spline (mm)": second.r_root_circle
         - spline.r_tip_circle
-        - half,
+        - lobe,
         "tip of dynamic spline to root of spline (mm)": second.r_tip_circle
         - spline.r_root_circle
-        - half,
+        - lobe,
     }

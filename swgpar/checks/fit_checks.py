@@ -4,9 +4,9 @@ allowed."""
 from __future__ import annotations
 
 import numpy as np
-import scipy
 
 from swgpar.checks.bearing_checks import check_bearing
+from swgpar.checks.cam_checks import check_cam, check_outline
 from swgpar.checks.cup_checks import check_cup
 from swgpar.checks.deviation_checks import check_deviations
 from swgpar.checks.program_checks import check_program
@@ -14,18 +14,9 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.design.linear_solvers import LINEAR_SOLVERS
 from swgpar.design.sections import GEARS, OMITTED_BENDING
 from swgpar.errors import InputError
-from swgpar.geometry.cams import FourRoller
-from swgpar.geometry.cams.keys import Harmonic
 from swgpar.geometry.profiles import Conjugate
 from swgpar.input.quantities import show
 from swgpar.input.require import require, require_available
-
-UNIQUE = 0.25
-"""1 less curvature of a concave cam times its distance from the bore, at least: at 0 foot points
-are not unique."""
-
-SMALLEST_MINOR_AXIS = 0.4
-"""Smallest minor semi-axis of a cam over the inner radius of the flexible spline."""
 
 THINNEST_RIM, THICKEST_RIM = 0.01, 100.0
 """Thickness of a rim, or of a housing, in modules: thinner and thicker ones are slips."""
@@ -34,9 +25,6 @@ LARGEST_SHEAR = 0.01
 """Nominal shear strain under the output torque; steel yields at half of it, and far above the teeth
 find no contact."""
 
-OUTLINE_POINTS = 2000
-"""Points of the cam's outline at which its largest radius is measured."""
-
 PANCAKE = 'drive.model = "pancake"'
 
 
@@ -44,9 +32,9 @@ def check_fit(design: DriveDesign) -> None:
     """Raise InputError for the first size that does not fit the others."""
     _check_conjugate(design)
     _check_pancake(design)
+    check_cam(design)
     if design.has_cup:
         check_cup(design)
-    _check_wave_generator(design)
     _check_teeth(design)
     _check_steps(design)
     _check_torque(design)
@@ -59,7 +47,7 @@ def check_fit(design: DriveDesign) -> None:
         _check_plane(design)
     else:
         _check_micro_geometry(design)
-    _check_outline(design)
+    check_outline(design)
     check_program(design)
     if design.deviations is not None:
         check_deviations(design, design.deviations)
@@ -167,50 +155,6 @@ def _check_teeth(design: DriveDesign) -> None:
     allowed = f"{least:g} to {most:g} mm ({THINNEST_RIM:g} to {THICKEST_RIM:g} modules)"
     for key, thickness in walls.items():
         require(least <= thickness <= most, key, thickness, allowed)
-    require(
-        design.inner_radius > design.deflection,
-        "flexible_spline.rim",
-        design.flexible_spline.rim,
-        "a rim that leaves an inner radius above the deflection",
-    )
-
-
-def _check_wave_generator(design: DriveDesign) -> None:
-    wave = design.wave_generator
-    require_available(
-        wave.lobes == 2 or isinstance(wave, Harmonic),
-        f"wave_generator.lobes = {wave.lobes}",
-        f'wave_generator.type = "{wave.type}"',
-        'with "harmonic"',
-    )
-    if isinstance(wave, FourRoller):
-        allowed = f"above 0 to below {wave.pin_half_angle:g} deg (pin_half_angle)"
-        require(wave.beta < wave.pin_half_angle, "wave_generator.beta", wave.beta, allowed)
-        return
-    require(
-        design.minor_semi_axis >= SMALLEST_MINOR_AXIS * design.inner_radius,
-        "wave_generator.C",
-        wave.C,
-        f"values whose minor semi-axis is at least {SMALLEST_MINOR_AXIS:g} of the spline's inner "
-        f"radius",
-    )
-    if wave.type == "harmonic":
-        _check_concave(design, wave)
-
-
-def _check_concave(design: DriveDesign, wave: Harmonic) -> None:
-    """Bores so far from a concave part of a harmonic cam that points of them have several feet on
-    it."""
-    a, b, bore = design.major_semi_axis, design.minor_semi_axis, design.inner_radius
-    order = design.wave_generator.lobes**2
-
-    def room(b: float) -> float:
-        return 1.0 + (b - 0.5 * order * (a - b)) / b**2 * (bore - b) - UNIQUE
-
-    if b < bore and room(b) < 0.0:  # the curvature there is the least one of the cam
-        least = wave.C * scipy.optimize.brentq(room, b, bore) / b
-        allowed = f"{least:.4g} (a concave cam near the spline) to 1"
-        require(False, "wave_generator.C", wave.C, allowed)
 
 
 def _check_steps(design: DriveDesign) -> None:
@@ -286,32 +230,3 @@ def _check_micro_geometry(design: DriveDesign) -> None:
     ):
         value, allowed = getattr(micro, key), f"{least:g} to {largest:g} mm ({why})"
         require(least <= value <= largest, f"micro_geometry.{key}", value, allowed)
-
-
-def _check_outline(design: DriveDesign) -> None:
-    """All profiles and the cam can be built, and the cam's outline leaves room for the teeth."""
-    spline, ring, *_ = (design.profile(gear) for gear in design.gears)
-    bulge = (
-        float(np.linalg.norm(design.cam().outline(OUTLINE_POINTS), axis=1).max())
-        - design.major_semi_axis
-    )
-    clearance = max(
-        ring.r_root_circle - spline.r_tip_circle - 0.5 * design.deflection,
-        1e-6 * design.major_semi_axis,
-    )
-    if bulge > clearance:
-        raise InputError(
-            f"wave_generator ({design.wave_generator.type}) bulges {bulge:.3g} mm beyond its major "
-            f"semi-axis: allowed up to {clearance:.3g} mm, where the flexible spline's teeth meet "
-            f"the ring gear's root circle; its shape follows from {_shape_keys(design)}"
-        )
-
-
-def _shape_keys(design: DriveDesign) -> str:
-    """The keys that determine the curve of the cam; a smaller C, where there is one, makes it
-    slimmer."""
-    others = ("type", "lobes", "face_width", "pin_half_angle", "bearing")
-    keys = sorted(set(type(design.wave_generator).model_fields).difference(others))
-    return ", ".join(
-        f"wave_generator.{key}{' (smaller is slimmer)' if key == 'C' else ''}" for key in keys
-    )

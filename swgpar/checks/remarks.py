@@ -1,5 +1,5 @@
-"""What a design may have and what deserves a word: teeth that overlap, torques that are too small
-to be resolved, plastics."""
+"""What a design may have and what deserves a word: teeth that overlap, cams that are too long,
+torques that are too small to be resolved, plastics."""
 
 from __future__ import annotations
 
@@ -7,10 +7,21 @@ from swgpar.checks.clearance import clearances
 from swgpar.design.drive_design import DriveDesign
 from swgpar.load.negligible_torque import negligible_torque
 
+STRETCH = 1e-3
+"""Strain of the neutral line above which it is said: on steel a hoop stress of 200 MPa."""
+
 
 def remarks(design: DriveDesign) -> list[str]:
     """Sentences about what is allowed and may not be meant."""
     sentences = [clearance.remark for clearance in clearances(design) if clearance.overlaps]
+    stretch = design.tooth_motion().line.stretch
+    if stretch > STRETCH:
+        hoop = stretch * design.materials["flexible_spline"].modulus
+        sentences.append(
+            f"the cam is longer than the bore: it stretches the neutral line by "
+            f"{100 * stretch:.3g} %, which alone is a hoop stress of {hoop:.4g} MPa in the "
+            f"flexible spline; a smaller minor axis shortens the cam"
+        )
     torque, negligible = design.load.torque, negligible_torque(design)
     if 0.0 < 1000.0 * torque <= negligible:
         sentences.append(

@@ -31,7 +31,8 @@ from swgpar.design.sections import (
     Steps,
 )
 from swgpar.geometry.bearing import BearingSizes
-from swgpar.geometry.cams import Bearing, Cam, FourRoller, WaveGenerator, make_cam
+from swgpar.geometry.cams import Bearing, Cam, WaveGenerator, make_cam
+from swgpar.geometry.cams.semi_axes import minor_semi_axis, radial_deflection
 from swgpar.geometry.drive_geometry import DriveGeometry, FlankCrowning, GearGeometry
 from swgpar.geometry.micro_geometry import WaveGeneratorSurface
 from swgpar.geometry.neutral_line import neutral_line
@@ -86,7 +87,8 @@ class DriveDesign(Design):
     @property
     def deflection(self) -> float:
         """Diametral deflection d, mm: twice the radial one at a lobe, for any number of lobes."""
-        return self.drive.module * (self.drive.teeth_rg - self.drive.teeth_fs)
+        standard = 0.5 * self.drive.standard_deflection
+        return 2.0 * radial_deflection(self.wave_generator, self.inner_radius, standard)
 
     @property
     def inner_radius(self) -> float:
@@ -104,10 +106,7 @@ class DriveDesign(Design):
     @property
     def minor_semi_axis(self) -> float | None:
         """Minor semi-axis b of the wave generator, mm (eqs 3.2, 3.4); rollers have none."""
-        wave = self.wave_generator
-        if isinstance(wave, FourRoller):
-            return None
-        return wave.C * (self.inner_radius - 0.5 * self.deflection)
+        return minor_semi_axis(self.wave_generator, self.inner_radius, 0.5 * self.deflection)
 
     @property
     def kinematics(self) -> Kinematics:
@@ -184,8 +183,7 @@ class DriveDesign(Design):
 
     @property
     def backlash_angle(self) -> float:
-        """Rotation gamma of the flexible spline that closes the backlash on one side, rad (eq.
-        6.4)."""
+        """Rotation gamma of the spline that closes the backlash on one side, rad (eq. 6.4)."""
         return self.backlash / (self.drive.teeth_fs * self.drive.module)
 
     @property
@@ -236,8 +234,7 @@ class DriveDesign(Design):
 
     @property
     def without_windows(self) -> str:
-        """What keeps windows from resolving the stress at the teeth: a bearing, or two ring gears;
-        empty without."""
+        """What keeps windows from resolving the stress at the teeth; empty without."""
         if self.bearing is not None:
             return "a bearing"
         return "" if self.dynamic_spline is None else "two ring gears"

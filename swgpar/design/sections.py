@@ -47,6 +47,11 @@ class Drive(Section):
     dedendum_coef: float = quantity(unit="modules", text="dedendum", gt=0.0, le=2.0)
     face_width: float = quantity(unit="mm", text="face width", gt=0.0)
 
+    @property
+    def standard_deflection(self) -> float:
+        """Diametral deflection (mm) with which the pitch circles meet at a lobe."""
+        return self.module * (self.teeth_rg - self.teeth_fs)
+
     def teeth(self, gear: GearName) -> Teeth:
         """Number and sizes of the teeth of a gear.
 

@@ -216,6 +216,17 @@ class NeutralLine:
         order, terms = self._series
         return np.exp(1j * np.outer(theta, order)) @ terms
 
+    @property
+    def stretch(self) -> float:
+        """Strain of the line, which a cam longer than the ring forces on it."""
+        return self.stretched / self.radius - 1.0
+
+    @property
+    def deflections(self) -> tuple[float, float]:
+        """Radial deflections (mm) outwards at the tip of a lobe and midway between two."""
+        lobe, valley = np.abs(self.position(np.array([0.0, np.pi / self.lobes]))) - self.radius
+        return float(lobe), float(valley)
+
 
 @lru_cache(maxsize=16)
 def neutral_line(

@@ -168,7 +168,7 @@ def find_places(
     found, geometry = {}, model.geometry
     distance, on_rollers = (
         APART_DISTANCE * geometry.module,
-        model.design.wave_generator.type == "four_roller",
+        model.design.wave_generator.type in ("two_roller", "four_roller"),
     )
     for name in (FLEXIBLE_SPLINE, RING_GEAR):
         body = model.elements.bodies[name]

@@ -188,7 +188,8 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
         contact_search=contact_search(
             design.drive.module,
             design.largest_backlash,
-            outer_radius=0.5 * design.drive.teeth_rg * design.drive.module + design.deflection,
+            outer_radius=0.5 * design.drive.teeth_rg * design.drive.module
+            + max(design.deflection, design.drive.standard_deflection),
             condensed_teeth=design.condenses_teeth,
         ),
         module=design.drive.module,

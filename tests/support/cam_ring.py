@@ -23,19 +23,24 @@ FIRST = RingCounts(30, 1, 1)
 mm."""
 
 
-def ellipse(offset: float = 0.0, n: int = 7200) -> tuple[np.ndarray, np.ndarray]:
+def ellipse(deflection: float, offset: float, n: int = 7200) -> tuple[np.ndarray, np.ndarray]:
     """Curvature (n,) 1/mm and arc length (n,) mm at n points of the curve `offset` (mm) outside the
-    cam's."""
-    a, b = INNER + 0.5 * DEFLECTION, INNER - 0.5 * DEFLECTION
+    cam's.
+
+    deflection : mm, diametral
+    """
+    a, b = INNER + 0.5 * deflection, INNER - 0.5 * deflection
     t = 2.0 * np.pi * np.arange(n) / n
     speed = np.hypot(b * np.cos(t), a * np.sin(t))
     bend = a * b / speed**3
     return bend / (1.0 + bend * offset), speed * 2.0 * np.pi / n * (1.0 + bend * offset)
 
 
-def closed_form() -> dict[str, float]:
+def closed_form(deflection: float = DEFLECTION) -> dict[str, float]:
     """Largest tensile stress (MPa) and integrated contact pressure (N) of a ring of 1 mm width on
     an elliptical cam.
+
+    deflection : mm, diametral
 
     The inner surface lies on the ellipse, sections stay plane and normal to it. A fibre at the
     distance y from it, of length (r + y) dphi, becomes (1 + k y) ds: its strain is s' (1 + k y) /
@@ -53,14 +58,14 @@ def closed_form() -> dict[str, float]:
         return inner + 0.5 * k**2 * ((r + t) ** 2 - r**2)
 
     def constant(offset: float) -> float:
-        k, ds = ellipse(offset)
+        k, ds = ellipse(deflection, offset)
         return float((np.sqrt(second(k)) * ds).sum() / (2.0 * np.pi))
 
     def energy(offset: float) -> float:
-        k, ds = ellipse(offset)
+        k, ds = ellipse(deflection, offset)
         return float(young * (np.pi * constant(offset) ** 2 - ((t + 0.5 * k * t**2) * ds).sum()))
 
-    k = float(ellipse()[0][0])  # at the major axis
+    k = float(ellipse(deflection, 0.0)[0][0])  # at the major axis
     stretch = constant(0.0) / float(np.sqrt(second(np.array(k))))
     step = 1e-3
     return {

@@ -165,6 +165,8 @@ def cams() -> Cases:
         "arcs,beta=45": {"type": "arcs", "C": 1.0, "beta": 45.0},
         "parabolic": {"type": "parabolic", "C": 1.0, **improved},
         "four_roller": {"type": "four_roller", "beta": 25.0, "r_4": 15.0},
+        "two_roller": {"type": "two_roller", "r_2": 20.0},
+        "deflection=0.9": {"type": "elliptical", "deflection": 0.9},
     }
     for angle in (-0.5, 0.5):
         wave[f"turned_parabolas={angle}"] = {

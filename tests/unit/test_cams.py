@@ -18,9 +18,9 @@ from swgpar.contact.rigid_surface import pin_directions
 from swgpar.errors import InputError
 from swgpar.geometry.cams import EllipticalCam, HarmonicCam, pin_travel, taut_length
 from swgpar.geometry.cams.arcs import arcs
-from swgpar.geometry.cams.four_roller import four_roller
 from swgpar.geometry.cams.parabolic import Side, parabolic
 from swgpar.geometry.cams.piecewise import Parabola, PiecewiseCam
+from swgpar.geometry.cams.rollers import RollerCam, rollers
 from swgpar.geometry.cams.simplified import simplified
 from swgpar.geometry.micro_geometry import WaveGeneratorSurface, crowning
 from swgpar.geometry.rotation import rotated
@@ -167,9 +167,10 @@ def parabola(a: float, b: float, right: tuple, left: tuple, tilt: float) -> list
     return upper + [piece.turned() for piece in upper]
 
 
-def rollers(a: float, beta: float, r: float) -> list[Curve]:
-    x, y = (a - r) * np.sin(beta), (a - r) * np.cos(beta)
-    return [arc(i * x, j * y, r, -np.pi, np.pi) for i in (1, -1) for j in (1, -1)]
+def circles(reach: float, beta: float, r: float) -> list[Curve]:
+    x, y = reach * np.sin(beta), reach * np.cos(beta)
+    sides = (1, -1) if beta else (1,)
+    return [arc(i * x, j * y, r, -np.pi, np.pi) for i in sides for j in (1, -1)]
 
 
 IMPROVED, OTHER = (0.0097, 0.51, 10.0), (0.0095, 0.45, 12.0)
@@ -210,7 +211,8 @@ CAMS = {
         parabolic(A, B, Side(*OTHER), Side(*IMPROVED)),
         parabola(A, B, OTHER, IMPROVED, 0.0),
     ),
-    "four_roller": (four_roller(A, BETA, 8.0), rollers(A, BETA, 8.0)),
+    "four_roller": (rollers(A - 8.0, BETA, 8.0, "r_4"), circles(A - 8.0, BETA, 8.0)),
+    "two_roller": (rollers(A - 9.0, 0.0, 9.0, "r_2"), circles(A - 9.0, 0.0, 9.0)),
 }
 CHAINS = [name for name, (cam, _) in CAMS.items() if isinstance(cam, PiecewiseCam)]
 SIDE, OTHER_SIDE = ({"a_p": a_p, "C_p": C_p, "r_c": r_c} for a_p, C_p, r_c in (IMPROVED, OTHER))
@@ -229,6 +231,10 @@ SECTIONS = {
     "angle-based": keys("asymmetric_parabolic", rotational_angle=0.5, right=SIDE, left=SIDE),
     "bilateral": keys("asymmetric_parabolic", right=OTHER_SIDE, left=SIDE),
     "four_roller": keys("four_roller", beta=10.0, r_4=8.0),
+    "four_roller-centres": keys("four_roller", beta=10.0, r_4=8.0, centre_radius=51.6),
+    "two_roller": keys("two_roller", r_2=9.0),
+    "deflection": keys("elliptical", deflection=1.5),
+    "axes": keys("simplified", major_axis=117.8, minor_axis=115.0),
 }
 
 
@@ -337,7 +343,7 @@ def perimeter(pieces: list[Curve]) -> float:
 def test_taut_length(name: str) -> None:
     cam, pieces = CAMS[name]
     exact = perimeter(pieces)
-    if name == "four_roller":
+    if isinstance(cam, RollerCam):
         x, y = cam.center
         exact = 2.0 * np.pi * cam.radius + 4.0 * (x + y)
     assert taut_length(cam) == pytest.approx(exact, rel=1e-6)
@@ -357,6 +363,27 @@ def test_positive_rotational_angle_raises_the_right_side() -> None:
     assert right < CAMS["parabolic"][0].evaluate(np.array([[10.0, 58.2]]))[0][0] < left
     assert np.hypot(*cam.outline(3600).T).max() > A  # section 5.7.1: beyond the circle of radius a
     assert cam.evaluate(np.array([[0.0, A]]))[0][0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_deflection_and_axes(design_file: Callable) -> None:
+    """Of the reference drive: bore of the radius 58.2 mm, module 1 mm."""
+    for name, deflection, minor in (
+        ("elliptical", 1.0, 57.2),
+        ("simplified", 1.0, 0.97 * 57.2),
+        ("deflection", 1.5, 56.7),
+        ("axes", 0.7, 57.5),
+        ("four_roller", 1.0, None),
+        ("four_roller-centres", 1.4, None),
+        ("two_roller", 1.0, None),
+    ):
+        design = load_design(design_file({"wave_generator": SECTIONS[name]}))
+        assert design.deflection == pytest.approx(2.0 * deflection, abs=1e-12)
+        assert design.major_semi_axis == pytest.approx(R_FS + deflection, abs=1e-12)
+        assert design.minor_semi_axis == (None if minor is None else pytest.approx(minor))
+        outline = design.cam().outline(7200)
+        assert np.hypot(*outline.T).max() == pytest.approx(R_FS + deflection, abs=1e-4)
+        if minor is not None:
+            assert np.abs(outline[:, 0]).max() == pytest.approx(minor, abs=1e-6)
 
 
 def test_rollers_reach_to_the_circle_of_radius_a() -> None:
@@ -384,9 +411,9 @@ def test_pins_fit_into_the_spline_and_end_at_the_cam(name: str, design_file: Cal
     gap = cam.evaluate(inner)[0]
     assert abs(gap.min()) < 1e-5
     assert travel >= 0.5 * design.deflection - 1e-12
-    if name in ("elliptical", "harmonic", "simplified", "arcs", "parabolic", "bilateral"):
+    if name not in ("angle-based", "four_roller", "four_roller-centres"):
         assert travel == pytest.approx(0.5 * design.deflection, abs=1e-12)
-    if name == "four_roller":
+    if name.startswith("four_roller"):
         x, y = cam.center
         assert travel == pytest.approx(y - np.sqrt((R_FS - cam.radius) ** 2 - x**2), rel=1e-5)
     assert start_state(design).pin_inset == travel
@@ -480,6 +507,27 @@ def test_crowning_is_the_amount_at_the_edges_and_nothing_in_the_middle(shape: st
         (keys("four_roller", beta=10.0, r_4=9.0), "wave_generator.r_4 = 9"),
         (keys("four_roller", beta=10.0, r_4=8.0, C=1.0), "wave_generator.C = 1"),
         (keys("four_roller", beta=70.0, r_4=8.0), "wave_generator.beta = 70"),
+        (keys("two_roller", r_2=30.0, centre_radius=29.5), "wave_generator.r_2 = 30"),
+        (keys("two_roller", r_2=9.0, beta=10.0), "wave_generator.beta = 10"),
+        (keys("two_roller", r_2=9.0, centre_radius=49.0), "wave_generator.centre_radius = 49"),
+        (
+            keys("two_roller", r_2=9.0, centre_radius=50.0, deflection=1.0),
+            "wave_generator.deflection and wave_generator.centre_radius",
+        ),
+        (
+            keys("elliptical", deflection=1.0, major_axis=118.4),
+            "wave_generator.deflection and wave_generator.major_axis",
+        ),
+        (
+            keys("elliptical", C=0.9, minor_axis=110.0),
+            "wave_generator.C and wave_generator.minor_axis",
+        ),
+        (keys("elliptical", deflection=0.0), "wave_generator.deflection = 0"),
+        (keys("elliptical", deflection=30.0), "to below 29.1 mm"),
+        (keys("elliptical", major_axis=116.0), "wave_generator.major_axis = 116 is out of range"),
+        (keys("elliptical", minor_axis=40.0), "wave_generator.minor_axis = 40 is out of range"),
+        (keys("elliptical", minor_axis=119.0), "to below 118.4 mm (the major axis)"),
+        (keys("harmonic", minor_axis=50.0), "(a concave cam near the spline) to below 118.4 mm"),
         (keys("simplified", C=0.2), "wave_generator.C = 0.2"),
         (keys("arcs", beta=1.5), "wave_generator.beta = 1.5 is out of range: allowed above 1.97"),
         (keys("arcs"), "wave_generator.beta is missing"),

@@ -27,6 +27,7 @@ CAMS = {
     "parabolic": SIDE,
     "asymmetric_parabolic": {"rotational_angle": 0.5, "right": SIDE, "left": {**SIDE, "r_c": 12.0}},
     "four_roller": {"beta": 10.0, "r_4": 8.0},
+    "two_roller": {"r_2": 20.0},
 }
 
 

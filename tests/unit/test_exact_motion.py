@@ -25,6 +25,16 @@ STEP = 1e-5
 
 ARCSECONDS = np.degrees(1.0) * 3600.0
 
+LONG_ARCS = {
+    "type": "quadruple_arc",
+    "r_tip": 0.2,
+    "r_addendum": 8.0,
+    "straight_l": 0.0,
+    "r_dedendum": 8.0,
+    "r_root": 0.2,
+}
+"""Flanks whose whole envelope exists at deflections other than the module."""
+
 DRIVES: dict[str, dict[str, Any]] = {
     "ellipse": {"ring_gear.profile": {"type": "conjugate", "r_root": 0.2}},
     "cosine": {
@@ -34,6 +44,18 @@ DRIVES: dict[str, dict[str, Any]] = {
         "drive.pressure_angle": 25.0,
         "ring_gear.profile": {"type": "conjugate", "r_root": 0.1},
         "wave_generator": {"type": "harmonic", "face_width": 10.0},
+    },
+    "less deflection": {
+        "drive.pressure_angle": 30.0,
+        "flexible_spline.profile": LONG_ARCS,
+        "ring_gear.profile": {"type": "conjugate", "r_root": 0.1},
+        "wave_generator.deflection": 0.8,
+    },
+    "more deflection": {
+        "drive.addendum_coef": 0.45,
+        "flexible_spline.profile": LONG_ARCS,
+        "ring_gear.profile": {"type": "conjugate", "r_root": 0.1},
+        "wave_generator.deflection": 1.2,
     },
 }
 
@@ -153,9 +175,12 @@ def test_conjugate_flanks_are_the_envelope(name: str) -> None:
     assert compared > 15
 
 
-@pytest.mark.parametrize("name", list(DRIVES))
+@pytest.mark.parametrize("name", [name for name in DRIVES if name != "more deflection"])
 def test_conjugate_teeth_transmit_without_error(name: str) -> None:
-    """Within 0.05 arc seconds, with the own motion and the flanks of the program."""
+    """Within 0.05 arc seconds, with the own motion and the flanks of the program.
+
+    With more deflection a pair is in contact over 0.7 pitches: at times none is.
+    """
     design = swgpar.load_design(PLANE, DRIVES[name])
     own, teeth = OwnMotion(design), design.drive.teeth_fs
     given, made = design.profile("flexible_spline"), design.profile("ring_gear")

@@ -14,6 +14,7 @@ from support.paths import DATA, DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.analysis import run_drive
 from swgpar.checks.clearance import clearances
+from swgpar.checks.remarks import remarks
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.jamming import energy_remark, jamming_remark
 from swgpar.evaluation.rigid_clearance import rigid_clearance
@@ -46,6 +47,20 @@ def test_check_looks_between_the_minor_axes() -> None:
     (answer,) = clearance.answers()
     assert answer.value == clearance.ring_gear and answer.place in sentence
     assert not rigid_clearance(clearances(swgpar.load_design(DESIGN))).interference
+
+
+def test_a_cam_longer_than_the_bore_is_said() -> None:
+    """With a minor axis as large as the bore, an ellipse is longer by about half of the
+    deflection."""
+    bore = design().inner_radius
+    longer = design(f"wave_generator.minor_axis={2.0 * bore}")
+    (sentence,) = [one for one in remarks(longer) if "longer than the bore" in one]
+    line = longer.tooth_motion().line
+    assert line.stretch == pytest.approx(0.25 * longer.deflection / line.radius, rel=0.05)
+    assert f"by {100.0 * line.stretch:.3g} %" in sentence
+    hoop = line.stretch * longer.materials["flexible_spline"].modulus
+    assert f"{hoop:.4g} MPa" in sentence
+    assert not [one for one in remarks(design()) if "longer than the bore" in one]
 
 
 def test_a_run_says_it_before_it_computes(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,7 +14,6 @@ from swgpar.geometry.arrays import SignedDistance
 from swgpar.geometry.cams.arcs import arcs
 from swgpar.geometry.cams.bearing_keys import Bearing
 from swgpar.geometry.cams.elliptical import EllipticalCam
-from swgpar.geometry.cams.four_roller import FourRollerCam, four_roller
 from swgpar.geometry.cams.harmonic import HarmonicCam
 from swgpar.geometry.cams.keys import (
     Arcs,
@@ -24,9 +23,11 @@ from swgpar.geometry.cams.keys import (
     Harmonic,
     Parabolic,
     Simplified,
+    TwoRoller,
     WaveGenerator,
 )
 from swgpar.geometry.cams.parabolic import Side, parabolic
+from swgpar.geometry.cams.rollers import RollerCam, rollers
 from swgpar.geometry.cams.simplified import simplified
 
 OUTLINE_POINTS = 5760
@@ -61,8 +62,12 @@ def make_cam(
 
     Raises InputError where the keys give no closed curve, TypeError where they are those of no cam.
     """
+    centred = isinstance(keys, FourRoller | TwoRoller) and keys.centre_radius is not None
     if isinstance(keys, FourRoller):
-        return four_roller(a, float(np.radians(keys.beta)), keys.r_4, f"{name}.r_4")
+        beta = float(np.radians(keys.beta))
+        return rollers(a - keys.r_4, beta, keys.r_4, f"{name}.r_4", centred=centred)
+    if isinstance(keys, TwoRoller):
+        return rollers(a - keys.r_2, 0.0, keys.r_2, f"{name}.r_2", centred=centred)
     if isinstance(keys, Elliptical):
         return EllipticalCam(a, b)
     if isinstance(keys, Harmonic):
@@ -84,7 +89,7 @@ def make_cam(
 def cam_outlines(cam: Cam, count: int = OUTLINE_POINTS) -> list[np.ndarray]:
     """Closed curves of the cam of about `count` points in all, each (n, 2) mm without the first
     point again: one, or one for each roller."""
-    parts = 4 if isinstance(cam, FourRollerCam) else 1
+    parts = cam.count if isinstance(cam, RollerCam) else 1
     return list(cam.outline(count).reshape(parts, -1, 2))
 
 
@@ -110,6 +115,8 @@ __all__ = [
     "EllipticalCam",
     "FourRoller",
     "HarmonicCam",
+    "RollerCam",
+    "TwoRoller",
     "WaveGenerator",
     "make_cam",
     "pin_travel",

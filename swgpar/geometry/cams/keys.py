@@ -18,6 +18,13 @@ def _pins(default: float) -> float:
 
 class _WaveGenerator(Section):
     lobes: int = quantity(2, text="lobes of the cam, places around it where teeth mesh", ge=2, le=3)
+    deflection: float | None = quantity(
+        None,
+        unit="mm",
+        text="radial deflection w0 of the flexible spline at the tip of a lobe; without it half of "
+        "the module times the difference of the teeth",
+        gt=0.0,
+    )
     face_width: float = quantity(unit="mm", text="width of the cam", gt=0.0)
     # Pins begin where they first touch. Flat or rotated parabolas touch beside the major axis, as
     # far as 30 degrees from it, and rollers wherever they are: the pins have to reach that far.
@@ -25,13 +32,19 @@ class _WaveGenerator(Section):
     bearing: Bearing | None = None
 
 
-class _Reduced(_WaveGenerator):
-    """Cams with a minor semi-axis b = C (r_fs - d / 2) (eq. 3.4)."""
+class Reduced(_WaveGenerator):
+    """Cams with a minor semi-axis b = C (r_fs - w0) (eq. 3.4), or with both axes given."""
 
     C: float = quantity(1.0, text="minor axis reduction", gt=0.0, le=1.0)
+    major_axis: float | None = quantity(
+        None, unit="mm", text="size along the major axis, in place of deflection", gt=0.0
+    )
+    minor_axis: float | None = quantity(
+        None, unit="mm", text="size along the minor axis, in place of C", gt=0.0
+    )
 
 
-class Elliptical(_Reduced):
+class Elliptical(Reduced):
     """Section 3.2.2."""
 
     type: Literal["elliptical"] = quantity("elliptical", text="kind of cam")
@@ -40,20 +53,20 @@ class Elliptical(_Reduced):
     pin_half_angle: float = _pins(15.0)
 
 
-class Harmonic(_Reduced):
+class Harmonic(Reduced):
     """The radius is a cosine of the polar angle, with two lobes or three."""
 
     type: Literal["harmonic"] = quantity("harmonic", text="kind of cam")
     pin_half_angle: float = _pins(15.0)
 
 
-class Simplified(_Reduced):
+class Simplified(Reduced):
     """Section 3.2.1."""
 
     type: Literal["simplified"] = quantity("simplified", text="kind of cam")
 
 
-class Arcs(_Reduced):
+class Arcs(Reduced):
     """Arcs of two radii."""
 
     type: Literal["arcs"] = quantity("arcs", text="kind of cam")
@@ -72,13 +85,13 @@ class SideKeys(Section):
     r_c: float = quantity(unit="mm", text="radius of the connector arc", gt=0.0)
 
 
-class Parabolic(_Reduced, SideKeys):
+class Parabolic(Reduced, SideKeys):
     """Section 3.2.3."""
 
     type: Literal["parabolic"] = quantity("parabolic", text="kind of cam")
 
 
-class AsymmetricParabolic(_Reduced):
+class AsymmetricParabolic(Reduced):
     """Section 5.7; right and left on the upper lobe, both rotated by lambda."""
 
     type: Literal["asymmetric_parabolic"] = quantity("asymmetric_parabolic", text="kind of cam")
@@ -93,7 +106,18 @@ class AsymmetricParabolic(_Reduced):
     left: SideKeys
 
 
-class FourRoller(_WaveGenerator):
+class _Rollers(_WaveGenerator):
+    """Cams of rollers, whose outermost points are w0 outside of the undeformed spline."""
+
+    centre_radius: float | None = quantity(
+        None,
+        unit="mm",
+        text="radius of the circle of the rollers' centres, in place of deflection",
+        gt=0.0,
+    )
+
+
+class FourRoller(_Rollers):
     """Section 3.2.4."""
 
     type: Literal["four_roller"] = quantity("four_roller", text="kind of cam")
@@ -103,8 +127,22 @@ class FourRoller(_WaveGenerator):
     r_4: float = quantity(unit="mm", text="radius of the rollers", gt=0.0)
 
 
+class TwoRoller(_Rollers):
+    """Two rollers on the major axis."""
+
+    type: Literal["two_roller"] = quantity("two_roller", text="kind of cam")
+    r_2: float = quantity(unit="mm", text="radius of the rollers", gt=0.0)
+
+
 WaveGenerator = Annotated[
-    Elliptical | Harmonic | Simplified | Arcs | Parabolic | AsymmetricParabolic | FourRoller,
+    Elliptical
+    | Harmonic
+    | Simplified
+    | Arcs
+    | Parabolic
+    | AsymmetricParabolic
+    | TwoRoller
+    | FourRoller,
     Field(discriminator="type"),
     BeforeValidator(default_type("elliptical")),
 ]

@@ -1,0 +1,141 @@
+"""Checks of the cam's keys: deflection, axes, rollers, outline. Each refusal names the key, its
+value and what is allowed."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import InputError
+from swgpar.geometry.cams import FourRoller
+from swgpar.geometry.cams.keys import Harmonic, Reduced
+from swgpar.input.require import require, require_available
+
+UNIQUE = 0.25
+"""1 less curvature of a concave cam times its distance from the bore, at least: at 0 foot points
+are not unique."""
+
+SMALLEST_MINOR_AXIS = 0.4
+"""Smallest minor semi-axis of a cam over the inner radius of the flexible spline."""
+
+OUTLINE_POINTS = 2000
+"""Points of the cam's outline at which its largest radius is measured."""
+
+DEFLECTION_KEYS = ("deflection", "major_axis", "centre_radius")
+"""Keys of a cam that set the deflection: one of them may be given."""
+
+
+def check_cam(design: DriveDesign) -> None:
+    """Raise InputError for the first key of the cam that does not fit the others or the bore."""
+    wave = design.wave_generator
+    require_available(
+        wave.lobes == 2 or isinstance(wave, Harmonic),
+        f"wave_generator.lobes = {wave.lobes}",
+        f'wave_generator.type = "{wave.type}"',
+        'with "harmonic"',
+    )
+    _check_deflection(design)
+    if isinstance(wave, FourRoller):
+        allowed = f"above 0 to below {wave.pin_half_angle:g} deg (pin_half_angle)"
+        require(wave.beta < wave.pin_half_angle, "wave_generator.beta", wave.beta, allowed)
+    if isinstance(wave, Reduced):
+        _check_minor_axis(design, wave)
+    if isinstance(wave, Harmonic):
+        _check_concave(design, wave)
+
+
+def _check_deflection(design: DriveDesign) -> None:
+    """A deflection from one key, above 0 and below half the bore."""
+    wave, bore, deflection = design.wave_generator, design.inner_radius, 0.5 * design.deflection
+    given = [key for key in DEFLECTION_KEYS if getattr(wave, key, None) is not None]
+    if len(given) > 1:
+        raise InputError(
+            f"wave_generator.{given[0]} and wave_generator.{given[1]} are both given: allowed is "
+            "one of them"
+        )
+    require(
+        bore > design.drive.standard_deflection if not given else bore > 0.0,
+        "flexible_spline.rim",
+        design.flexible_spline.rim,
+        "a rim that leaves an inner radius above the deflection",
+    )
+    if given:
+        value = getattr(wave, given[0])
+        per_key = 2.0 if given[0] == "major_axis" else 1.0
+        least = value - per_key * deflection
+        lowest, highest = max(least, 0.0), least + per_key * 0.5 * bore
+        allowed = f"above {lowest:.6g} to below {highest:.6g} mm (a deflection of half the bore's"
+        allowed += " radius)"
+        require(0.0 < deflection < 0.5 * bore, f"wave_generator.{given[0]}", value, allowed)
+
+
+def _check_minor_axis(design: DriveDesign, wave: Reduced) -> None:
+    """A minor axis from one key, below the major one and not much smaller than the bore."""
+    least = SMALLEST_MINOR_AXIS * design.inner_radius
+    if wave.minor_axis is None:
+        require(
+            design.minor_semi_axis >= least,
+            "wave_generator.C",
+            wave.C,
+            f"values whose minor semi-axis is at least {SMALLEST_MINOR_AXIS:g} of the spline's "
+            f"inner radius",
+        )
+        return
+    if wave.C != 1.0:
+        raise InputError(
+            "wave_generator.C and wave_generator.minor_axis are both given: allowed is one of them"
+        )
+    allowed = (
+        f"{2.0 * least:.6g} ({SMALLEST_MINOR_AXIS:g} of the bore) to below "
+        f"{2.0 * design.major_semi_axis:.6g} mm (the major axis)"
+    )
+    fits = least <= design.minor_semi_axis < design.major_semi_axis
+    require(fits, "wave_generator.minor_axis", wave.minor_axis, allowed)
+
+
+def _check_concave(design: DriveDesign, wave: Harmonic) -> None:
+    """Bores so far from a concave part of a harmonic cam that points of them have several feet on
+    it."""
+    a, b, bore = design.major_semi_axis, design.minor_semi_axis, design.inner_radius
+    order = design.wave_generator.lobes**2
+
+    def room(b: float) -> float:
+        return 1.0 + (b - 0.5 * order * (a - b)) / b**2 * (bore - b) - UNIQUE
+
+    if b < bore and room(b) < 0.0:  # the curvature there is the least one of the cam
+        root = scipy.optimize.brentq(room, b, bore)
+        reason = "(a concave cam near the spline) to"
+        if wave.minor_axis is not None:
+            allowed = f"{2.0 * root:.6g} {reason} below {2.0 * a:.6g} mm"
+            require(False, "wave_generator.minor_axis", wave.minor_axis, allowed)
+        require(False, "wave_generator.C", wave.C, f"{wave.C * root / b:.4g} {reason} 1")
+
+
+def check_outline(design: DriveDesign) -> None:
+    """All profiles and the cam can be built, and the cam's outline leaves room for the teeth."""
+    spline, ring, *_ = (design.profile(gear) for gear in design.gears)
+    bulge = (
+        float(np.linalg.norm(design.cam().outline(OUTLINE_POINTS), axis=1).max())
+        - design.major_semi_axis
+    )
+    clearance = max(
+        ring.r_root_circle - spline.r_tip_circle - 0.5 * design.deflection,
+        1e-6 * design.major_semi_axis,
+    )
+    if bulge > clearance:
+        raise InputError(
+            f"wave_generator ({design.wave_generator.type}) bulges {bulge:.3g} mm beyond its major "
+            f"semi-axis: allowed up to {clearance:.3g} mm, where the flexible spline's teeth meet "
+            f"the ring gear's root circle; its shape follows from {_shape_keys(design)}"
+        )
+
+
+def _shape_keys(design: DriveDesign) -> str:
+    """The keys that determine the curve of the cam; a smaller C, where there is one, makes it
+    slimmer."""
+    others = ("type", "lobes", "face_width", "pin_half_angle", "bearing")
+    keys = sorted(set(type(design.wave_generator).model_fields).difference(others))
+    return ", ".join(
+        f"wave_generator.{key}{' (smaller is slimmer)' if key == 'C' else ''}" for key in keys
+    )
