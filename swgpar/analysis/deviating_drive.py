@@ -93,9 +93,7 @@ def _is_twofold(design: DriveDesign, deviations: Deviations) -> bool:
     rigid = (deviations.wave_generator, deviations.cup)
     if any(part.eccentricity or part.tilt for part in rigid):
         return False
-    return all(
-        gear_deviations(deviations, gear, design.drive.teeth(gear)).is_twofold() for gear in GEARS
-    )
+    return all(gear_deviations(deviations, gear, design.teeth(gear)).is_twofold() for gear in GEARS)
 
 
 class DeviatingDrive:
@@ -126,7 +124,7 @@ class DeviatingDrive:
         self.loaded = self.stepper.sequence.loaded
         self.stepper.resume_at(self.loaded)
         of_spline, of_ring = (
-            gear_deviations(self.deviations, gear, design.drive.teeth(gear)) for gear in GEARS
+            gear_deviations(self.deviations, gear, design.teeth(gear)) for gear in GEARS
         )
         layouts = self.model.partition.layouts
         self.tables = flank_deviations(

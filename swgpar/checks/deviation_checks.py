@@ -64,7 +64,7 @@ def _require_zero(deviations: Deviations, keys: tuple[str, ...], beside: str) ->
 
 def _check_pitch(design: DriveDesign, deviations: Deviations, gear: GearName) -> None:
     section, key = getattr(deviations, gear), f"deviations.{gear}"
-    errors, teeth = section.pitch_errors, design.drive.teeth(gear).n_teeth
+    errors, teeth = section.pitch_errors, design.teeth(gear).n_teeth
     if section.pitch_column:
         raise InputError(
             f"{key}.pitch_column = {show(section.pitch_column)} has no file: allowed with "

@@ -10,6 +10,7 @@ from swgpar.checks.cam_checks import check_cam, check_outline
 from swgpar.checks.cup_checks import check_cup
 from swgpar.checks.deviation_checks import check_deviations
 from swgpar.checks.program_checks import check_program
+from swgpar.checks.tooth_checks import check_heights
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.linear_solvers import LINEAR_SOLVERS
 from swgpar.design.sections import GEARS, OMITTED_BENDING
@@ -145,9 +146,7 @@ def _check_teeth(design: DriveDesign) -> None:
         difference,
         f"a positive multiple of {multiple}",
     )
-    allowed = f"above {drive.addendum_coef:g} (the addendum) to 2 modules"
-    deeper = drive.dedendum_coef > drive.addendum_coef
-    require(deeper, "drive.dedendum_coef", drive.dedendum_coef, allowed)
+    check_heights(design)
     walls = {f"{gear}.rim": getattr(design, gear).rim for gear in design.gears}
     if design.housing is not None:
         walls["ring_gear.housing.thickness"] = design.housing.thickness

@@ -39,11 +39,13 @@ from swgpar.geometry.neutral_line import neutral_line
 from swgpar.geometry.profiles import (
     Conjugate,
     RackInvolute,
+    Teeth,
     ToothMotion,
     ToothProfile,
     make_profile,
 )
 from swgpar.geometry.profiles.rigid_teeth import RigidTeeth
+from swgpar.geometry.profiles.tip_relief import relieved
 from swgpar.geometry.rim_motion import axial_travel, omitted_bending
 from swgpar.input.design import Design
 from swgpar.materials import ChosenMaterial, Material
@@ -94,9 +96,9 @@ class DriveDesign(Design):
     def inner_radius(self) -> float:
         """Inner radius r_fs of the undeformed flexible spline, mm (eq. 3.1); a profile shift moves
         the root circle."""
-        g, profile = self.drive, self.flexible_spline.profile
-        shift = profile.shift if isinstance(profile, RackInvolute) else 0.0
-        return (0.5 * g.teeth_fs - g.dedendum_coef + shift) * g.module - self.flexible_spline.rim
+        teeth, profile = self.teeth("flexible_spline"), self.flexible_spline.profile
+        shift = profile.shift * teeth.module if isinstance(profile, RackInvolute) else 0.0
+        return teeth.r_pitch - teeth.dedendum + shift - self.flexible_spline.rim
 
     @property
     def major_semi_axis(self) -> float:
@@ -172,9 +174,9 @@ class DriveDesign(Design):
 
     def backlash_of(self, ring: GearName) -> float:
         """Circumferential backlash (mm) of a ring gear: its pitch less both teeth."""
-        teeth = {gear: self.drive.teeth(gear) for gear in ("flexible_spline", ring)}
-        thickness = [self.profile(gear).thickness(teeth[gear].r_pitch) for gear in teeth]
-        return float(np.pi * teeth[ring].module - sum(thickness))
+        gears: tuple[GearName, ...] = ("flexible_spline", ring)
+        thickness = [self.profile(gear).thickness(self.teeth(gear).r_pitch) for gear in gears]
+        return float(np.pi * self.teeth(ring).module - sum(thickness))
 
     @property
     def largest_backlash(self) -> float:
@@ -323,6 +325,10 @@ class DriveDesign(Design):
         micro = self.micro_geometry
         return FlankCrowning(micro.fs_crowning, self.drive.face_width, micro.crowning_shape)
 
+    def gear_geometry(self, gear: GearName) -> GearGeometry:
+        """Sizes of a gear."""
+        return GearGeometry(self.profile(gear), getattr(self, gear).rim, self.axial_range(gear))
+
     @property
     def geometry(self) -> DriveGeometry:
         """Sizes from which meshes are made. Raises InputError where keys of a profile give no
@@ -330,12 +336,7 @@ class DriveDesign(Design):
         drive = self.drive
         return DriveGeometry(
             model=drive.model,
-            gears={
-                gear: GearGeometry(
-                    self.profile(gear), getattr(self, gear).rim, self.axial_range(gear)
-                )
-                for gear in self.gears
-            },
+            gears={gear: self.gear_geometry(gear) for gear in self.gears},
             module=drive.module,
             face_width=drive.face_width,
             cam_width=self.wave_generator.face_width,
@@ -345,16 +346,21 @@ class DriveDesign(Design):
             housing=self.housing.thickness if self.housing else 0.0,
         )
 
-    def profile(self, gear: GearName) -> ToothProfile:
-        """Exact flank of a gear. Raises InputError where its keys give no flank."""
+    def teeth(self, gear: GearName) -> Teeth:
+        """Number and sizes of the teeth of a gear."""
+        return self.drive.teeth(gear, getattr(self, gear))
+
+    def profile(self, gear: GearName, *, relief: bool = True) -> ToothProfile:
+        """Exact flank, with its tip relief or before it. Raises InputError where there is none."""
         section: ExternalGear | InternalGear = getattr(self, gear)
         partner = None
         if isinstance(section.profile, Conjugate):
-            other = GEARS[1 - GEARS.index(gear)]
-            partner = self.profile(other), self.tooth_motion(section.profile.section)
-        return make_profile(
-            section.profile, self.drive.teeth(gear), section.c_P, section.c_l, gear, partner
-        )
+            other = self.profile(GEARS[1 - GEARS.index(gear)], relief=False)
+            partner = other, self.tooth_motion(section.profile.section)
+        keys = section.profile, self.teeth(gear), section.c_P, section.c_l
+        flank, height = make_profile(*keys, gear, partner), section.tip_relief_height
+        amount = section.tip_relief if relief else 0.0
+        return relieved(flank, amount, height * self.drive.module, gear)
 
     def tooth_motion(self, z: float = 0.0, ring: GearName = "ring_gear") -> ToothMotion:
         """Motion of the flexible spline's tooth in its slot of `ring` at the section z, mm, of the
@@ -365,18 +371,14 @@ class DriveDesign(Design):
             # the deflection of a cup grows linearly from the closed end, whose middle stays plane
             share = (self.cup_sizes.rest_plane - z) / self.cup_sizes.rest_plane
         line = neutral_line(self.wave_generator, *axes, inner, radius, share)
-        return ToothMotion(line, self.drive.teeth_fs, self.drive.teeth(ring).n_teeth)
+        return ToothMotion(line, self.drive.teeth_fs, self.teeth(ring).n_teeth)
 
     def rigid_teeth(self, ring: GearName = "ring_gear") -> RigidTeeth:
         """Undeformed teeth of the flexible spline and of a ring gear at mid-width."""
         profiles = self.profile("flexible_spline"), self.profile(ring)
-        return RigidTeeth(
-            *profiles,
-            self.tooth_motion(ring=ring),
-            self.wave_generator.lobes,
-            self.drive.teeth_fs,
-            self.drive.module,
-        )
+        drive, motion = self.drive, self.tooth_motion(ring=ring)
+        lobes = self.wave_generator.lobes
+        return RigidTeeth(*profiles, motion, lobes, drive.teeth_fs, drive.module)
 
     def cam(self) -> Cam:
         """Exact curve of the cam, major axis along +y. Raises InputError where its keys give no

@@ -43,8 +43,12 @@ class Drive(Section):
     teeth_rg: int = quantity(text="teeth of the ring gear", ge=10, le=2002)
     module: float = quantity(unit="mm", text="module", gt=0.0)
     pressure_angle: float = quantity(20.0, unit="deg", text="pressure angle", gt=0.0, lt=45.0)
-    addendum_coef: float = quantity(unit="modules", text="addendum", gt=0.0, le=2.0)
-    dedendum_coef: float = quantity(unit="modules", text="dedendum", gt=0.0, le=2.0)
+    addendum_coef: float = quantity(
+        unit="modules", text="addendum of gears without their own", ge=0.0, le=2.0
+    )
+    dedendum_coef: float = quantity(
+        unit="modules", text="dedendum of gears without their own", gt=0.0, le=2.0
+    )
     face_width: float = quantity(unit="mm", text="face width", gt=0.0)
 
     @property
@@ -52,20 +56,21 @@ class Drive(Section):
         """Diametral deflection (mm) with which the pitch circles meet at a lobe."""
         return self.module * (self.teeth_rg - self.teeth_fs)
 
-    def teeth(self, gear: GearName) -> Teeth:
-        """Number and sizes of the teeth of a gear.
+    def teeth(self, gear: GearName, section: Gear) -> Teeth:
+        """Number and sizes of the teeth of a gear, whose section may have its own heights.
 
         The dynamic spline has the teeth of the flexible spline on the pitch circle of the ring
         gear, where these mesh at the major axis: its module is larger.
         """
         external = gear == "flexible_spline"
+        addendum, dedendum = section.addendum_coef, section.dedendum_coef
         wider = self.teeth_rg / self.teeth_fs if gear == "dynamic_spline" else 1.0
         return Teeth(
             n_teeth=self.teeth_rg if gear == "ring_gear" else self.teeth_fs,
             module=self.module * wider,
             pressure_angle=float(np.radians(self.pressure_angle)),
-            addendum=self.addendum_coef * self.module,
-            dedendum=self.dedendum_coef * self.module,
+            addendum=(self.addendum_coef if addendum is None else addendum) * self.module,
+            dedendum=(self.dedendum_coef if dedendum is None else dedendum) * self.module,
             external=external,
         )
 
@@ -74,11 +79,27 @@ class Gear(Section):
     """What the sections [flexible_spline] and [ring_gear] have in common."""
 
     rim: float = quantity(unit="mm", text="rim thickness below the root circle", gt=0.0)
+    addendum_coef: float | None = quantity(
+        None, unit="modules", text="addendum; without it drive.addendum_coef", ge=0.0, le=2.0
+    )
+    dedendum_coef: float | None = quantity(
+        None, unit="modules", text="dedendum; without it drive.dedendum_coef", gt=0.0, le=2.0
+    )
     c_P: float = quantity(
-        1.0, text="angular tooth thickness reduction; 1 for involutes", gt=0.0, le=1.2
+        1.0,
+        text="angular tooth thickness reduction: (1 - c_P) of half a pitch is the backlash that "
+        "these teeth give; 1 with conjugate profiles",
+        gt=0.0,
+        le=1.2,
     )
     c_l: float = quantity(
         0.5, text="share of the straight segment above the pitch point", ge=0.0, le=1.0
+    )
+    tip_relief: float = quantity(
+        0.0, unit="mm", text="tip relief of each flank, along the addendum circle", ge=0.0
+    )
+    tip_relief_height: float = quantity(
+        0.2, unit="modules", text="height of the relieved part of the flank", gt=0.0, le=2.0
     )
     material: OptionalMaterial = None
 

@@ -78,7 +78,7 @@ def test_teeth_that_overlap_at_every_rotation_have_no_transmission_error() -> No
 
 
 def test_the_curvature_is_that_of_the_tangents() -> None:
-    flank = design(profile={**RING, "relief": 0.02, "r_tip": 0.1}).profile("ring_gear")
+    flank = design(profile={**RING, "r_tip": 0.1}, ring_gear__tip_relief=0.02).profile("ring_gear")
     assert [segment.name for segment in flank.segments][:2] == ["tip", "relief"]
     for begin, end in zip(flank.breaks[:-1], flank.breaks[1:]):
         s, h = np.linspace(begin, end, 9)[1:-1], 1e-6
@@ -92,11 +92,11 @@ def test_the_curvature_is_that_of_the_tangents() -> None:
 
 def test_backlash_and_relief_are_taken_from_the_teeth() -> None:
     plain = design()
-    loose = design(profile={**RING, "backlash": 0.02, "relief": 0.01})
+    loose = design(profile={**RING, "backlash": 0.02}, ring_gear__tip_relief=0.01)
     assert loose.backlash - plain.backlash == pytest.approx(0.02, abs=1e-6)
     lands = [each.profile("ring_gear").top_land for each in (plain, loose)]
     # both flanks give the relief and half of the backlash, at the addendum circle
-    scale = plain.profile("ring_gear").r_tip_circle / plain.drive.teeth("ring_gear").r_pitch
+    scale = plain.profile("ring_gear").r_tip_circle / plain.teeth("ring_gear").r_pitch
     assert lands[0] - lands[1] == pytest.approx(0.02 * scale + 0.02, rel=1e-6)
 
 
@@ -107,7 +107,7 @@ def test_backlash_and_relief_are_taken_from_the_teeth() -> None:
         (RING, {"ring_gear__c_P": 0.9}, "ring_gear.profile.backlash"),
         ({**RING, "r_root": 0.9}, {}, "ring_gear.profile"),
         ({**RING, "r_tip": 2.0}, {}, "r_tip"),
-        ({**RING, "relief": 0.3}, {}, "relief"),
+        (RING, {"ring_gear__tip_relief": 0.5}, "ring_gear.tip_relief = 0.5"),
         ({**RING, "section": 1.0}, {}, "ring_gear.profile.section"),
         (RING, {"flexible_spline__profile": RING}, "one gear only"),
     ],

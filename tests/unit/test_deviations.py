@@ -117,7 +117,7 @@ def test_pitch_errors_from_a_file(tmp_path: Path) -> None:
 def test_seeds_and_gears_are_independent() -> None:
     def errors(seed: int, gear: str) -> np.ndarray:
         design = plane(f"deviations.{gear}.pitch_grade=6", f"deviations.seed={seed}")
-        return gear_deviations(design.deviations, gear, design.drive.teeth(gear)).pitch
+        return gear_deviations(design.deviations, gear, design.teeth(gear)).pitch
 
     first = errors(1, "ring_gear")
     assert np.array_equal(first, errors(1, "ring_gear"))

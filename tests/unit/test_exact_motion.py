@@ -135,7 +135,7 @@ def to_line(points: np.ndarray, line: np.ndarray) -> np.ndarray:
 def test_the_line_is_the_offset_of_the_cam(name: str) -> None:
     design = swgpar.load_design(PLANE, DRIVES[name])
     own, motion = OwnMotion(design), design.tooth_motion()
-    tooth = np.array([0.3 + 1j * design.drive.teeth("flexible_spline").r_pitch, 1j * own.radius])
+    tooth = np.array([0.3 + 1j * design.teeth("flexible_spline").r_pitch, 1j * own.radius])
     for psi in np.linspace(-2.0, 2.0, 21):
         pose = motion.pose(np.array([psi]))
         assert np.abs(pose.moved(tooth) - own.moved(psi, tooth)).max() < 2e-5
@@ -196,7 +196,7 @@ def test_conjugate_teeth_transmit_without_error(name: str) -> None:
             gaps.append(to_line(place, line[::-1]).min())
         least.append(min(gaps))
     normal = np.cos(np.radians(design.drive.pressure_angle))
-    arm = normal * design.drive.teeth("ring_gear").r_pitch
+    arm = normal * design.teeth("ring_gear").r_pitch
     assert np.ptp(least) / arm * ARCSECONDS < 0.05
     assert np.abs(least).max() < 5e-5
 

@@ -46,8 +46,8 @@ def make_profile(
 
     keys : section [flexible_spline.profile] or [ring_gear.profile] of the design file
     teeth : number and sizes of the teeth
-    c_P : angular tooth thickness reduction (eq. 3.22); 1 for involutes
-    c_l : share of the straight segment above the pitch point; 0.5 for involutes
+    c_P : angular tooth thickness reduction (eq. 3.22); 1 with a `thickness_key`
+    c_l : share of the straight segment above the pitch point; 0.5 without one
     gear : name of the gear's section, for messages
     partner : of conjugate profiles, the other flank and the motion of the flexible spline's tooth
 
@@ -88,7 +88,7 @@ def _advice(
         return f"several keys of {name} do not fit: allowed are for example " + ", ".join(
             f"{key} = {show(value)}" for key, value in typical.items()
         )
-    if keys.thickness_key:
+    if not keys.divides_straight:
         return ""  # the reason says what is allowed
     return (
         f"no other {' or '.join(lengths)} is allowed: change c_P, c_l, the pressure angle or the "
@@ -106,8 +106,7 @@ def _build(
 ) -> ToothProfile:
     """Flank of a gear; raises InputError with the reason where there is none."""
     name = f"{gear}.profile"
-    if keys.thickness_key:
-        _refuse_direct_keys(keys, c_P, c_l, gear)
+    _refuse_other_keys(keys, c_P, c_l, gear)
     if isinstance(keys, QuadrupleArc):
         frame = PitchPointFrame(**asdict(teeth), c_P=c_P)
         profile = quadruple_arc(
@@ -127,7 +126,7 @@ def _build(
     elif isinstance(keys, Conjugate):
         profile = conjugate(keys, teeth, *partner, name)
     else:
-        profile = involute(_cutter(keys, teeth), name)
+        profile = involute(_cutter(keys, teeth, c_P), name)
     try:
         check_flank(profile)
     except InputError as error:
@@ -140,27 +139,37 @@ def _build(
     return profile
 
 
-def _refuse_direct_keys(
+def _refuse_other_keys(
     keys: ExternalProfile | InternalProfile, c_P: float, c_l: float, gear: str
 ) -> None:
-    """Refuse values of keys that shape directly defined profiles only."""
+    """Refuse values of keys of the gear that do not shape such a profile."""
     thickness = f"whose tooth thickness follows from {gear}.profile.{keys.thickness_key}"
-    for key, value, allowed, reason in (
-        ("c_P", c_P, 1.0, thickness),
-        ("c_l", c_l, 0.5, "which does not use it"),
+    for key, value, counts, allowed, reason in (
+        ("c_P", c_P, not keys.thickness_key, 1.0, thickness),
+        (
+            "c_l",
+            c_l,
+            keys.divides_straight and not keys.thickness_key,
+            0.5,
+            "which does not use it",
+        ),
     ):
         profile = f'{allowed:g} with {gear}.profile.type = "{keys.type}"'
-        require(value == allowed, f"{gear}.{key}", value, f"{profile}, {reason}")
+        require(counts or value == allowed, f"{gear}.{key}", value, f"{profile}, {reason}")
 
 
-def _cutter(keys: RackInvolute | ShaperInvolute, teeth: Teeth) -> Cutter:
+def _cutter(keys: RackInvolute | ShaperInvolute, teeth: Teeth, c_P: float) -> Cutter:
     """Gear and cutter of an involute profile."""
     sizes = asdict(teeth)
     if keys.pressure_angle is not None:
         sizes["pressure_angle"] = float(np.radians(keys.pressure_angle))
     cutter_teeth = keys.cutter_teeth if isinstance(keys, ShaperInvolute) else 0
     return Cutter(
-        **sizes, tip_radius=keys.cutter_radius, shift=keys.shift, cutter_teeth=cutter_teeth
+        **sizes,
+        tip_radius=keys.cutter_radius,
+        shift=keys.shift,
+        cutter_teeth=cutter_teeth,
+        c_P=c_P,
     )
 
 

@@ -1,7 +1,6 @@
 """Conjugate flank: the envelope of the other gear's flank, and what leads from it to the circles.
 
-A tangent and an arc lead to the root circle. At the tip there may be an arc of relief and a rounded
-edge.
+A tangent and an arc lead to the root circle. At the tip there may be a rounded edge.
 """
 
 from __future__ import annotations
@@ -79,32 +78,9 @@ class _Maker:
         """Segments from tip to root; `low`, `high` : arc lengths of the given flank that may
         touch."""
         top = self.crossing(self.tip, low, high)
-        base: list[Segment | CurvedSegment] = []
-        if self.keys.relief:
-            height = self.keys.relief_height * self.module
-            top, relief = self._relief(self.crossing(self.tip - self.sign * height, low, top), top)
-            base.append(relief)
         bottom, ending = self._root(low, top)
-        base += self.envelope.pieces(bottom, top)
+        base = self.envelope.pieces(bottom, top)
         return (self._rounded(base) if self.keys.r_tip else base) + ending
-
-    def _relief(self, begin: float, top: float) -> tuple[float, Segment]:
-        """Arc tangent at `begin` that reaches the addendum circle by the relief inside of the
-        envelope."""
-        (point, angle), edge = self.envelope.point(begin), self.envelope.point(top)[0]
-        chord = edge * _vector(self.keys.relief / self.tip) - point
-        # the angle between a tangent and a chord is half of the arc's
-        half = float(np.angle(-chord / _vector(angle)))
-        if not 0.0 < self.sign * half < 0.5:
-            raise InputError(
-                f"{self.name}.relief = {self.keys.relief:g} is out of range with relief_height = "
-                f"{self.keys.relief_height:g}: allowed are other values, for which an arc bends "
-                "from the flank into the tooth"
-            )
-        curvature = -2.0 * np.sin(half) / abs(chord)
-        return begin, Segment(
-            "relief", _start(point + chord), angle + 2.0 * half, curvature, -2.0 * half / curvature
-        )
 
     def _arc(
         self, name: str, radius: float, begin: float, end: float, convex: bool, center: complex

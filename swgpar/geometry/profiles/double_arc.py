@@ -2,7 +2,8 @@
 
 The dedendum arc is the fillet: it is tangent to the dedendum circle, |O_d| - s r_d = r_D with O_d =
 P - (1 - c_l) l t + r_d n(alpha*), and this gives the length l of the straight segment (eq. 3.39).
-The addendum arc runs to the addendum circle and meets it at an edge.
+The addendum arc runs to the addendum circle and meets it at an edge. Where the straight segment
+reaches that circle there is no addendum arc.
 """
 
 from __future__ import annotations
@@ -44,6 +45,14 @@ def double_arc(
     top = frame.pitch_point + c_l * length * frame.towards_tip
     bottom = frame.pitch_point - (1.0 - c_l) * length * frame.towards_tip
     o_a, o_d = top - r_addendum * n(star), bottom + r_dedendum * n(star)
+    beta_r = frame.inclination(o_d)
+    root = ("dedendum", bottom, star, -1.0 / r_dedendum, r_dedendum * (beta_r - star))
+    if s * (float(np.hypot(*top)) - frame.r_tip_circle) >= -1e-12 * frame.module:
+        # the straight segment reaches the addendum circle, and ends there
+        along = float(top @ frame.towards_tip)
+        beyond = along - s * np.sqrt(along**2 - float(top @ top) + frame.r_tip_circle**2)
+        edge = top - beyond * frame.towards_tip
+        return frame.profile([("straight", edge, star, 0.0, length - beyond), root], name)
     # |O_a + r_a n(beta)| = r_A (eqs 3.36, 3.39), with O_a at the inclination beta_a and the
     # distance |O_a|
     reach = float(np.hypot(*o_a))
@@ -54,11 +63,10 @@ def double_arc(
         )
     beta_a = float(np.arctan2(s * o_a[1], o_a[0]))
     beta_t = beta_a - s * float(np.arccos(cosine))
-    beta_r = frame.inclination(o_d)
     tip = o_a + r_addendum * n(beta_t)
     pieces = [
         ("addendum", tip, beta_t, 1.0 / r_addendum, r_addendum * (beta_t - star)),
         ("straight", top, star, 0.0, length),
-        ("dedendum", bottom, star, -1.0 / r_dedendum, r_dedendum * (beta_r - star)),
+        root,
     ]
     return frame.profile(pieces, name)

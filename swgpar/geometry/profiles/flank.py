@@ -223,11 +223,14 @@ class ToothProfile:
         return np.arctan2(x, y)
 
     def thickness(self, radius: float) -> float:
-        """Thickness of the tooth along the circle of `radius`, mm, that its flank crosses once."""
+        """Thickness of the tooth along the circle of `radius`, mm, that its flank crosses once, or
+        on which it ends."""
 
         def beyond(s: float) -> float:
             return float(np.hypot(*self.point(s)[0])) - radius
 
+        if abs(beyond(0.0)) < 1e-12 * radius:  # an addendum of 0
+            return self.top_land
         s = scipy.optimize.brentq(beyond, 0.0, self.length, xtol=1e-14 * radius)
         return 2.0 * radius * float(self.polar_angle(s)[0])
 

@@ -41,11 +41,13 @@ class Cutter(Teeth):
 
     tip_radius : rounding of the cutter's teeth
     shift : of the cutter outwards, in modules;  cutter_teeth : teeth of the shaper
+    c_P : angular tooth thickness reduction; below 1 the cutter's teeth are thicker
     """
 
     tip_radius: float
     shift: float
     cutter_teeth: int = 0
+    c_P: float = 1.0
 
     @property
     def r_base(self) -> float:
@@ -56,7 +58,7 @@ class Cutter(Teeth):
     def half_thickness(self) -> float:
         """Half the angular thickness of the gear's teeth at the pitch circle, alpha_P."""
         return (
-            0.5 * np.pi + 2.0 * self.sign * self.shift * np.tan(self.pressure_angle)
+            0.5 * np.pi * self.c_P + 2.0 * self.sign * self.shift * np.tan(self.pressure_angle)
         ) / self.n_teeth
 
     @property

@@ -16,10 +16,12 @@ class ProfileKeys(Section):
     typical_lengths : keys that are lengths, with values in modules that give a flank for most tooth
         numbers; a refusal says which of them to change. Empty: the reason says what is allowed
     thickness_key : the key that replaces c_P and c_l, which are then 1 and 0.5; empty: they count
+    divides_straight : whether c_l divides a straight segment; without one it is 0.5
     """
 
     typical_lengths: ClassVar[Mapping[str, float]] = {}
     thickness_key: ClassVar[str] = ""
+    divides_straight: ClassVar[bool] = True
 
     def __hash__(self) -> int:
         # profiles are kept by their keys, which may be lists
@@ -59,7 +61,7 @@ class _Involute(ProfileKeys):
     """Section 3.3.1. The typical radius is the bottom clearance."""
 
     typical_lengths = {"cutter_radius": 0.2}
-    thickness_key = "shift"
+    divides_straight = False
 
     type: Literal["involute"] = quantity("involute", text="kind of profile")
     pressure_angle: float | None = quantity(
@@ -89,10 +91,6 @@ class Conjugate(ProfileKeys):
     r_tip: float = quantity(0.0, unit="mm", text="radius of the rounded tip edge; 0: sharp", ge=0.0)
     backlash: float = quantity(
         0.0, unit="mm", text="backlash along the pitch circle, taken from these teeth", ge=0.0
-    )
-    relief: float = quantity(0.0, unit="mm", text="tip relief, along the addendum circle", ge=0.0)
-    relief_height: float = quantity(
-        0.2, unit="modules", text="height of the relieved part of the flank", gt=0.0, le=2.0
     )
     section: float = quantity(
         0.0, unit="mm", text="axial coordinate of the section whose motion counts; 0: mid-width"

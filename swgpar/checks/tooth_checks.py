@@ -1,0 +1,62 @@
+"""Checks and remarks on the heights of the teeth and on the rim below them."""
+
+from __future__ import annotations
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GearName
+from swgpar.input.require import require
+
+ROUND_OFF = 1e-9
+"""Modules by which tips may be beyond the root circle they touch."""
+
+THIN_RIM = 0.25
+"""Rim over tooth height below which it is said: half of 0.5, below which rims of external gears are
+to be avoided by ISO 6336-3 (rim thickness factor); rims of flexible splines are thin on purpose."""
+
+
+def check_heights(design: DriveDesign) -> None:
+    """Raise InputError where tips lie beyond the root circle of the other gear at the major
+    axis."""
+    module = design.drive.module
+    for gear, faced in _faced(design):
+        own = getattr(design, faced).dedendum_coef is not None
+        key = f"{faced if own else 'drive'}.dedendum_coef"
+        value = design.teeth(faced).dedendum / module
+        least = value - _room(design, gear, faced) / module
+        allowed = f"{least:.6g} to 2 modules (tips of {gear} at the major axis)"
+        require(value >= least - ROUND_OFF, key, value, allowed)
+
+
+def _faced(design: DriveDesign) -> list[tuple[GearName, GearName]]:
+    """Pairs of a gear and the one whose roots its tips face."""
+    pairs: list[tuple[GearName, GearName]] = []
+    for ring in design.gears[1:]:
+        pairs += [("flexible_spline", ring), (ring, "flexible_spline")]
+    return pairs
+
+
+def _room(design: DriveDesign, gear: GearName, faced: GearName) -> float:
+    """From the tips of a gear to the root circle of the one it faces at the major axis, mm."""
+    teeth, other = design.teeth(gear), design.teeth(faced)
+    between = abs(teeth.r_pitch - other.r_pitch) - 0.5 * design.deflection
+    return between + other.dedendum - teeth.addendum
+
+
+def tooth_remarks(design: DriveDesign) -> list[str]:
+    """Sentences about tips that touch a root, and about a thin rim."""
+    sentences = []
+    for gear, faced in _faced(design):
+        if _room(design, gear, faced) <= ROUND_OFF * design.drive.module:
+            sentences.append(
+                f"the tips of {gear} touch the root circle of {faced} at the major axis: contact "
+                f"there is not computed; a larger dedendum_coef of {faced} leaves room"
+            )
+    rim, teeth = design.flexible_spline.rim, design.teeth("flexible_spline")
+    height = teeth.addendum + teeth.dedendum
+    if rim < THIN_RIM * height:
+        sentences.append(
+            f"flexible_spline.rim = {rim:g} mm is {rim / height:.2g} of the height of the teeth "
+            f"({height:.4g} mm): it bends in the spaces between the teeth only, where stresses are "
+            "largest; rims of 0.5 and more of the height are usual"
+        )
+    return sentences

@@ -1,0 +1,107 @@
+"""Tip relief of any flank: its upper part turned towards the centre line of the tooth.
+
+A point at the radius r is turned about the axis by
+
+    delta(r) = c / r_A (|r - r_b| / h)^2,  r_b = r_A -+ h,
+
+from nothing at r_b to the relief c along the addendum circle r_A. Radii stay what they are, so that
+a flank that is tangent to the addendum circle remains so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+import scipy
+
+from swgpar.errors import InputError
+from swgpar.geometry.arrays import Floats
+from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints
+from swgpar.geometry.profiles.flank import FlankSegment, ToothProfile, check_flank
+from swgpar.input.require import require
+
+
+@dataclass(frozen=True)
+class _Part:
+    """The part of a segment between the local arc lengths `begin` and `end`, mm, turned about the
+    axis by turn (r - base)^2.
+
+    turn : rad / mm^2;  base : mm
+    """
+
+    segment: FlankSegment
+    begin: float
+    end: float
+    turn: float
+    base: float
+
+    def evaluate(self, t: Floats) -> CurvePoints:
+        """Curve at the parameters t (n,), for `CurvedSegment`."""
+        span = self.end - self.begin
+        s = self.begin + span * t
+        (x, y), angle = self.segment.point(s).T, self.segment.angle(s)
+        curvature, z, tangent = self.segment.signed_curvature(s), x + 1j * y, np.exp(1j * angle)
+        r = np.abs(z)
+        # derivatives by arc length of the radius and of the angle of rotation
+        slope = (np.conj(z) * tangent).real / r
+        bend = (1.0 + (np.conj(z) * 1j * curvature * tangent).real - slope**2) / r
+        above = r - self.base
+        delta = self.turn * above**2
+        rate = 2.0 * self.turn * above * slope
+        change = 2.0 * self.turn * (slope**2 + above * bend)
+        # of the turned curve, over the tangent of the given one and its rotation
+        stretch = 1.0 + 1j * rate * z / tangent
+        growth = (1j * change * z + rate * (1j * tangent + curvature * z)) / tangent
+        turned = z * np.exp(1j * delta)
+        return CurvePoints(
+            np.stack((turned.real, turned.imag), axis=-1),
+            angle + delta + np.angle(stretch),
+            span * np.abs(stretch),
+            span * (curvature + rate + (growth / stretch).imag),
+        )
+
+
+@lru_cache(maxsize=32)
+def relieved(profile: ToothProfile, relief: float, height: float, gear: str) -> ToothProfile:
+    """The flank with a tip relief.
+
+    relief : mm, of one flank along the addendum circle;  height : mm, of the relieved part
+    gear : name of the gear's section, for messages
+
+    Raises InputError where the relieved part reaches into the fillet, or leaves no top land.
+    """
+    if relief == 0.0:
+        return profile
+    outwards = 1.0 if profile.external else -1.0
+    base = profile.r_tip_circle - outwards * height
+    above_fillet = outwards * (profile.r_tip_circle - _radius(profile, profile.root_start))
+    allowed = f"above 0 to below {above_fillet:.4g} mm (above the root), here {height:.4g} mm"
+    require(height < above_fillet, f"{gear}.tip_relief_height", height, allowed)
+    end = scipy.optimize.brentq(
+        lambda s: outwards * (_radius(profile, s) - base), 0.0, profile.root_start, xtol=1e-13
+    )
+    turn = relief / profile.r_tip_circle / height**2
+    segments: list[FlankSegment] = []
+    for begin, segment in zip(profile.breaks[:-1], profile.segments, strict=True):
+        inside = min(end - begin, segment.length)
+        if inside > 1e-9 * profile.length:
+            name = "tip" if segment.name == "tip" else "relief"
+            part = _Part(segment, 0.0, inside, turn, base)
+            segments.append(CurvedSegment(name, part.evaluate))
+        if segment.length - max(inside, 0.0) > 1e-9 * profile.length:
+            rest = _Part(segment, max(inside, 0.0), segment.length, 0.0, base)
+            whole = inside <= 0.0
+            segments.append(segment if whole else CurvedSegment(segment.name, rest.evaluate))
+    changed = replace(profile, segments=tuple(segments))
+    try:
+        check_flank(changed)
+    except InputError as error:
+        raise InputError(f"{gear}.tip_relief = {relief:g} cannot be made: {error}") from None
+    return changed
+
+
+def _radius(profile: ToothProfile, s: float) -> float:
+    """Distance (mm) from the axis at the arc length s, mm."""
+    return float(np.hypot(*profile.point(s)[0]))
