@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from swgpar.analysis.shortcuts import finds_contacts
-from swgpar.flank_pressure.pair_contact import pair_contacts
+from swgpar.flank_pressure.pair_contact import PairContact, pair_contacts
 from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress
 from swgpar.load.load_states import LoadState
 from swgpar.meshing import MeshRecipe
@@ -47,10 +47,12 @@ class CoarserMesh:
     """A coarser mesh of the drive.
 
     stresses : s1 (MPa) on windows, coarse to fine, by part of the teeth
+    contacts : of all touching pairs
     """
 
     recipe: MeshRecipe
     stresses: Mapping[str, Sequence[float]]
+    contacts: Sequence[PairContact] = ()
 
 
 def coarser_recipes(recipe: MeshRecipe) -> list[MeshRecipe]:
@@ -71,12 +73,12 @@ def with_finer_flanks(coarse: MeshRecipe, recipe: MeshRecipe) -> list[MeshRecipe
 
 
 def coarser_mesh(model: DriveModel, recipe: MeshRecipe, state: LoadState) -> CoarserMesh:
-    """What the loaded model on a coarser mesh gives in windows; collective.
+    """What the loaded model on a coarser mesh gives in windows and contacts; collective.
 
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
     found = resolve_root_stress(model, state, COMPARED_LEVELS, COMPARED_LEVELS - 1)
-    return CoarserMesh(recipe, found.by_part)
+    return CoarserMesh(recipe, found.by_part, pair_contacts(model, state))
 
 
 def drive_error(
@@ -105,22 +107,27 @@ def drive_error(
     meshes.append((recipe, fine.levels[shared]))
     if any(math.isnan(s1) for _, s1 in meshes):  # a part that was followed on no shared window
         return None
-    shown = sum(
-        abs(s1 - s1_coarse) / (_ratio(one, finer) ** ORDER - 1.0)
-        for (one, s1_coarse), (finer, s1) in pairwise(meshes)
-    )
-    error = SAFETY * shown * abs(fine.s1 / fine.levels[shared])
+    error = shown_error(meshes) * abs(fine.s1 / fine.levels[shared])
     remains = 0.0 if before is None else before / ratio**ORDER
     return max(error, remains, least * abs(fine.s1))
 
 
-def _ratio(coarse: MeshRecipe, fine: MeshRecipe) -> float:
+def shown_error(meshes: Sequence[tuple[MeshRecipe, float]]) -> float:
+    """Error of a value by the mesh, from the last two or three meshes and the value on each, the
+    coarsest first. Every mesh has other counts of `BODY` or `CONTACT` than the one before."""
+    return SAFETY * sum(
+        abs(value - before) / (smallest_ratio(one, finer) ** ORDER - 1.0)
+        for (one, before), (finer, value) in pairwise(meshes)
+    )
+
+
+def smallest_ratio(coarse: MeshRecipe, fine: MeshRecipe) -> float:
     """The smallest ratio of counts that differ, one of which does."""
     ratios = body_ratio(coarse, fine), contact_ratio(coarse, fine)
     return min(ratio for ratio in ratios if ratio is not None)
 
 
-def least_error(model: DriveModel, state: LoadState) -> float:
-    """Least error that two meshes of the drive can show, as a share of the stress; collective."""
-    edge = any(pair.edge for pair in pair_contacts(model, state))
+def least_error(model: DriveModel, contacts: Sequence[PairContact]) -> float:
+    """Least error that two meshes of the drive can show, as a share of the stress."""
+    edge = any(pair.edge for pair in contacts)
     return LEAST_WITH_EDGES if edge else LEAST[model.design.drive.model]

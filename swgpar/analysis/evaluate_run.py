@@ -62,6 +62,14 @@ def evaluate_run(
     fatigue, losses, losses_table = _cycle_results(recorder)
     bodies = {name: BodySizes(**counts) for name, counts in model.counts().items()}
     memory = model.comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
+    rotation = evaluate_rotation(
+        sequence,
+        rows,
+        record.pairs,
+        places,
+        friction=design.contact.friction > 0.0,
+        coarse=record.coarse_period,
+    )
     summary = DriveSummary(
         recipe=recipe_name,
         bodies=bodies,
@@ -84,13 +92,7 @@ def evaluate_run(
         peak_memory_MB_per_rank=tuple(round(value, 1) for value in memory),
         ratio=design.kinematics.input_ratio,
         design=design,
-        rotation=evaluate_rotation(
-            sequence,
-            rows,
-            record.pairs,
-            places,
-            friction=design.contact.friction > 0.0,
-        ),
+        rotation=rotation,
         stresses=LargestStresses.of(places),
         steps=step_values(shown),
         numerics=evaluate_numerics(
@@ -98,10 +100,14 @@ def evaluate_run(
         ),
         accuracy=record.accuracy,
         root_stress=record.root_stress,
-        contact=largest_contact(record.pairs),
+        contact=largest_contact(record.pairs, record.contact_errors),
         load_sharing=_load_sharing(recorder),
         transmission_error=evaluate_turns(
-            sequence.kinematics, design.deviations, sequence.samples, record.turns
+            sequence.kinematics,
+            design.deviations,
+            sequence.samples,
+            record.turns,
+            rotation.range_errors,
         ),
         stiffness=torsional_stiffness(stiffness_program(design), program, stiffness_error)
         if design.stiffness
@@ -141,6 +147,7 @@ def _load_sharing(recorder: Recorder) -> LoadSharing | None:
         range(len(rows) - count + 1, len(rows) + 1),
         recorder.sequence.kinematics.teeth_fs,
         recorder.model.copies,
+        recorder.record.contact_errors,
     )
 
 

@@ -15,6 +15,7 @@ from mpi4py import MPI
 from swgpar.analysis.accuracy import ROUGH
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.coarse_stresses import coarse_stresses
+from swgpar.analysis.contact_errors import contact_errors
 from swgpar.analysis.drive_mesh_error import (
     coarser_mesh,
     coarser_recipes,
@@ -26,6 +27,8 @@ from swgpar.analysis.forecast import fits, forecast
 from swgpar.analysis.saved_state import StartStates
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError, SwgparError
+from swgpar.evaluation.contact_error_shares import ContactErrorShares
+from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.largest_stress.place_errors import CoarseStresses
 from swgpar.largest_stress.root_stress import (
     FEWEST_LEVELS,
@@ -49,7 +52,7 @@ class ChosenMesh:
     """The model on the mesh chosen, in its loaded state.
 
     root_stress : with both errors;  error : relative
-    coarse : what the mesh before it gives
+    coarse : what the mesh before it gives;  contact_errors : of the contacts of flanks
     """
 
     model: DriveModel
@@ -57,6 +60,16 @@ class ChosenMesh:
     root_stress: RootStress
     error: float
     coarse: CoarseStresses
+    contact_errors: ContactErrorShares
+
+
+@dataclass(frozen=True)
+class Refined:
+    """What a mesh gives in comparison with coarser ones; see `Refinement`."""
+
+    compared: CoarseStresses
+    found: RootStress
+    contact_errors: ContactErrorShares
 
 
 class Refinement:
@@ -74,6 +87,7 @@ class Refinement:
     ----------
     model, recipe, found : the present mesh and the stress by its windows
     compared : the largest stresses at the places on the coarsest mesh that it is compared with
+    contact_errors : of the contacts of flanks on the present mesh
     """
 
     def __init__(
@@ -93,16 +107,15 @@ class Refinement:
             coarser, recipe = with_finer_flanks(recipe, refined(recipe)), refined(recipe)
         self.model = self._solved(coarser[0])
         try:
-            self.recipe, self.compared, self.found = self._refined(coarser, recipe)
+            self._take(recipe, self._refined(coarser, recipe))
         except SwgparError:
             self.model.destroy()
             raise
 
     def _refined(
         self, coarser: list[MeshRecipe], recipe: MeshRecipe, before: float | None = None
-    ) -> tuple[MeshRecipe, CoarseStresses, RootStress]:
-        """Go from the present mesh, the first of `coarser`, by way of the others to `recipe`; what
-        the attributes become.
+    ) -> Refined:
+        """Go from the present mesh, the first of `coarser`, by way of the others to `recipe`.
 
         before : error (MPa) of the present mesh by the mesh of the drive, if it is known
         """
@@ -114,7 +127,8 @@ class Refinement:
             meshes.append(coarser_mesh(self.model, between, self.loaded))
         self._replace(recipe)
         found = resolve_root_stress(self.model, self.loaded, self.levels)
-        least = least_error(self.model, self.loaded)
+        contacts = pair_contacts(self.model, self.loaded)
+        least = least_error(self.model, contacts)
         error = drive_error(meshes, recipe, found, least, before)
         logger.info(
             "%d elements: s1 %.1f MPa under load; error by the windows %.2g %%, by the mesh of the "
@@ -124,7 +138,12 @@ class Refinement:
             100.0 * _bound(found.error) / found.s1,
             100.0 * _bound(error) / found.s1,
         )
-        return recipe, compared, replace(found, drive_error=error)
+        errors = contact_errors(meshes, recipe, contacts)
+        return Refined(compared, replace(found, drive_error=error), errors)
+
+    def _take(self, recipe: MeshRecipe, refined: Refined) -> None:
+        self.recipe, self.compared, self.found = recipe, refined.compared, refined.found
+        self.contact_errors = refined.contact_errors
 
     def _solved(self, recipe: MeshRecipe, coarse: DriveModel | None = None) -> DriveModel:
         """The loaded model on a mesh, from the state of a coarser one if it is given."""
@@ -168,9 +187,8 @@ class Refinement:
         except InputError:
             return False
         try:
-            self.recipe, self.compared, self.found = self._refined(
-                with_finer_flanks(self.recipe, finer), finer, self.found.drive_error
-            )
+            coarser = with_finer_flanks(self.recipe, finer)
+            self._take(finer, self._refined(coarser, finer, self.found.drive_error))
         except (ConvergenceError, InputError) as error:
             logger.warning("no finer mesh of the drive: %s", error)
             self.model.destroy()
@@ -218,7 +236,9 @@ def choose_mesh(
         if not refine[part]():
             del refine[part]
     error = relative_error(drive.found)
-    return ChosenMesh(drive.model, drive.recipe, drive.found, error, drive.compared)
+    return ChosenMesh(
+        drive.model, drive.recipe, drive.found, error, drive.compared, drive.contact_errors
+    )
 
 
 def relative_error(found: RootStress) -> float:

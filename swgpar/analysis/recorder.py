@@ -77,6 +77,7 @@ class Recorder(ABC):
             reached=chosen.error <= accuracy,
         )
         self.record.root_stress, self.record.coarse = chosen.root_stress, chosen.coarse
+        self.record.contact_errors = chosen.contact_errors
 
     def keep(self, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.

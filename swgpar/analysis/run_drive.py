@@ -10,8 +10,10 @@ from dataclasses import replace
 import numpy as np
 
 from swgpar.analysis.accuracy import require_refinable, with_accuracy
+from swgpar.analysis.coarse_period import coarse_period
 from swgpar.analysis.coarse_start import start_at_load
 from swgpar.analysis.coarse_stresses import coarse_stresses
+from swgpar.analysis.contact_errors import contact_errors
 from swgpar.analysis.drive_mesh_error import CoarserMesh, coarser_mesh, drive_error, least_error
 from swgpar.analysis.evaluate_run import evaluate_run
 from swgpar.analysis.follow_turns import follow_turns
@@ -32,6 +34,7 @@ from swgpar.evaluation.period import continued, require_samples
 from swgpar.evaluation.ratcheting import has_fallen
 from swgpar.evaluation.result_frame import history_rows
 from swgpar.evaluation.transmission_error import period_rows
+from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress, with_angle
 from swgpar.largest_stress.wall_stress import WallStress, resolve_wall
 from swgpar.load.load_sequence import LoadSequence, load_sequence
@@ -211,6 +214,8 @@ class DriveRun:
                 found = coarser_mesh(model, recipe, loaded)
             except (ConvergenceError, InputError) as error:
                 logger.info("the error by the mesh of the drive is not known: %s", error)
+        if not self.coarser and ratio is not None:
+            self.recorder.record.coarse_period = coarse_period(model, recipe, self.recipe)
         self.coarser.append(found)
 
     def go_through(self, states: Sequence[LoadState]) -> None:
@@ -289,10 +294,12 @@ class DriveRun:
 
     def _resolve_loaded(self, state: LoadState) -> RootStress:
         found = resolve_root_stress(self.model, state)
-        known = [one for one in self.coarser if one is not None]
+        known, record = [one for one in self.coarser if one is not None], self.recorder.record
         if len(known) < len(self.coarser):
             return found
-        least = least_error(self.model, state)
+        contacts = pair_contacts(self.model, state)
+        record.contact_errors = contact_errors(known, self.recipe, contacts)
+        least = least_error(self.model, contacts)
         return replace(found, drive_error=drive_error(known, self.recipe, found, least))
 
     def _wall_stress(self, state: LoadState) -> WallStress | None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from swgpar.evaluation.bearing_loads import ComplianceShares
+from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares
+from swgpar.evaluation.period_ranges import CoarsePeriod
 from swgpar.evaluation.ratcheting import TorquePoint
 from swgpar.evaluation.slip_error import SlipCheck
 from swgpar.largest_stress.accuracy import Accuracy
@@ -31,6 +33,8 @@ class RunRecord:
     loaded : MPa, the averages of the loaded state by the names of `places`
     coarse : largest stresses on a coarser mesh, until `places` are compared with them
     stress_errors : by it, as shares, of `places`
+    contact_errors : by coarser meshes, of what contacts of flanks give
+    coarse_period : ranges over the sampled period on a coarser mesh
     pairs, contact_lines : rows of pairs.csv and contact_lines.csv
     cam_forces : N, of all increments, with [losses]
     torque_points : states of a prescribed rotation of the output, with [ratcheting] all of them
@@ -52,6 +56,8 @@ class RunRecord:
     loaded: dict[str, float] = field(default_factory=dict)
     coarse: CoarseStresses | None = None
     stress_errors: dict[str, float] = field(default_factory=dict)
+    contact_errors: ContactErrorShares = UNKNOWN
+    coarse_period: CoarsePeriod | None = None
     pairs: list[Row] = field(default_factory=list)
     contact_lines: list[Row] = field(default_factory=list)
     cam_forces: list[float] = field(default_factory=list)

@@ -1,22 +1,34 @@
-"""Error of the torsional stiffness by the mesh, from the first position on a coarser one."""
+"""Error of the torsional stiffness by the mesh, from the first position on coarser ones.
+
+Two groups of counts have an error each: those that are smaller on a coarser mesh, and in the plane
+those that are too small to be: across the tooth, and in the ring gear. These are doubled on another
+mesh. The sizes of both errors are added (docs/theory/stiffness.md).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from mpi4py import MPI
 
 from swgpar.analysis.coarse_start import solve_to_load
-from swgpar.analysis.drive_mesh_error import ORDER, SAFETY, coarser_recipes
+from swgpar.analysis.drive_mesh_error import ORDER, SAFETY, coarser_recipes, smallest_ratio
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.evaluation.program_results import PointRow, point_rows
-from swgpar.evaluation.stiffness import NAMES, Stiffness, by_position
+from swgpar.evaluation.stiffness import CHORDS, NAMES, Stiffness, by_position
 from swgpar.load.load_program import stiffness_program
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
-from swgpar.meshing.recipe_counts import body_ratio
+from swgpar.meshing.recipe_counts import body_ratio, with_equal_doubled
+
+LEAST = 0.003
+"""Least error of a stiffness, and of the lost motion without the backlash, as a share of it:
+contacts move between nodes, and changes may be small by chance."""
+
+DOUBLED = 1.0 / (1.0 - 2.0**-ORDER)
+"""Error of a mesh over the change that twice the elements make."""
 
 
 def stiffness_error(
@@ -27,23 +39,41 @@ def stiffness_error(
     rows : of program.csv on that mesh. Collective.
     """
     coarser = coarser_recipes(recipe)
-    ratio = body_ratio(coarser[0], recipe) if coarser else None
-    if ratio is None:
+    if not coarser or body_ratio(coarser[0], recipe) is None:
         logger.info(
             "the error of the stiffness by the mesh is not known: a coarser one would not find the "
             "contacts"
         )
         return None
     first = _first_position(design)
+    coarse, ratio = coarser[0], smallest_ratio(coarser[0], recipe)
+    fine = by_position(stiffness_program(first), rows)[0.0]
     try:
-        found = _stiffness_on(first, coarser[0], comm)
+        found = _stiffness_on(first, coarse, comm)
+        changes = [_changes(found, fine, 1.0 / (ratio**ORDER - 1.0))]
+        if design.drive.model == "plane":
+            doubled = _stiffness_on(first, with_equal_doubled(recipe, coarse), comm)
+            changes.append(_changes(fine, doubled, DOUBLED))
     except (ConvergenceError, InputError) as error:
         logger.info("the error of the stiffness by the mesh is not known: %s", error)
         return None
-    fine = by_position(stiffness_program(first), rows)[0.0]
-    both = {name: (getattr(fine, name), getattr(found, name)) for name in NAMES}
+    elastic = {"lost_motion": fine.lost_motion - fine.backlash}
+    elastic |= {name: getattr(fine, name) for name in CHORDS}
     return {
-        name: SAFETY * abs(values[0] - values[1]) / (ratio**ORDER - 1.0)
+        name: max(
+            SAFETY * sum(change[name] for change in changes),
+            LEAST * abs(elastic.get(name, 0.0)),
+        )
+        for name in NAMES
+        if all(name in change for change in changes)
+    }
+
+
+def _changes(before: Stiffness, after: Stiffness, factor: float) -> Mapping[str, float]:
+    """Sizes of the changes of the values that both have, times a factor."""
+    both = {name: (getattr(before, name), getattr(after, name)) for name in NAMES}
+    return {
+        name: factor * abs(values[1] - values[0])
         for name, values in both.items()
         if None not in values
     }

@@ -19,6 +19,7 @@ from swgpar.answers.answer import (
     with_no_limit,
 )
 from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares, error_of_largest
 from swgpar.results.history import Row
 
 EDGE = "no property of the drive, and the stress at the teeth may be off by more than its error"
@@ -67,6 +68,7 @@ class LargestContact(AnswerGroup):
     not lie on an edge; None without one
     edge_force_N : 0 where no pair lies on an edge
     unknown_force_N : largest force of a pair whose pressure could not be computed; 0 without one
+    error_MPa, error_off_edges_MPa : of both pressures; None where they are not known
     """
 
     largest: LoadedPair | None = part_answers(
@@ -75,6 +77,7 @@ class LargestContact(AnswerGroup):
             "largest pressure of the flanks under load",
             "MPa",
             "largest.pressure_MPa",
+            error="error_MPa",
         ),
         AnswerKind("contact.force", "force of the pair there", "N", "largest.force_N"),
         AnswerKind("contact.line_load", "line load there", "N/mm", "largest.line_load_Nmm"),
@@ -97,6 +100,7 @@ class LargestContact(AnswerGroup):
             "the same of the pairs that do not lie on an edge",
             "MPa",
             "off_edges.pressure_MPa",
+            error="error_off_edges_MPa",
         )
     )
     edge_force_N: float = answer(
@@ -106,6 +110,8 @@ class LargestContact(AnswerGroup):
         "contact.on_edge", "whether a contact under load lies on an edge: 1 or 0", exact=True
     )
     unknown_force_N: float
+    error_MPa: float | None = None
+    error_off_edges_MPa: float | None = None
 
     TITLE = "contact of the flanks under load"
 
@@ -147,8 +153,11 @@ class LargestContact(AnswerGroup):
         return "; ".join(filter(None, (edge if pair.edge else "", self._unknown)))
 
 
-def largest_contact(pairs: Sequence[Row]) -> LargestContact | None:
-    """The contacts of the rows of pairs.csv; None without rows."""
+def largest_contact(
+    pairs: Sequence[Row], errors: ContactErrorShares = UNKNOWN
+) -> LargestContact | None:
+    """The contacts of the rows of pairs.csv; None without rows. errors : by the mesh, where they
+    are known"""
     if not pairs:
         return None
     known = [pair for pair in pairs if np.isfinite(pair["pressure_MPa"])]
@@ -167,6 +176,16 @@ def largest_contact(pairs: Sequence[Row]) -> LargestContact | None:
         edge_force_N=max(on_edges, default=0.0),
         on_edge=bool(on_edges),
         unknown_force_N=max(unknown, default=0.0),
+        error_MPa=_error(known, errors.pressure),
+        error_off_edges_MPa=_error(
+            [pair for pair in known if not pair["edge"]], errors.pressure_off_edges
+        ),
+    )
+
+
+def _error(pairs: Sequence[Row], share: float | None) -> float | None:
+    return error_of_largest(
+        pairs, lambda rows: max((pair["pressure_MPa"] for pair in rows), default=0.0), share
     )
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from swgpar.answers.answer import AnswerGroup, AnswerKind, answer, evaluation, part_answers
+from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares, error_of_largest
 from swgpar.results.history import Row
 
 
@@ -27,6 +29,7 @@ class LoadSharing(AnswerGroup):
     largest_line_load_Nmm : None where no contact is known
     opposing_torque_share : over the sum of all absolute values, mean
     torque_error : largest, over the sum of their absolute values
+    force_share_error, force_error, line_load_error : None where they are not known
     """
 
     pairs: Spread = part_answers(
@@ -56,11 +59,18 @@ class LoadSharing(AnswerGroup):
         exact=True,
     )
     largest_force_share: float = answer(
-        "sharing.largest_force_share", "largest share of one tooth in the force of all pairs"
+        "sharing.largest_force_share",
+        "largest share of one tooth in the force of all pairs",
+        error="force_share_error",
     )
-    largest_force_N: float = answer("sharing.largest_force", "largest force of one pair", "N")
+    largest_force_N: float = answer(
+        "sharing.largest_force", "largest force of one pair", "N", error="force_error"
+    )
     largest_line_load_Nmm: float | None = answer(
-        "sharing.largest_line_load", "largest line load of one pair", "N/mm"
+        "sharing.largest_line_load",
+        "largest line load of one pair",
+        "N/mm",
+        error="line_load_error",
     )
     opposing_torque_share: float = answer(
         "sharing.opposing_torque_share",
@@ -73,6 +83,9 @@ class LoadSharing(AnswerGroup):
         detail=True,
         exact=True,
     )
+    force_share_error: float | None = None
+    force_error: float | None = None
+    line_load_error: float | None = None
 
     TITLE = "load sharing over the rotation"
     IN_PROGRAMS = False
@@ -84,6 +97,7 @@ def load_sharing(
     increments: Sequence[int],
     teeth: int,
     copies: int,
+    errors: ContactErrorShares = UNKNOWN,
 ) -> LoadSharing | None:
     """Numbers of pairs and largest shares over increments; None without pairs in them.
 
@@ -93,12 +107,13 @@ def load_sharing(
     tooth_torque : N mm, of all teeth on the flexible spline, for all increments of the history
     increments : numbers of those that count, from 1
     teeth : of the flexible spline;  copies : how many times the modelled part makes the whole drive
+    errors : by the mesh, where they are known
     """
     counts = []
     touching = []
     shares = []
     opposing = []
-    errors = []
+    differences = []
     chosen = [pair for pair in pairs if pair["increment"] in set(increments)]
     for increment in increments:
         here = [pair for pair in chosen if pair["increment"] == increment]
@@ -112,9 +127,16 @@ def load_sharing(
         if size > 0.0:
             shares.append(max(float(share[tooth == one].sum()) for one in np.unique(tooth)))
             opposing.append(0.5 * (size - abs(float(torque.sum()))) / size)
-            errors.append(abs(float(torque.sum()) - tooth_torque[increment - 1]) / size)
+            differences.append(abs(float(torque.sum()) - tooth_torque[increment - 1]) / size)
     if not chosen:
         return None
+
+    def largest(rows: Sequence[Row], name: str) -> float:
+        return max((row[name] for row in rows if np.isfinite(row[name])), default=0.0)
+
+    def error(name: str, share: float | None) -> float | None:
+        return error_of_largest(chosen, partial(largest, name=name), share)
+
     loads = np.array([pair["line_load_Nmm"] for pair in chosen])
     return LoadSharing(
         pairs=_spread(counts),
@@ -125,7 +147,10 @@ def load_sharing(
         if np.isfinite(loads).any()
         else None,
         opposing_torque_share=float(np.mean(opposing)),
-        torque_error=max(errors),
+        torque_error=max(differences),
+        force_share_error=error("force_share", errors.force_share),
+        force_error=error("force_N", errors.force),
+        line_load_error=error("line_load_Nmm", errors.force),
     )
 
 

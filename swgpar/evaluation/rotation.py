@@ -19,16 +19,24 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.jamming import energy_remark, jamming_remark
 from swgpar.evaluation.numerics import torque_left
 from swgpar.evaluation.period import of_period, sampling_error
+from swgpar.evaluation.period_ranges import (
+    INPUT_TORQUE,
+    CoarsePeriod,
+    PeriodRanges,
+    period_ranges,
+    range_errors,
+)
 from swgpar.evaluation.result_frame import InputTorque, input_torque
 from swgpar.largest_stress.places import STRESSES, Place
 from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import Stage
-from swgpar.results.history import DECLARED, Row, column, transmission_error
+from swgpar.results.history import DECLARED, Row, column
 
 GEAR_STRESSES = tuple(f"{body}_{stress}" for body in ("fs", "rg") for stress in STRESSES)
 """Columns of the history with the largest stresses of both bodies."""
 
-INPUT_TORQUE = "wg_torque_Nmm"
+BALANCE_SAFETY = 2.0
+"""Factor on the distance of the mean input torque from that of the energy balance."""
 
 MEAN_COLUMNS = tuple(
     sorted(
@@ -59,7 +67,10 @@ class Rotation(AnswerGroup):
 
     means, maxima : by column of the history: stresses in MPa, torque in N mm
     input : with the wave generator fixed
-    mesh_error : errors (MPa) of the means of nodal averages by the mesh, where they are known
+    range_errors : of the ranges of transmission error and input torque;  ripple_error : of the
+    ripple; None where they are not known
+    mesh_error : errors of the means where they are known: of nodal averages (MPa) by the mesh, of
+    the input torque (N mm) by the energy balance
     sampling_error : change of the means with half as many angles, with `steps.samples`
     newton_iterations_mean : of an increment
     jammed : a sentence where the mean input torque is far from that of the energy balance
@@ -69,12 +80,15 @@ class Rotation(AnswerGroup):
     means: Mapping[str, float] = part_answers(*_by_column("mean", "means", "mean", detail=False))
     input: InputTorque | None
     torque_ripple: float | None = answer(
-        "rotation.torque_ripple", "input torque, largest less smallest over mean"
+        "rotation.torque_ripple",
+        "input torque, largest less smallest over mean",
+        error="ripple_error",
     )
     transmission_error_arcsec: float | None = answer(
         "rotation.transmission_error",
         "transmission error of the ideal drive, peak to peak",
         "arcsec",
+        error="range_errors.transmission_error",
     )
     wg_torque_expected_Nmm: float = answer(
         "rotation.expected_wg_torque",
@@ -90,6 +104,8 @@ class Rotation(AnswerGroup):
     newton_iterations_mean: float | None
     jammed: str | None
     energy: str | None = None
+    ripple_error: float | None = None
+    range_errors: PeriodRanges | None = None
 
     TITLE = "over the rotation"
     IN_PROGRAMS = False
@@ -137,11 +153,13 @@ def evaluate_rotation(
     places: Mapping[str, Place],
     *,
     friction: bool,
+    coarse: CoarsePeriod | None = None,
 ) -> Rotation:
     """From the history `rows` of the computed increments.
 
     pairs : rows of pairs.csv;  friction : whether flanks have friction
     places : by which the errors of the means are known
+    coarse : the period on a coarser mesh, where it is known
     """
     kinematics, rotation = sequence.kinematics, rotation_rows(sequence, rows)
     sampled = sampled_rows(sequence, rows)
@@ -149,22 +167,23 @@ def evaluate_rotation(
     left = torque_left(rows)
     means: dict[str, float] = {}
     maxima: dict[str, float] = {}
-    ripple = deviation = half = None
+    ripple = deviation = half = ranges = None
     if sampled:
         declared = [mean.name for mean in MEAN_COLUMNS]
         names = [name for name in declared if all(name in row for row in sampled)]
         means = {name: float(np.mean([row[name] for row in sampled])) for name in names}
         maxima = {name: float(column(sampled, name).max()) for name in names}
-        angles = column(sampled, "wg_angle_deg"), column(sampled, "output_angle_deg")
-        deviation = float(np.ptp(transmission_error(*angles, kinematics.ratio)))
+        name = "tooth_torque_Nmm" if driven else INPUT_TORQUE
+        over = period_ranges(kinematics, sampled, name)
+        deviation, torque = over.transmission_error, column(sampled, name)
         if sequence.samples:
             half = sampling_error(sequence, list(rows), tuple(names))
-        torque = column(sampled, "tooth_torque_Nmm" if driven else INPUT_TORQUE)
+            ranges = range_errors(kinematics, sampled, name, coarse)
         change = half[INPUT_TORQUE] if half else 0.0
         mean = abs(float(torque.mean()))
         # without a torque and without friction it is zero, and all of it an error
         error = left + change if sequence.torque or friction else mean
-        ripple = known_quotient(float(np.ptp(torque)), mean, error)
+        ripple = known_quotient(over.torque, mean, error)
     jammed, energy = jamming_remark(sequence, sampled, means, left, pairs), None
     if not jammed:
         left += half[INPUT_TORQUE] if half else 0.0
@@ -174,7 +193,9 @@ def evaluate_rotation(
         maxima=maxima,
         torque_ripple=ripple,
         transmission_error_arcsec=deviation,
-        mesh_error=mesh_error(means, places),
+        mesh_error=mesh_error(means, places) | _torque_error(sequence, means, rows, friction),
+        ripple_error=ranges.torque / mean if ranges and ripple is not None else None,
+        range_errors=ranges,
         sampling_error=half,
         newton_iterations_mean=float(np.mean([row["newton_iterations"] for row in rotation]))
         if rotation
@@ -197,6 +218,21 @@ def sampled_rows(sequence: LoadSequence, rows: Sequence[Row]) -> list[Row]:
     if sequence.samples:
         return of_period(sequence, list(rows))
     return rotation_rows(sequence, rows)
+
+
+def _torque_error(
+    sequence: LoadSequence, means: Mapping[str, float], rows: Sequence[Row], friction: bool
+) -> dict[str, float]:
+    """Error (N mm) of the mean input torque over a sampled period; empty where it is not known.
+
+    Without friction the work of the input over a period is that of the output. So the mean torque
+    is known, and the distance from it is the error.
+    """
+    known = INPUT_TORQUE in means and sequence.samples and sequence.repeats
+    if friction or not known or not sequence.torque:
+        return {}
+    expected = sequence.kinematics.wave_generator_torque(sequence.torque)
+    return {INPUT_TORQUE: BALANCE_SAFETY * abs(means[INPUT_TORQUE] - expected) + torque_left(rows)}
 
 
 def mesh_error(means: Mapping[str, float], places: Mapping[str, Place]) -> dict[str, float]:

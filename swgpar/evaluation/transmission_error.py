@@ -14,6 +14,7 @@ from swgpar.design.deviations import Deviations, TiltedOffset
 from swgpar.design.kinematics import Kinematics
 from swgpar.design.sections import GearName
 from swgpar.evaluation.period import of_period
+from swgpar.evaluation.period_ranges import PeriodRanges
 from swgpar.evaluation.result_frame import shown_output
 from swgpar.load.load_sequence import LoadSequence
 from swgpar.results.history import Row, column, transmission_error
@@ -65,7 +66,7 @@ class SpectrumLine:
 class TorqueOverTurns:
     """Torque of the wave generator over the same angles.
 
-    spectrum : its largest orders, N mm
+    spectrum : its largest orders, N mm;  error_Nmm : of peak to peak, None where it is not known
     """
 
     mean: float = answer(
@@ -77,8 +78,10 @@ class TorqueOverTurns:
         "transmission_error.torque_peak_to_peak",
         "torque of the wave generator over the same angles, peak to peak",
         "N·mm",
+        error="torque.error_Nmm",
     )
     spectrum: tuple[SpectrumLine, ...]
+    error_Nmm: float | None = None
 
 
 @evaluation
@@ -88,12 +91,16 @@ class TransmissionError(AnswerGroup):
 
     turns, angles : turns of the wave generator, and angles that stand for them
     spectrum : its largest orders, arc seconds
+    error_arcsec : of peak to peak, None where it is not known
     """
 
     turns: float
     angles: int
     peak_to_peak: float = answer(
-        "transmission_error.peak_to_peak", "transmission error, peak to peak", "arcsec"
+        "transmission_error.peak_to_peak",
+        "transmission error, peak to peak",
+        "arcsec",
+        error="error_arcsec",
     )
     amplitude: float = answer(
         "transmission_error.amplitude",
@@ -106,6 +113,7 @@ class TransmissionError(AnswerGroup):
     )
     spectrum: tuple[SpectrumLine, ...]
     torque: TorqueOverTurns
+    error_arcsec: float | None = None
 
     TITLE = "transmission error over a period, or with deviations over whole turns"
     ASKED_BY = "steps.samples or [deviations]"
@@ -235,11 +243,16 @@ def _kinds(deviations: Deviations | None, part: str) -> list[str]:
 
 
 def evaluate_turns(
-    kinematics: Kinematics, deviations: Deviations | None, samples: int, rows: Sequence[Row]
+    kinematics: Kinematics,
+    deviations: Deviations | None,
+    samples: int,
+    rows: Sequence[Row],
+    errors: PeriodRanges | None = None,
 ) -> TransmissionError | None:
     """The transmission error from the rows of transmission_error.csv; None without rows.
 
     samples : rows of a period without deviations
+    errors : of the ranges of the ideal drive, where they are known
     """
     if not rows:
         return None
@@ -247,6 +260,7 @@ def evaluate_turns(
     turns = len(rows) * (kinematics.period_angle / per_period) / (2.0 * np.pi)
     error, torque = column(rows, "transmission_error_arcsec"), column(rows, "wg_torque_Nmm")
     causes = Causes(kinematics, deviations, turns)
+    known = errors if deviations is None else None
     return TransmissionError(
         turns=turns,
         angles=len(rows),
@@ -258,7 +272,9 @@ def evaluate_turns(
             mean=float(torque.mean()),
             peak_to_peak=float(np.ptp(torque)),
             spectrum=_named(torque, turns, causes),
+            error_Nmm=known.torque if known else None,
         ),
+        error_arcsec=known.transmission_error if known else None,
     )
 
 

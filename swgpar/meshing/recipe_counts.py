@@ -107,6 +107,17 @@ def _smallest_ratio(
     return min((ratio for ratio in ratios if ratio > 1.0), default=None)
 
 
+def with_equal_doubled(recipe: MeshRecipe, coarse: MeshRecipe) -> MeshRecipe:
+    """The recipe with twice the counts that a coarser one has too, because they are too small to be
+    coarsened; InputError if too many."""
+    return with_counts(
+        recipe,
+        lambda section, name, count: (
+            2 * count if count == getattr(getattr(coarse, section), name) else count
+        ),
+    )
+
+
 def resized(recipe: MeshRecipe, ratio: float) -> MeshRecipe:
     """The recipe with `ratio` times the elements in every direction; InputError if too many."""
     return with_counts(

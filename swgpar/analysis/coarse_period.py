@@ -1,0 +1,43 @@
+"""A sampled period on a coarser mesh, which shows the error of its ranges by the mesh."""
+
+from __future__ import annotations
+
+from swgpar.analysis.drive_mesh_error import ORDER, SAFETY, smallest_ratio
+from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.errors import ConvergenceError
+from swgpar.evaluation.period_ranges import INPUT_TORQUE, CoarsePeriod, period_ranges
+from swgpar.log import logger
+from swgpar.meshing import MeshRecipe
+from swgpar.model.drive_model import DriveModel
+
+
+def coarse_period(model: DriveModel, coarse: MeshRecipe, fine: MeshRecipe) -> CoarsePeriod | None:
+    """Take the loaded model on the mesh of `coarse` through the period that a run samples, and back
+    to its loaded state; collective.
+
+    fine : recipe of the run's mesh
+
+    None without a sampled period or a torque; in a cup drive, where it would cost a third of the
+    run; with friction, whose first period settles; and where an angle does not converge.
+    """
+    design = model.design
+    stepper = LoadStepper(model)
+    sequence = stepper.sequence
+    if design.drive.model != "plane" or not (sequence.samples and sequence.torque):
+        return None
+    if sequence.periods > 1 or design.kinematics.wave_generator_is_fixed:
+        return None
+    stepper.resume_at(sequence.loaded)
+    loaded = model.problem.x.copy()
+    rows = [stepper.row()]
+    try:
+        for state in sequence.from_loaded[1:]:
+            stepper.advance(state)
+            rows.append(stepper.row())
+    except ConvergenceError as error:
+        logger.info("the errors over the period by the mesh are not known: %s", error)
+        return None
+    finally:
+        loaded.copy(model.problem.x)
+    factor = SAFETY / (smallest_ratio(coarse, fine) ** ORDER - 1.0)
+    return CoarsePeriod(period_ranges(sequence.kinematics, rows, INPUT_TORQUE), factor)

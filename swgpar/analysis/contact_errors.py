@@ -1,0 +1,80 @@
+"""Errors by the mesh of the drive of what the contacts of its flanks give, in the plane.
+
+The loaded drive is solved on coarser meshes for the error of the tension at the teeth. The contacts
+there show the errors by the same groups of counts (`swgpar.analysis.drive_mesh_error`). They are
+shares: at other angles the same share of the value stands for the error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from swgpar.analysis.drive_mesh_error import CoarserMesh, shown_error
+from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares
+from swgpar.flank_pressure.pair_contact import PairContact
+from swgpar.meshing import MeshRecipe
+
+LEAST_PRESSURE = 0.01
+"""Least error of a pressure, as a share of it: that of the contact law on an element that is wide
+beside the contact (docs/verification/contact_pressure.md)."""
+
+LEAST_FORCE = 0.004
+"""Least error of a force, as a share of it."""
+
+Measure = Callable[[PairContact], float]
+"""What is taken of a pair; nan where it has none."""
+
+
+def contact_errors(
+    coarser: Sequence[CoarserMesh], recipe: MeshRecipe, contacts: Sequence[PairContact]
+) -> ContactErrorShares:
+    """Errors on the mesh of `recipe`, on which the loaded drive has these contacts; none of them is
+    known without coarser meshes, or in a cup drive, whose pressures have errors that no mesh
+    shows."""
+    if not coarser or not contacts or recipe.face_width is not None:
+        return UNKNOWN
+    meshes = [*((one.recipe, one.contacts) for one in coarser), (recipe, contacts)]
+
+    def error(measure: Measure, least: float) -> float | None:
+        share = _error_share(meshes, measure)
+        return None if share is None else max(share, least)
+
+    return ContactErrorShares(
+        pressure=error(lambda pair: pair.pressure_MPa, LEAST_PRESSURE),
+        pressure_off_edges=error(
+            lambda pair: np.nan if pair.edge else pair.pressure_MPa, LEAST_PRESSURE
+        ),
+        force=error(lambda pair: pair.force_N, LEAST_FORCE),
+        force_share=error(lambda pair: pair.force_share, LEAST_FORCE),
+    )
+
+
+def _error_share(
+    meshes: Sequence[tuple[MeshRecipe, Sequence[PairContact]]], measure: Measure
+) -> float | None:
+    """Error of the largest value of all pairs over that value; None where a mesh has none.
+
+    The larger one of what the largest values of all pairs show, and of what the pair that has it on
+    the finest mesh shows: another pair may have nearly as much.
+    """
+    by_pair = [
+        (
+            recipe,
+            {
+                (pair.ring, pair.tooth, pair.flank): value
+                for pair in pairs
+                if np.isfinite(value := measure(pair))
+            },
+        )
+        for recipe, pairs in meshes
+    ]
+    if not all(values for _, values in by_pair):
+        return None
+    finest = by_pair[-1][1]
+    place = max(finest, key=lambda pair: finest[pair])
+    shown = [shown_error([(recipe, max(values.values())) for recipe, values in by_pair])]
+    if all(place in values for _, values in by_pair):
+        shown.append(shown_error([(recipe, values[place]) for recipe, values in by_pair]))
+    return max(shown) / finest[place] if finest[place] > 0.0 else None

@@ -1,0 +1,106 @@
+"""Errors of pressures, forces and shares of the flanks by coarser meshes and by the increments."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import pytest
+
+from swgpar.analysis.contact_errors import LEAST_FORCE, LEAST_PRESSURE, contact_errors
+from swgpar.analysis.drive_mesh_error import (
+    ORDER,
+    SAFETY,
+    CoarserMesh,
+    coarser_recipes,
+    shown_error,
+)
+from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares, error_of_largest
+from swgpar.evaluation.period_ranges import MISSED
+from swgpar.flank_pressure.pair_contact import PairContact
+from swgpar.meshing import load_recipe
+from swgpar.meshing.recipe_counts import RATIO
+
+FINE = load_recipe("plane_coarse")
+FACTOR = SAFETY / (RATIO**ORDER - 1.0)
+"""Error over a change between two meshes."""
+
+
+def pair(tooth: int, pressure: float, *, force: float = 100.0, edge: int = 0) -> PairContact:
+    return PairContact(
+        tooth=tooth,
+        flank="clockwise",
+        ring_tooth=tooth,
+        angle_deg=0.0,
+        force_N=force,
+        force_share=0.25,
+        torque_Nmm=0.0,
+        pressure_MPa=pressure,
+        edge=edge,
+    )
+
+
+def errors(*meshes: Sequence[PairContact]) -> ContactErrorShares:
+    """Of the pairs on both coarser meshes and on the mesh itself."""
+    *coarse, fine = meshes
+    coarser = [
+        CoarserMesh(recipe, {}, pairs)
+        for recipe, pairs in zip(coarser_recipes(FINE), coarse, strict=True)
+    ]
+    return contact_errors(coarser, FINE, fine)
+
+
+def test_changes_of_both_groups_are_added() -> None:
+    found = errors([pair(1, 500.0, force=90.0)], [pair(1, 530.0)], [pair(1, 520.0)])
+    assert found.pressure == pytest.approx(FACTOR * (30.0 + 10.0) / 520.0)
+    assert found.force == pytest.approx(FACTOR * 10.0 / 100.0)
+    assert found.force_share == LEAST_FORCE  # no change at all is chance
+
+
+def test_the_pair_with_the_largest_value_is_compared_as_well() -> None:
+    """Where another pair has the largest one on a coarser mesh, the two largest can be equal."""
+    found = errors(
+        [pair(1, 500.0), pair(2, 600.0)], [pair(1, 500.0), pair(2, 600.0)], [pair(1, 600.0)]
+    )
+    assert found.pressure == pytest.approx(FACTOR * 100.0 / 600.0)
+    # a pair that one mesh does not have
+    found = errors([pair(2, 600.0)], [pair(1, 598.0)], [pair(1, 600.0)])
+    assert found.pressure == pytest.approx(max(FACTOR * 4.0 / 600.0, LEAST_PRESSURE))
+
+
+def test_pairs_on_edges_do_not_count_among_those_off_edges() -> None:
+    edge, fine = pair(2, 900.0, edge=1), [pair(1, 600.0), pair(2, 1500.0, edge=1)]
+    found = errors([pair(1, 560.0), edge], [pair(1, 580.0), edge], fine)
+    assert found.pressure_off_edges == pytest.approx(FACTOR * 40.0 / 600.0)
+    assert found.pressure == pytest.approx(FACTOR * 600.0 / 1500.0)
+    found = errors([edge], [edge], [edge])
+    assert found.pressure_off_edges is None and found.pressure == LEAST_PRESSURE
+
+
+def test_without_coarser_meshes_or_in_space_nothing_is_known() -> None:
+    assert contact_errors([], FINE, [pair(1, 600.0)]) == UNKNOWN
+    cup = load_recipe("forces")
+    coarser = [CoarserMesh(one, {}, [pair(1, 580.0)]) for one in coarser_recipes(cup)]
+    assert coarser and contact_errors(coarser, cup, [pair(1, 600.0)]) == UNKNOWN
+    # a pressure that could not be computed
+    unknown = [pair(1, math.nan)]
+    assert errors(unknown, unknown, unknown).pressure is None
+
+
+def test_every_other_increment_shows_what_lies_between() -> None:
+    rows = [{"increment": k, "p": p} for k, p in ((1, 400.0), (2, 500.0), (3, 450.0))]
+
+    def largest(some: Sequence[dict[str, float]]) -> float:
+        return max((row["p"] for row in some), default=0.0)
+
+    assert error_of_largest(rows, largest, 0.02) == pytest.approx(0.02 * 500.0 + MISSED * 50.0)
+    assert error_of_largest(rows[:1], largest, 0.02) == pytest.approx(0.02 * 400.0)
+    assert error_of_largest(rows, largest, None) is None
+
+
+def test_only_counts_that_differ_decide() -> None:
+    """A change between meshes of the same counts has no ratio."""
+    coarse, between = coarser_recipes(FINE)
+    assert shown_error([(coarse, 1.0), (between, 2.0), (FINE, 2.5)]) == pytest.approx(1.5 * FACTOR)
+    with pytest.raises(ValueError, match="empty"):
+        shown_error([(FINE, 1.0), (FINE, 2.0)])
