@@ -17,10 +17,9 @@ from swgpar.results.history import Row, column, transmission_error
 
 INPUT_TORQUE = "wg_torque_Nmm"
 
-MISSED = 2.0 / 3.0
-"""Error of a largest value by the angles, over what every other angle changes. A smooth curve rises
-between angles by the square of their distance above the larger of both: a third of that change; the
-factor 2 is that of the errors by the mesh."""
+MISSED = 1.0 / 3.0
+"""Error of a largest value by the angles, over what every other angle changes: a smooth curve rises
+between angles by the square of their distance."""
 
 
 @dataclass(frozen=True)
