@@ -25,10 +25,11 @@ from _drafting import (
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgpar.geometry.cams import Cam
+from swgpar.geometry.cams import Cam, make_cam
 from swgpar.geometry.cams.arcs import arcs
 from swgpar.geometry.cams.elliptical import EllipticalCam
 from swgpar.geometry.cams.harmonic import HarmonicCam
+from swgpar.geometry.cams.keys import Points, Polar
 from swgpar.geometry.cams.parabolic import Side, parabolic, solve_quarter
 from swgpar.geometry.cams.piecewise import Parabola
 from swgpar.geometry.cams.rollers import RollerCam, rollers
@@ -215,6 +216,29 @@ def draw_rollers(ax: Axes) -> None:
     leader(ax, (0.0, -5.6), "circle of the centres,\ncentre_radius", on_circle)
 
 
+def draw_polar(ax: Axes) -> None:
+    """A cam from an expression, and points of another one."""
+    polynomial = "s = 2 * theta / pi; a - (a - b) * (10 * s**3 - 15 * s**4 + 6 * s**5)"
+    cam = make_cam(Polar(type="polar", face_width=1.0, radius=polynomial), A, B)
+    base(ax, cam, "polar")
+    angle = np.radians(50.0)
+    point = cam.outline(360)[50]
+    ax.plot([0, point[0]], [0, point[1]], color=NOTE, lw=0.7)
+    angle_mark(ax, (0, 0), 4.2, 90.0, 90.0 + np.degrees(angle), r"$\theta$", out=1.25)
+    text = "radius: an expression of $\\theta$, $a$, $b$\nand parameters; here 3-4-5 polynomial"
+    label(ax, (0.0, -4.6), text, color=INK)
+    semi_axes(ax)
+
+
+def draw_points(ax: Axes) -> None:
+    points = EllipticalCam(A, B).outline(72)[:37]
+    keys = Points(type="points", face_width=1.0, points=points[:19].tolist())
+    base(ax, make_cam(keys, A), "points")
+    ax.plot(*points[:19].T, "o", color=NOTE, ms=4)
+    ax.plot(*points[19:].T, "o", mfc="none", mec=NOTE, ms=4)
+    label(ax, (0.0, -4.6), "points of half a lobe, of a lobe,\nor of the whole cam", color=INK)
+
+
 def draw_two_rollers(ax: Axes) -> None:
     radius = 4.2
     cam = rollers(A - radius, 0.0, radius, "r_2")
@@ -269,6 +293,8 @@ def cams() -> Figure:
         draw_asymmetric,
         draw_rollers,
         draw_two_rollers,
+        draw_polar,
+        draw_points,
         partial(draw_harmonic, lobes=2),
         partial(draw_harmonic, lobes=3),
         draw_pins,

@@ -26,6 +26,10 @@ CAMS = {
         "right": {"a_p": 0.0095, "C_p": 0.45, "r_c": 12.0},
         "left": {"a_p": 0.0097, "C_p": 0.51, "r_c": 10.0},
     },
+    "3-4-5 polynomial": {
+        "type": "polar",
+        "radius": "s = 2 * theta / pi; a - (a - b) * (10 * s**3 - 15 * s**4 + 6 * s**5)",
+    },
     "four rollers": {"type": "four_roller", "beta": 25.0, "r_4": 15.0},
     "two rollers": {"type": "two_roller", "r_2": 20.0},
 }

@@ -61,10 +61,10 @@ def allowed_values(field: FieldInfo) -> str:
         return " or ".join(f"`{option}`" for option in options)
     if field.annotation is bool:
         return "true or false"
-    if field.annotation is str:
+    if field.annotation in (str, str | None):
         return "a text"
     if get_origin(field.annotation) is list:
-        kinds = {str: "texts", Any: "values"}
+        kinds = {str: "texts", Any: "values", list[float]: "pairs of numbers"}
         return (
             f"a list of "
             f"{kinds.get(options[0], 'tables' if get_origin(options[0]) is dict else 'numbers')}"

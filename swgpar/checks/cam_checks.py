@@ -9,7 +9,7 @@ import scipy
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.geometry.cams import FourRoller
-from swgpar.geometry.cams.keys import Harmonic, Reduced
+from swgpar.geometry.cams.keys import Harmonic, Points, Polar, Reduced
 from swgpar.input.require import require, require_available
 
 UNIQUE = 0.25
@@ -19,8 +19,9 @@ are not unique."""
 SMALLEST_MINOR_AXIS = 0.4
 """Smallest minor semi-axis of a cam over the inner radius of the flexible spline."""
 
-OUTLINE_POINTS = 2000
-"""Points of the cam's outline at which its largest radius is measured."""
+OUTLINE_POINTS, CURVE_POINTS = 2000, 7200
+"""Points of the cam's outline at which its largest radius is measured, and at which a curve from
+points or from an expression is looked at."""
 
 DEFLECTION_KEYS = ("deflection", "major_axis", "centre_radius")
 """Keys of a cam that set the deflection: one of them may be given."""
@@ -30,10 +31,10 @@ def check_cam(design: DriveDesign) -> None:
     """Raise InputError for the first key of the cam that does not fit the others or the bore."""
     wave = design.wave_generator
     require_available(
-        wave.lobes == 2 or isinstance(wave, Harmonic),
+        wave.lobes == 2 or isinstance(wave, Harmonic | Polar | Points),
         f"wave_generator.lobes = {wave.lobes}",
         f'wave_generator.type = "{wave.type}"',
-        'with "harmonic"',
+        'with "harmonic", "polar" or "points"',
     )
     _check_deflection(design)
     if isinstance(wave, FourRoller):
@@ -43,11 +44,16 @@ def check_cam(design: DriveDesign) -> None:
         _check_minor_axis(design, wave)
     if isinstance(wave, Harmonic):
         _check_concave(design, wave)
+    if isinstance(wave, Polar | Points):
+        _check_curve(design)
 
 
 def _check_deflection(design: DriveDesign) -> None:
     """A deflection from one key, above 0 and below half the bore."""
     wave, bore, deflection = design.wave_generator, design.inner_radius, 0.5 * design.deflection
+    if isinstance(wave, Points):
+        _require_points_fit(wave, bore, deflection)
+        return
     given = [key for key in DEFLECTION_KEYS if getattr(wave, key, None) is not None]
     if len(given) > 1:
         raise InputError(
@@ -68,6 +74,20 @@ def _check_deflection(design: DriveDesign) -> None:
         allowed = f"above {lowest:.6g} to below {highest:.6g} mm (a deflection of half the bore's"
         allowed += " radius)"
         require(0.0 < deflection < 0.5 * bore, f"wave_generator.{given[0]}", value, allowed)
+
+
+def _require_points_fit(wave: Points, bore: float, deflection: float) -> None:
+    """Points set the deflection, and lie outside of the bore at the major axis."""
+    if wave.deflection is not None:
+        raise InputError(
+            f"wave_generator.deflection = {wave.deflection:g} is given beside points, which set "
+            f"the deflection, {deflection:.6g} mm: allowed is one of them"
+        )
+    if not 0.0 < deflection < 0.5 * bore:
+        raise InputError(
+            f"wave_generator.points have the radius {bore + deflection:.6g} mm at the major axis: "
+            f"allowed above {bore:.6g} mm (the bore) to below {1.5 * bore:.6g} mm"
+        )
 
 
 def _check_minor_axis(design: DriveDesign, wave: Reduced) -> None:
@@ -110,6 +130,31 @@ def _check_concave(design: DriveDesign, wave: Harmonic) -> None:
             allowed = f"{2.0 * root:.6g} {reason} below {2.0 * a:.6g} mm"
             require(False, "wave_generator.minor_axis", wave.minor_axis, allowed)
         require(False, "wave_generator.C", wave.C, f"{wave.C * root / b:.4g} {reason} 1")
+
+
+def _check_curve(design: DriveDesign) -> None:
+    """A curve that is not much smaller than the bore anywhere, and has one foot for each point of
+    the bore."""
+    cam, bore = design.cam(), design.inner_radius
+    outline = cam.outline(CURVE_POINTS)
+    radius, curvature = np.hypot(*outline.T), cam.evaluate(outline)[2]
+    angle = np.degrees(np.arctan2(-outline[:, 0], outline[:, 1]))
+    at = int(radius.argmin())
+    if radius[at] < SMALLEST_MINOR_AXIS * bore:
+        raise InputError(
+            f"wave_generator ({design.wave_generator.type}) has the radius {radius[at]:.4g} mm at "
+            f"{angle[at]:.4g} degrees from the major axis: allowed from "
+            f"{SMALLEST_MINOR_AXIS * bore:.4g} mm ({SMALLEST_MINOR_AXIS:g} of the bore's)"
+        )
+    room = 1.0 + curvature * np.maximum(bore - radius, 0.0) - UNIQUE
+    at = int(room.argmin())
+    if room[at] < 0.0:
+        raise InputError(
+            f"wave_generator ({design.wave_generator.type}) is concave with the radius "
+            f"{-1.0 / curvature[at]:.4g} mm at {angle[at]:.4g} degrees from the major axis, "
+            f"{bore - radius[at]:.4g} mm inside of the bore: allowed radii above "
+            f"{(bore - radius[at]) / (1.0 - UNIQUE):.4g} mm there"
+        )
 
 
 def check_outline(design: DriveDesign) -> None:

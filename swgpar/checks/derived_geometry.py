@@ -6,7 +6,7 @@ import numpy as np
 
 from swgpar.checks.clearance import WORDS, Clearance, clearances
 from swgpar.design.drive_design import DriveDesign
-from swgpar.geometry.cams import Cam, pin_travel, taut_length
+from swgpar.geometry.cams import Cam, PolarCam, pin_travel, taut_length
 from swgpar.geometry.profiles.rigid_teeth import RigidMesh
 
 
@@ -16,6 +16,13 @@ def _smallest(cam: Cam, lobes: int) -> dict[str, float]:
     if lobes == 2:
         return {"b, half width of the cam (mm)": float(outline[:, 0].max())}
     return {"b, smallest radius of the cam (mm)": float(np.hypot(*outline.T).min())}
+
+
+def _deviation(cam: Cam) -> dict[str, float]:
+    """Deviation of a cam from its points, or from its expression; none of other cams."""
+    if not isinstance(cam, PolarCam):
+        return {}
+    return {"largest deviation of the cam from what is given (mm)": cam.deviation}
 
 
 def derived_geometry(design: DriveDesign) -> dict[str, float]:
@@ -30,6 +37,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         "d, diametral deflection (mm)": design.deflection,
         "a, major semi-axis (mm)": design.major_semi_axis,
         **_smallest(cam, design.wave_generator.lobes),
+        **_deviation(cam),
         "taut length of cam / inner perimeter - 1": taut_length(cam)
         / (2.0 * np.pi * design.inner_radius)
         - 1.0,

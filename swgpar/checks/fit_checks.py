@@ -68,9 +68,9 @@ def _check_conjugate(design: DriveDesign) -> None:
                 f"for one"
             )
         require_available(
-            design.wave_generator.type != "asymmetric_parabolic",
+            design.wave_generator.is_mirror_symmetric,
             f'{name}.type = "conjugate"',
-            'wave_generator.type = "asymmetric_parabolic"',
+            f'wave_generator.type = "{design.wave_generator.type}" whose sides differ',
             "are cams with two axes of symmetry, because both flanks of a tooth are mirror images",
         )
         half = 0.5 * design.drive.face_width if design.has_cup else 0.0

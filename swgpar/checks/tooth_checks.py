@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GearName
+from swgpar.geometry.cams import FourRoller
 from swgpar.input.require import require
 
 ROUND_OFF = 1e-9
@@ -38,8 +39,15 @@ def _faced(design: DriveDesign) -> list[tuple[GearName, GearName]]:
 def _room(design: DriveDesign, gear: GearName, faced: GearName) -> float:
     """From the tips of a gear to the root circle of the one it faces at the major axis, mm."""
     teeth, other = design.teeth(gear), design.teeth(faced)
-    between = abs(teeth.r_pitch - other.r_pitch) - 0.5 * design.deflection
+    between = abs(teeth.r_pitch - other.r_pitch) - _lobe_deflection(design)
     return between + other.dedendum - teeth.addendum
+
+
+def _lobe_deflection(design: DriveDesign) -> float:
+    """Radial deflection at the major axis, mm: between four rollers that of the neutral line."""
+    if isinstance(design.wave_generator, FourRoller):
+        return design.tooth_motion().line.deflections[0]
+    return 0.5 * design.deflection
 
 
 def tooth_remarks(design: DriveDesign) -> list[str]:

@@ -128,9 +128,7 @@ class DriveDesign(Design):
         axis. The balls of a bearing are placed on one side of it or the other. With bolts no other
         state mirrors it."""
         return (
-            self.wave_generator.type != "asymmetric_parabolic"
-            and self.bearing is None
-            and not self.is_bolted
+            self.wave_generator.is_mirror_symmetric and self.bearing is None and not self.is_bolted
         )
 
     @property

@@ -19,7 +19,10 @@ SectionType = TypeVar("SectionType", bound=Section)
 
 
 def read_toml(path: str | Path) -> dict[str, Any]:
-    """Read a TOML file; every failure is an `InputError` of one sentence that names the file."""
+    """Read a TOML file; every failure is an `InputError` of one sentence that names the file.
+
+    Keys with the name `file` in its sections are paths relative to the folder of the file.
+    """
     path = Path(path)
     try:
         text = path.read_bytes().decode("utf-8-sig")
@@ -33,10 +36,20 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         reason = getattr(error, "strerror", None) or error
         raise InputError(f"{show(str(path))} cannot be read: {reason}") from None
     try:
-        return tomllib.loads(text)
+        return _with_folder(tomllib.loads(text), path.parent)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
         reason = " ".join(str(error).split())
         raise InputError(f"{path} is not valid TOML: {reason}") from None
+
+
+def _with_folder(table: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """The table with the paths of its sections below a folder."""
+    for section in table.values():
+        if isinstance(section, dict):
+            if isinstance(section.get("file"), str):
+                section["file"] = str(folder / section["file"])
+            _with_folder(section, folder)
+    return table
 
 
 def require_source(name: str, value: Any) -> None:

@@ -28,6 +28,11 @@ CAMS = {
     "asymmetric_parabolic": {"rotational_angle": 0.5, "right": SIDE, "left": {**SIDE, "r_c": 12.0}},
     "four_roller": {"beta": 10.0, "r_4": 8.0},
     "two_roller": {"r_2": 20.0},
+    "polar": {"radius": "a - (a - b) * sin(theta)**2"},
+    "points": {
+        "coordinates": "polar",
+        "points": [[5.0 * k, 58.2 + np.cos(np.radians(10.0 * k))] for k in range(19)],
+    },
 }
 
 

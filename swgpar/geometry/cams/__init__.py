@@ -14,6 +14,8 @@ from swgpar.geometry.arrays import SignedDistance
 from swgpar.geometry.cams.arcs import arcs
 from swgpar.geometry.cams.bearing_keys import Bearing
 from swgpar.geometry.cams.elliptical import EllipticalCam
+from swgpar.geometry.cams.from_expression import expression_cam
+from swgpar.geometry.cams.from_points import points_cam
 from swgpar.geometry.cams.harmonic import HarmonicCam
 from swgpar.geometry.cams.keys import (
     Arcs,
@@ -22,11 +24,14 @@ from swgpar.geometry.cams.keys import (
     FourRoller,
     Harmonic,
     Parabolic,
+    Points,
+    Polar,
     Simplified,
     TwoRoller,
     WaveGenerator,
 )
 from swgpar.geometry.cams.parabolic import Side, parabolic
+from swgpar.geometry.cams.polar import PolarCam
 from swgpar.geometry.cams.rollers import RollerCam, rollers
 from swgpar.geometry.cams.simplified import simplified
 
@@ -83,6 +88,10 @@ def make_cam(
         right = Side(keys.right.a_p, keys.right.C_p, keys.right.r_c, f"{name}.right")
         left = Side(keys.left.a_p, keys.left.C_p, keys.left.r_c, f"{name}.left")
         return parabolic(a, b, right, left, float(np.radians(keys.rotational_angle)))
+    if isinstance(keys, Polar):
+        return expression_cam(keys, a, b, name)
+    if isinstance(keys, Points):
+        return points_cam(keys, name)
     raise TypeError(f"no curve for {type(keys).__name__}")
 
 
@@ -115,6 +124,7 @@ __all__ = [
     "EllipticalCam",
     "FourRoller",
     "HarmonicCam",
+    "PolarCam",
     "RollerCam",
     "TwoRoller",
     "WaveGenerator",

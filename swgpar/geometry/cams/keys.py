@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, field_validator
 
 from swgpar.geometry.cams.bearing_keys import Bearing
 from swgpar.input.quantities import Section, default_type, quantity
@@ -30,6 +30,11 @@ class _WaveGenerator(Section):
     # far as 30 degrees from it, and rollers wherever they are: the pins have to reach that far.
     pin_half_angle: float = _pins(60.0)
     bearing: Bearing | None = None
+
+    @property
+    def is_mirror_symmetric(self) -> bool:
+        """Whether both sides of a lobe are mirror images."""
+        return True
 
 
 class Reduced(_WaveGenerator):
@@ -105,6 +110,76 @@ class AsymmetricParabolic(Reduced):
     right: SideKeys
     left: SideKeys
 
+    @property
+    def is_mirror_symmetric(self) -> bool:
+        """Whether both sides of a lobe are mirror images."""
+        return False
+
+
+class Polar(Reduced):
+    """The radius is an expression of the polar angle, with two lobes or three."""
+
+    type: Literal["polar"] = quantity("polar", text="kind of cam")
+    radius: str = quantity(
+        text="radius in mm, an expression of the angle theta from the tip of a lobe, in rad up to "
+        "midway between two lobes, of the semi-axes a and b and of parameters"
+    )
+    parameters: dict[str, float] = quantity({}, text="names of the expression with their values")
+
+    def __hash__(self) -> int:
+        return hash(self.model_dump_json())
+
+
+class Points(_WaveGenerator):
+    """A curve through points of the whole cam, of a lobe or of half a lobe, with two lobes or
+    three."""
+
+    type: Literal["points"] = quantity("points", text="kind of cam")
+    points: list[list[float]] = quantity(
+        [], text="pairs of numbers around the axis; a file takes their place"
+    )
+    file: str | None = quantity(
+        None, text="CSV or DXF file of the points, relative to the design file"
+    )
+    layer: str | None = quantity(None, text="layer of a DXF file; without it the model space")
+    coordinates: Literal["cartesian", "polar"] = quantity(
+        "cartesian",
+        text="x and y in mm, or angle in degrees from the major axis, counter-clockwise, and "
+        "radius in mm",
+    )
+    rotation: float = quantity(
+        0.0,
+        unit="deg",
+        text="rotation of the points, counter-clockwise, that puts the major axis on +y",
+        ge=-360.0,
+        le=360.0,
+    )
+    symmetric: bool = quantity(True, text="whether both sides of a lobe are mirror images")
+    tolerance: float = quantity(
+        0.0005, unit="mm", text="mean distance of the points from the smooth curve", ge=0.0
+    )
+
+    @field_validator("points", mode="before")
+    @classmethod
+    def _without_round_off(cls, value: Any) -> Any:
+        """Coordinates to 1e-9: zeros of other programs are 1e-16, which would be slips."""
+        if not isinstance(value, list):
+            return value
+        return [
+            [round(x, 9) if isinstance(x, float) else x for x in point]
+            if isinstance(point, list)
+            else point
+            for point in value
+        ]
+
+    @property
+    def is_mirror_symmetric(self) -> bool:
+        """Whether both sides of a lobe are mirror images."""
+        return self.symmetric
+
+    def __hash__(self) -> int:
+        return hash(self.model_dump_json())
+
 
 class _Rollers(_WaveGenerator):
     """Cams of rollers, whose outermost points are w0 outside of the undeformed spline."""
@@ -141,6 +216,8 @@ WaveGenerator = Annotated[
     | Arcs
     | Parabolic
     | AsymmetricParabolic
+    | Polar
+    | Points
     | TwoRoller
     | FourRoller,
     Field(discriminator="type"),
