@@ -1,16 +1,22 @@
 """One drive of the effectivity benchmark on one mesh, in a process of its own.
 
 The argument is the case as JSON: `part`, `table` (content of the design file), `mesh`, `times`
-(elements in every direction over those of the mesh; 1 for the usual run) and `samples` (angles of
-the period over the usual ones). The output is JSON: by quantity the value, the error that the run
-states, why there is none, and the place; what the run says of itself; elements and seconds.
+(elements in every direction over those of the mesh; 1 for the usual run), `counts` (by section and
+name, counts of the mesh that are replaced) and `samples` (angles of the period over the usual
+ones). The output is JSON, by stage ("usual" and, where `times` is not 1, "reference"): by answer
+the value, the error that the run states, why there is none, and the place; what the run says of
+itself; elements, seconds and memory. The log of the run goes to standard error.
 
 A reference has one window more than the usual run, with smaller elements than the last usual one.
+In the wall of a cup its rings are finer by 1.5, and there is one more slice. That of a cup drive
+under load starts from the state of the usual run, so that this is computed first.
 """
 
 from __future__ import annotations
 
 import json
+import logging
+import resource
 import sys
 import time
 from collections.abc import Mapping
@@ -19,11 +25,20 @@ from typing import Any
 from mpi4py import MPI
 
 import swgpar
+from swgpar.analysis import run_drive
+from swgpar.analysis.coarse_start import transfer
+from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.shortcuts import SAMPLES
 from swgpar.answers.answer import Answer
-from swgpar.errors import SwgparError
-from swgpar.largest_stress import root_stress
-from swgpar.meshing.recipe_counts import resized
+from swgpar.design.drive_design import DriveDesign
+from swgpar.drive_results.drive_data import DriveData
+from swgpar.errors import ConvergenceError, SwgparError
+from swgpar.input.toml_file import validate
+from swgpar.largest_stress import root_stress, wall_stress
+from swgpar.meshing import MeshRecipe
+from swgpar.meshing.recipe_counts import refined, resized
+from swgpar.meshing.wall_sector import WallCounts
+from swgpar.model.drive_model import DriveModel
 
 PARTS: dict[str, tuple[str, ...]] = {
     "loaded": (
@@ -48,47 +63,121 @@ DESIGNS: dict[str, dict[str, Any]] = {
 """Values of the design by part."""
 
 
-def found(answers: Mapping[str, Answer], names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
-    """Values, errors and places by quantity."""
+FINER_RINGS = WallCounts(6, 3), WallCounts(9, 4)
+FINER_SLICE = WallCounts(64, 32, 0.0625)
+"""Of the wall in references."""
+
+
+def found(answers: Mapping[str, Answer]) -> dict[str, dict[str, Any]]:
+    """Values, errors and places of all answers."""
     return {
         name: {
-            "value": answers[name].value,
-            "error": answers[name].error,
-            "no_error": answers[name].no_error,
-            "place": answers[name].place,
+            "value": one.value,
+            "error": one.error,
+            "no_error": one.no_error,
+            "place": one.place,
         }
-        for name in names
-        if name in answers and answers[name].value is not None
+        for name, one in answers.items()
+        if one.value is not None
     }
 
 
-def solve(case: dict[str, Any]) -> dict[str, Any]:
-    """The case's numbers; collective."""
+def reference_recipe(recipe: MeshRecipe, times: float) -> MeshRecipe:
+    """The recipe of a reference: counts of a cup drive are small, and rounded up."""
+    return resized(recipe, times) if recipe.face_width is None else refined(recipe)
+
+
+def with_finer_windows(model: str) -> None:
+    """Resolve stresses with one window more."""
+    root_stress.LEVELS[model] += 1
+    wall_stress.RINGS = FINER_RINGS
+    wall_stress.SLICES = (*wall_stress.SLICES, FINER_SLICE)
+
+
+def replaced(recipe: MeshRecipe, counts: Mapping[str, Mapping[str, int]]) -> MeshRecipe:
+    """The recipe with other counts."""
+    content = recipe.model_dump(exclude_none=True)
+    for section, values in counts.items():
+        content[section] |= values
+    return validate(MeshRecipe, content)
+
+
+def keep_models(models: list[DriveModel]) -> None:
+    """Let every further run append its model, which it does not release."""
+    finish = run_drive.DriveRun.finish
+
+    def finish_and_keep(run: run_drive.DriveRun, name: str) -> DriveData:
+        models.append(run.model)
+        run.model.destroy = lambda: None
+        return finish(run, name)
+
+    run_drive.DriveRun.finish = finish_and_keep
+
+
+def start_from(usual: DriveModel) -> None:
+    """Let every further run start from the loaded state of this model."""
+    start = run_drive.start_at_load
+
+    def start_at_load(stepper: LoadStepper, *others: Any) -> bool:
+        loaded = stepper.sequence.loaded
+        try:
+            with stepper.model.phases("start"):
+                transfer(usual, usual.problem.x, stepper.model, stepper.problem.x)
+                stepper.load_state = loaded
+                stepper.advance(loaded)
+        except ConvergenceError:
+            stepper.reset()
+            return start(stepper, *others)
+        return True
+
+    run_drive.start_at_load = start_at_load
+
+
+def solve(case: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """The case's numbers by stage; collective."""
     part, model = case["part"], case["table"]["drive"]["model"]
     recipe, values = swgpar.load_mesh(case["mesh"]), DESIGNS[part]
-    if case["times"] != 1.0:
-        recipe = resized(recipe, case["times"])
-        root_stress.LEVELS[model] += 1
     if part == "period":
         values = {**values, "steps.samples": case["samples"] * SAMPLES[model]}
     design = swgpar.load_design(case["table"]).with_values(values)
+    if case["times"] == 1.0:
+        return {"usual": run(design, replaced(recipe, case["counts"]))}
+    done = {}
+    if model == "cup" and part == "loaded":
+        models: list[DriveModel] = []
+        keep_models(models)
+        done["usual"] = run(design, recipe)
+        start_from(models[0])
+    with_finer_windows(model)
+    finer = replaced(reference_recipe(recipe, case["times"]), case["counts"])
+    return {**done, "reference": run(design, finer)}
+
+
+def run(design: DriveDesign, recipe: MeshRecipe) -> dict[str, Any]:
+    """The numbers of a run; collective."""
     begin = time.perf_counter()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_utime
     summary = swgpar.run(design, recipe, progress=False).summary
     said = (summary.rotation.jammed, summary.rotation.energy)
+    used = resource.getrusage(resource.RUSAGE_SELF)
     return {
-        "answers": found(summary, PARTS[part]),
+        "answers": found(summary),
         "remarks": [text for text in said if text],
         "edge": bool(summary.contact and summary.contact.on_edge),
         "elements": summary.elements,
         "wall_s": time.perf_counter() - begin,
+        "cpu_s": used.ru_utime - before,
+        "phases_s": dict(summary.phases_s),
+        "memory_GB": 1e-6 * used.ru_maxrss,
     }
 
 
 def main() -> None:
+    logging.basicConfig(level=logging.INFO, format="%(message)s")
     try:
         result = solve(json.loads(sys.argv[1]))
     except SwgparError as error:
-        result = {"failed": str(error)}
+        result = {stage: {"failed": str(error)} for stage in ("usual", "reference")}
     if MPI.COMM_WORLD.rank == 0:
         print(json.dumps(result))
 

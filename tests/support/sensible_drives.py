@@ -64,23 +64,32 @@ class SensibleDrive:
     kind: str
 
 
-def sensible_drives(count: int, seed: int, model: str = "plane") -> list[SensibleDrive]:
-    """The first `count` drives of a seed."""
+def sensible_drives(
+    count: int, seed: int, model: str = "plane", most_modelled: int | None = None
+) -> list[SensibleDrive]:
+    """The first `count` drives of a seed.
+
+    most_modelled : drives of which more teeth of the flexible spline are modelled are left out
+    """
     found: list[SensibleDrive] = []
     number = 0
     while len(found) < count:
-        drive = _drive(seed, number, model)
+        drive = _drive(seed, number, model, most_modelled)
         number += 1
         if drive is not None:
             found.append(drive)
     return found
 
 
-def _drive(seed: int, number: int, model: str) -> SensibleDrive | None:
-    """The drive of a number; None where its teeth overlap whatever their backlash, or where it
-    cannot be built."""
+def _drive(
+    seed: int, number: int, model: str, most_modelled: int | None = None
+) -> SensibleDrive | None:
+    """The drive of a number; None where its teeth overlap whatever their backlash, where it cannot
+    be built, or where too much of it is modelled."""
     rng = np.random.default_rng((seed, number, len(model)))
     case = _case(rng, model)
+    if most_modelled is not None and _modelled(case) > most_modelled:
+        return None
     table = read_toml(BASE)
     for key, value in case.items():
         table = with_value(table, key, value)
@@ -95,6 +104,13 @@ def _drive(seed: int, number: int, model: str) -> SensibleDrive | None:
             continue
         return SensibleDrive(f"{model[0]}{number:03d}", model, thinner, _words(thinner))
     return None
+
+
+def _modelled(case: Case) -> float:
+    """Teeth of the flexible spline that are modelled, as of `DriveDesign.copies`."""
+    lobes = case["wave_generator"].get("lobes", 2)
+    teeth = case["drive.teeth_fs"], case["drive.teeth_rg"]
+    return teeth[0] / lobes if all(number % lobes == 0 for number in teeth) else teeth[0]
 
 
 def _words(table: dict[str, Any]) -> str:
