@@ -28,7 +28,7 @@ def cells() -> Figure:
     master."""
     stations = Stations.of(2, plane=False)
     row, low, high = divided(
-        np.array([[SHIFT, 0.0]]), -np.ones(1), LINES[0], np.full(1, CELLS_ON_FACE)
+        np.array([[SHIFT, 0.0]]), -np.ones(1), LINES[0], np.full((1, 1), CELLS_ON_FACE)
     )
     figure, axes = plt.subplots(1, 2, figsize=(9.5, 4.4))
     for ax in axes:

@@ -75,7 +75,7 @@ class LoadStepper:
             self.residual,
             self.problem.x.copy(),
             self.problem.accepted.copy(),
-            tuple(flanks.tractions for flanks in self.problem.flanks),
+            tuple(flanks.history.tractions for flanks in self.problem.flanks),
             tuple(self.known_states),
             self._last,
             self._before,

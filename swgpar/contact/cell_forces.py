@@ -6,15 +6,15 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.contact import contact_lines
+from swgpar.contact.active_cells import ActiveCells
 from swgpar.contact.cell_placement import PlacedCells
 from swgpar.contact.contact_lines import LineForces, Strips
 from swgpar.contact.flank_pairs import FlankPairs, GapGradients
-from swgpar.contact.flank_state import ActiveCells
 from swgpar.contact.missing_compliance import MissingCompliance
 from swgpar.contact.pressed_lines import PressedLine
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
-from swgpar.kernel import add_contact_lines
+from swgpar.kernel import OVERHANG, add_contact_lines
 
 EDGE_ZONE, EDGE_SOFTNESS = 0.05, 0.02
 """Zone at the ends of the master's flank, in facets, and thickness of the elastic layer that cells
@@ -36,17 +36,19 @@ class CellForces:
     def __init__(self, slave: BodyElements, master: BodyElements) -> None:
         self.missing = _missing(slave), _missing(master)
         self.z = slave.layout.mesh.flanks[0].z
+        self._grid = self.missing[1].s, master.layout.mesh.flanks[0].z
         self.n_layer = len(self.z) - 1
         self.n_face = (len(self.missing[0].s) - 1) * self.n_layer
 
     def measured(self, pairs: FlankPairs, placed: PlacedCells, foot: np.ndarray) -> ActiveCells:
-        """Cells with their ends on both flanks; foot : (n, n_q) mm, arc lengths of their points on
-        the master."""
+        """Cells with their ends on both flanks; foot : (n, n_q, 2) mm, arc length and z of their
+        points on the master, which may lie past its ends."""
         cells, n = placed.cells, len(placed.line)
         size = pairs.faces.size[cells.parent]
         start = self.missing[0].s[cells.parent % self.n_face // self.n_layer]
         slave = Strips(start + cells.low * size[:, 0], start + cells.high * size[:, 0])
-        has_foot = np.isfinite(foot).all(axis=1)
+        has_foot = self._lies_on_master(foot)
+        foot = foot[..., 0]
         middle = np.where(has_foot, foot.mean(axis=1), 0.0)
         # two Gauss points tell the ends of a cell
         half = np.where(has_foot, 0.5 * np.sqrt(3.0) * np.abs(foot[:, 1] - foot[:, 0]), 1.0)
@@ -63,6 +65,14 @@ class CellForces:
             forces=LineForces(np.zeros(n), []),
             pressure=np.zeros_like(placed.faces.weight),
         )
+
+    def _lies_on_master(self, foot: np.ndarray) -> np.ndarray:
+        """Which cells (n,) have all of their foot points (n, n_q, 2) on the master's flank."""
+        lies = np.isfinite(foot).all(axis=(1, 2))
+        for place, nodes in zip(np.moveaxis(foot, 2, 0), self._grid):
+            low, high = OVERHANG * (nodes[1] - nodes[0]), OVERHANG * (nodes[-1] - nodes[-2])
+            lies &= (place.min(axis=1) >= nodes[0] - low) & (place.max(axis=1) <= nodes[-1] + high)
+        return lies
 
     def _edge_softness(self, middle: np.ndarray) -> np.ndarray:
         """Compliance (n,) mm / MPa of cells at places (n,) mm near the ends of the master's

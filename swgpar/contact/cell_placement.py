@@ -12,14 +12,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.contact.cells import Cells, Stations, divided
+from swgpar.contact.contact_lines import CLOSED
 from swgpar.contact.flank_pairs import Faces, FlankPairs
 
-COARSE, FINEST = 8, 10
-"""Cells of a line on a face where the overlap is looked for; most of them on a face, over those
-that are asked for in an overlap."""
+PIECES = 8
+"""Equal pieces of a line on a face. The overlap is looked for with a cell on each."""
 
-ACROSS, RESOLVED = 24, 48
-"""Cells in the overlap that are asked for: in a solve, and where pressures are reported."""
+PARTS = np.array([1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64])
+"""Cells on a piece. With other numbers between them the number would change with every half a
+percent of the overlap. A force has a jump there, so that many states would have no solution."""
+
+FINEST = 1.25
+"""Most cells of a piece, over `across`."""
+
+ACROSS, RESOLVED = 22, 44
+"""Least number of cells in the overlap: in a solve, and where pressures are reported."""
 
 PLACED = 0.2
 """Gap, over the length of a face, above which a line on it has no cells."""
@@ -52,13 +59,27 @@ class PlacedCells:
     nearest: dict[int, float]
 
 
+@dataclass(frozen=True)
+class _CoarseCells:
+    """A cell on each piece of the rows, parts of lines on a face, that are near.
+
+    closest : (n,) mm, least gap of all rows;  row : (n_row,) those that are near
+    ends : (n_row, 2) mm, their ends on the master
+    middle : (n_row, PIECES) of the cells, in [0, 1] on the face;  gap : (n_row, PIECES, 2) mm
+    """
+
+    closest: np.ndarray
+    row: np.ndarray
+    ends: np.ndarray
+    middle: np.ndarray
+    gap: np.ndarray
+
+
 class CellPlacement:
     """Places cells on the faces that can meet.
 
     flank_pairs : pairs and faces of a search;  near : (n,) faces that can meet
     n_face, n_layer : faces and layers of a flank;  stations : lines on a layer
-    gaps : gives those of faces
-    across : cells in an overlap that are asked for
     """
 
     def __init__(
@@ -69,71 +90,75 @@ class CellPlacement:
         n_face: int,
         n_layer: int,
         stations: Stations,
-        gaps: Gaps,
-        across: int,
     ) -> None:
-        self._pairs, self._gaps, self._across = flank_pairs, gaps, across
+        self._pairs = flank_pairs
         at, n_line = stations.place, len(stations.place)
-        self._share = np.tile(stations.share, len(near))
-        self._face, self._station = np.repeat(near, n_line), np.tile(at, len(near))
-        pair, face = np.divmod(self._face, n_face)
-        layer = pair * n_layer + face % n_layer
-        self._line = layer * n_line + np.tile(np.arange(n_line), len(near))
+        face, number = np.repeat(near, n_line), np.tile(np.arange(n_line), len(near))
+        pair, on_flank = np.divmod(face, n_face)
+        line = (pair * n_layer + on_flank % n_layer) * n_line + number
+        order = np.lexsort((face, line))
+        self._face, self._line = face[order], line[order]
+        self._station, self._share = at[number[order]], stations.share[number[order]]
         self._size = flank_pairs.faces.size[self._face, 0]
-        a = np.tile(np.linspace(0.0, 1.0, COARSE + 1), (len(self._face), 1))
-        b = np.repeat(self._station[:, None], COARSE + 1, axis=1)
+        a = np.tile(np.linspace(0.0, 1.0, PIECES + 1), (len(face), 1))
+        b = np.repeat(self._station[:, None], PIECES + 1, axis=1)
         self._samples = flank_pairs.faces.points(self._face, a, b, np.ones_like(a))
         sides = np.array([p.side for p in flank_pairs.pairs])
         self._side = sides[self._samples.patch]
 
-    def place(self, u: np.ndarray) -> PlacedCells:
-        """The cells for displacement u (n_local, 3) mm."""
-        gap, foot = self._gaps(self._samples, u, CONTINUATION)
-        least = _least(gap)
-        nearest = {k: float(least[self._side == k].min(initial=np.inf)) for k in (1, -1)}
-        near = np.flatnonzero(least < PLACED * self._size)
-        cells, line, faces = self._divided(near, foot, self._fineness(u, near, foot, least))
+    def place(self, u: np.ndarray, gaps: Gaps, across: int) -> PlacedCells:
+        """The cells for displacement u (n_local, 3) mm.
+
+        gaps : gives those of faces;  across : least number of cells in an overlap
+        """
+        coarse = self._coarse(u, gaps)
+        parts = self._parts(coarse, across)
+        cells, line, faces = self._divided(coarse.row, coarse.ends, parts)
+        nearest = {k: float(coarse.closest[self._side == k].min(initial=np.inf)) for k in (1, -1)}
         return PlacedCells(cells, faces, line, nearest)
 
-    def overlapping(self, u: np.ndarray) -> np.ndarray:
+    def overlapping(self, u: np.ndarray, gaps: Gaps) -> np.ndarray:
         """Numbers (n,) of the lines that touch at u."""
-        gap, foot = self._gaps(self._samples, u, CONTINUATION)
-        rows = np.flatnonzero(gap.min(axis=1) < PLACED * self._size)
-        cells, line, faces = self._divided(rows, foot, np.full(len(rows), COARSE))
-        gap, _ = self._gaps(faces, u, None)
-        return np.unique(line[gap.mean(axis=1) < 0.0])
+        coarse = self._coarse(u, gaps)
+        touching = (coarse.gap.mean(axis=2) < 0.0).any(axis=1)
+        return np.unique(self._line[coarse.row[touching]])
 
-    def _fineness(
-        self, u: np.ndarray, rows: np.ndarray, foot: np.ndarray, least: np.ndarray
-    ) -> np.ndarray:
-        """Numbers of cells of the rows (n,): as many as an overlap of their line asks for. Lines
-        that do not touch have cells too, which meet while the cells are frozen."""
-        cells, line, faces = self._divided(rows, foot, np.full(len(rows), COARSE))
-        gap, _ = self._gaps(faces, u, None)
-        size = self._pairs.faces.size[cells.parent, 0]
-        numbers, index = np.unique(line, return_inverse=True)
-        n = len(numbers)
-        if not n:
-            return np.zeros(0, dtype=np.int64)
-        overlap = np.bincount(index[:-1], _negative_parts(cells, line, gap), minlength=n)
-        closest = np.full(n, np.inf)
-        np.minimum.at(closest, index, gap.min(axis=1) / size)
-        of_row = np.searchsorted(numbers, self._line[rows])
-        np.minimum.at(closest, of_row, least[rows] / self._size[rows])
-        wanted = self._across / np.maximum(COARSE * overlap, 1e-3)
-        number = np.ceil(COARSE * np.maximum(wanted, 1.0)).astype(np.int64)
-        number = np.where(closest < TOUCHES, np.minimum(number, FINEST * self._across), COARSE)
-        return number[of_row]
+    def _coarse(self, u: np.ndarray, gaps: Gaps) -> _CoarseCells:
+        gap, foot = gaps(self._samples, u, CONTINUATION)
+        closest = _least(gap)
+        row = np.flatnonzero(closest < PLACED * self._size)
+        ends = foot[row][:, [0, -1], 0]
+        cells, _, faces = self._divided(row, ends, np.ones((len(row), PIECES), dtype=np.int64))
+        gap = gaps(faces, u, None)[0].reshape(len(row), PIECES, 2)
+        middle = 0.5 * (cells.low + cells.high).reshape(len(row), PIECES)
+        return _CoarseCells(closest, row, ends, middle, gap)
+
+    def _parts(self, coarse: _CoarseCells, across: int) -> np.ndarray:
+        """Cells (n_row, PIECES) of the pieces: as many as an overlap of their line asks for, where
+        the flanks are near. Lines that do not touch have cells too, which meet while the cells are
+        frozen."""
+        size, closest, gap = self._size[coarse.row], coarse.closest[coarse.row], coarse.gap
+        numbers, of_row = np.unique(self._line[coarse.row], return_inverse=True)
+        mean, of_cell = gap.mean(axis=2), np.repeat(of_row, PIECES)
+        overlap = np.zeros(len(numbers))
+        lengths = _negative_parts(of_cell, coarse.middle.ravel(), mean.ravel())
+        np.add.at(overlap, of_cell[:-1], lengths)
+        depth, nearest = np.zeros(len(numbers)), np.full(len(numbers), np.inf)
+        np.maximum.at(depth, of_row, -np.minimum(closest, mean.min(axis=1)))
+        np.minimum.at(nearest, of_row, np.minimum(closest, gap.min(axis=(1, 2))) / size)
+        wanted = np.minimum(across / np.maximum(PIECES * overlap, 1e-3), FINEST * across)
+        fine = PARTS[np.searchsorted(PARTS, wanted)]
+        fine[nearest >= TOUCHES] = 1
+        within = gap.min(axis=2) < (TOUCHES * size + CLOSED * depth[of_row])[:, None]
+        return np.where(within, fine[of_row][:, None], 1)
 
     def _divided(
-        self, rows: np.ndarray, foot: np.ndarray, number: np.ndarray
+        self, row: np.ndarray, ends: np.ndarray, parts: np.ndarray
     ) -> tuple[Cells, np.ndarray, Faces]:
-        """Cells of rows (n,), `number` on a face; their lines; their quadrature points."""
-        s = self._pairs.masters.s
-        row, low, high = divided(foot[rows][:, [0, -1], 0], -self._size[rows], s, number)
-        row = rows[row]
-        order = np.lexsort((low, self._face[row], self._line[row]))
-        row, low, high = row[order], low[order], high[order]
+        """Cells of rows (n_row,); their lines; their quadrature points. ends : (n_row, 2) mm, on
+        the master;  parts : (n_row, n_piece) cells of the pieces"""
+        of, low, high = divided(ends, -self._size[row], self._pairs.masters.s, parts)
+        row = row[of]
         cells = Cells(self._face[row], low, high, self._station[row], self._share[row])
         return cells, self._line[row], self._pairs.faces.of_cells(cells)
 
@@ -150,13 +175,16 @@ def _least(gap: np.ndarray) -> np.ndarray:
     return np.minimum(gap.min(axis=1), np.where(inside, vertex, np.inf))
 
 
-def _negative_parts(cells: Cells, line: np.ndarray, gap: np.ndarray) -> np.ndarray:
-    """Lengths (n - 1,), in faces, where the gap (n, 2) is negative between the middles of
-    neighbouring cells of a line."""
-    middle, mean = 0.5 * (cells.low + cells.high), gap.mean(axis=1)
-    step = np.where(np.diff(cells.parent) == 0, np.diff(middle), 1.0 + np.diff(middle))
-    depth = np.maximum(-mean, 0.0)
-    height = np.where(np.isfinite(mean), np.maximum(mean, 0.0), np.inf)
+def _negative_parts(line: np.ndarray, middle: np.ndarray, gap: np.ndarray) -> np.ndarray:
+    """Lengths (n - 1,), in faces, where the gap is negative between the middles of neighbouring
+    cells of a line.
+
+    line, middle, gap : (n,) of the cells, their middles in [0, 1] on a face, their gaps mm
+    """
+    step = np.diff(middle)
+    step = np.where(step > 0.0, step, 1.0 + step)
+    depth = np.maximum(-gap, 0.0)
+    height = np.where(np.isfinite(gap), np.maximum(gap, 0.0), np.inf)
     deep, high = depth[:-1] + depth[1:], height[:-1] + height[1:]
     share = np.divide(deep, deep + high, out=np.zeros_like(deep), where=deep > 0.0)
     return np.where(line[1:] == line[:-1], step * share, 0.0)

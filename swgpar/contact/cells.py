@@ -1,8 +1,9 @@
 """Cells of lines of contact on the faces of slave flanks.
 
 A line runs along the profile at a station of the face width. It is cut along the edges of the
-facets of both flanks, so that gap and shape functions of both sides are smooth in a cell. Cells of
-a face are equal but for the cuts: away from these they stay at their places in the material.
+facets of both flanks, so that gap and shape functions of both sides are smooth in a cell. A face
+has equal pieces, each with equal cells: away from the cuts they stay at their places in the
+material.
 """
 
 from __future__ import annotations
@@ -60,17 +61,18 @@ class Stations:
 
 
 def divided(
-    foot: np.ndarray, length: np.ndarray, lines: np.ndarray, number: np.ndarray
+    foot: np.ndarray, length: np.ndarray, lines: np.ndarray, parts: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Cells of lines: row (n,) in `foot` of each, and its ends (n,) in [0, 1].
+    """Cells of lines: row (n,) in `foot` of each, ascending, and its ends (n,) in [0, 1], ascending
+    in a row.
 
     foot : (n_row, 2) mm, place on the master of both ends of a line on a face. Places beyond the
     end of the flank lie on its straight continuation: the line is cut where the flank ends, so that
     what touches changes continuously
     length : (n_row,) mm of the face along the master, with sign, which stands in for a foot that is
     much farther off still, or across the tooth
-    lines : (m,) mm, ascending, places of the master's nodes;  number : (n_row,) of cells on a
-    whole face
+    lines : (m,) mm, ascending, places of the master's nodes
+    parts : (n_row, n_piece) cells of each of the equal pieces of a face
     """
     low, high = foot.T
     low = np.where(np.isnan(low), high - length, low)
@@ -83,17 +85,23 @@ def divided(
     crossed = lines[np.minimum(first[:, None] + step, len(lines) - 1)]
     with np.errstate(invalid="ignore", divide="ignore"):
         place = (crossed - low[:, None]) / (high - low)[:, None]
-    row = np.repeat(np.arange(len(number)), number)
-    start = np.cumsum(number) - number
-    within = np.arange(len(row)) - start[row]
-    begin, end = within / number[row], (within + 1) / number[row]
+    pieces, in_piece = parts.shape[1], parts.ravel()
+    of_piece = np.repeat(np.arange(in_piece.size), in_piece)
+    start = np.cumsum(in_piece) - in_piece
+    row, piece = np.divmod(of_piece, pieces)
+    within = np.arange(len(of_piece)) - start[of_piece]
+    begin, end = ((piece + (within + k) / in_piece[of_piece]) / pieces for k in (0, 1))
     # the end of a cell that is nearest to an edge moves there
     of, k = np.nonzero((step < count[:, None]) & (place > 0.0) & (place < 1.0))
-    nearest = np.rint(place[of, k] * number[of]).astype(np.int64)
+    along = place[of, k] * pieces
+    at = np.minimum(along.astype(np.int64), pieces - 1)
+    piece_at, number = of * pieces + at, parts.sum(axis=1)[of]
+    nearest = start[piece_at] + np.rint((along - at) * in_piece[piece_at]).astype(np.int64)
+    nearest -= start[of * pieces]
     # the end of the flank is met exactly, by cells of any width
     is_end = np.isin(first[of] + k, (0, len(lines) - 1))
-    nearest = np.where(is_end, np.clip(nearest, 1, number[of] - 1), nearest)
-    inside = (nearest > 0) & (nearest < number[of])
-    moved = (start[of] + nearest)[inside]
+    nearest = np.where(is_end, np.clip(nearest, 1, number - 1), nearest)
+    inside = (nearest > 0) & (nearest < number)
+    moved = (start[of * pieces] + nearest)[inside]
     begin[moved] = end[moved - 1] = place[of, k][inside]
     return row, begin, end

@@ -1,6 +1,7 @@
 """C++ kernels of elements, contact and friction, behind Cython."""
 
 from swgpar.kernel._contact import (
+    OVERHANG,
     add_contact_lines,
     add_face_blocks,
     add_line_compliances,
@@ -14,6 +15,7 @@ from swgpar.kernel._elements import (
 )
 
 __all__ = [
+    "OVERHANG",
     "ReferenceElements",
     "add_contact_lines",
     "add_face_blocks",

@@ -117,7 +117,12 @@ class ConvergenceTest:
             elif is_exhausted(state.residuals, self.settings.max_iterations):
                 verdict = Verdict.EXHAUSTED
             else:
-                cycles = not descending and self._is_cycling(state)
+                sticks = not is_decreasing(state.residuals, PATIENCE, MIN_DECREASE)
+                if sticks and state.breaker.solution is not None:
+                    # a solution on frozen cells is known, and cells placed anew lead nowhere
+                    verdict = Verdict.EXHAUSTED
+                else:
+                    cycles = not descending and (self._set_returns(state) or sticks)
         return Decision(
             verdict, near_solution=near, cycles=cycles, search_is_outdated=outdated, goal=goal
         )
@@ -133,10 +138,7 @@ class ConvergenceTest:
         stalled = iteration > 1 and state.residuals[-1] > STALL * state.residuals[-2]
         return norm <= (1.0 if stalled else ROUND_OFF_SHARE) * self.problem.round_off
 
-    def _is_cycling(self, state: SolveState) -> bool:
-        """Whether an active set returns, or the residual does not decrease."""
+    def _set_returns(self, state: SolveState) -> bool:
+        """Whether an active set returns; collective."""
         sets = self.problem.active_sets(state.load_state)
-        returns = state.visited.returns(
-            fingerprint(self.problem.partition.comm, sets), state.residual
-        )
-        return returns or not is_decreasing(state.residuals, PATIENCE, MIN_DECREASE)
+        return state.visited.returns(fingerprint(self.problem.partition.comm, sets), state.residual)

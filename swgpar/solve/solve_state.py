@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from swgpar.contact.flank_state import ActiveCells
+from swgpar.contact.active_cells import ActiveCells
 from swgpar.load.load_states import LoadState
 from swgpar.petsc import PETSc
 from swgpar.solve.active_set_cycles import VisitedSets

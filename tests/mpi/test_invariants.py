@@ -12,8 +12,8 @@ from pytest_mpi import parallel_assert
 
 from support.stepping import MODELS, WORLD, assert_agree, loaded, rotate, small
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.contact.active_cells import ActiveCells
 from swgpar.contact.contact import NO_KEYS
-from swgpar.contact.flank_state import ActiveCells
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.stress import body_fields
 from swgpar.load.load_states import LoadState

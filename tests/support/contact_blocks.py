@@ -342,7 +342,7 @@ class Blocks:
 
     def take_all_faces(self) -> None:
         """Evaluate all faces, also those whose middle the search finds beyond the flank's end."""
-        self.flanks._near_faces = np.arange(self.flanks.n_face)
+        self.flanks.cells.near = np.arange(self.flanks.n_face)
 
     def forces(self, u: np.ndarray) -> np.ndarray:
         """Contact forces (n, 3) N on the nodes against the motion, at u."""
@@ -370,7 +370,7 @@ class Blocks:
             if residual < 1e-8:  # round-off of positions times the stiffness of narrow cells
                 break
             if residual < 1e-3:
-                self.flanks.freeze_cells()
+                self.flanks.cells.freeze()
             stiffness = sum(mesh.tangent(u) for mesh in self.meshes) + self.tangent(u, keys)
             u.ravel()[free] -= spsolve(stiffness.tocsc()[free][:, free], r.ravel()[free], ORDERING)
         assert residual < 1e-7, residual
@@ -381,7 +381,7 @@ class Blocks:
 
     def pressed(self, contact: np.ndarray) -> Pressed:
         """The cells of the last evaluation."""
-        active = self.flanks.saved_cells()
+        active = self.flanks.cells.active
         assert active is not None
         cells, x = active.placed.cells, active.faces.coords[:, :, 0]
         middle = 0.5 * (cells.low + cells.high)

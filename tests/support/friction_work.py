@@ -43,7 +43,16 @@ def on_master(flanks: FlankContact, faces: Faces, u: np.ndarray) -> tuple[np.nda
     """Gaps (n_face, n_q) mm and foot points (n_face, n_q, 2) mm, arc length and z on the master, at
     displacement u (n_local, 3) mm."""
     rotation = flanks.ring_motion.ring_rotation(u)
-    settings = (0.0, 0.0, flanks.max_gap, flanks.pressure_limit, None, None, None, rotation)
+    settings = (
+        0.0,
+        0.0,
+        flanks.kernel.max_gap,
+        flanks.kernel.pressure_limit,
+        None,
+        None,
+        None,
+        rotation,
+    )
     gap, _, foot_point, _ = contact_flanks(
         flanks.flank_pairs.masters, faces, u, np.zeros_like(faces.weight), *settings
     )
@@ -61,7 +70,7 @@ def forces(stepper: LoadStepper) -> tuple[Forces, float]:
     """Forces of the present state, and their work over the slip since the one before; metric taken
     as one."""
     flanks, u = stepper.problem.flanks_of(RING_GEAR), stepper.problem.displacement()
-    active = flanks.saved_cells()
+    active = flanks.cells.active
     if active is None or active.friction is None:
         return NO_FORCES, 0.0
     _, place = on_master(flanks, active.faces, u)

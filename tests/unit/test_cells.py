@@ -15,7 +15,7 @@ EDGES = np.array([0.0, 0.4, 1.0, 1.7])
 def line(low: float, high: float, number: int = 16) -> tuple[np.ndarray, np.ndarray]:
     """Ends of the cells on a face whose ends have these places on the master."""
     _, begin, end = divided(
-        np.array([[low, high]]), np.array([high - low]), EDGES, np.array([number])
+        np.array([[low, high]]), np.array([high - low]), EDGES, np.array([[number]])
     )
     return begin, end
 
@@ -37,6 +37,19 @@ def test_cells_cover_the_face_and_end_at_edges(low: float, high: float, number: 
     np.testing.assert_allclose(begin[1:][far], ends[far], rtol=1e-14)
 
 
+def test_pieces_have_their_own_cells() -> None:
+    """An edge moves the nearest end, whichever piece it is in; the others stay."""
+    parts = np.array([[1, 4, 1, 1], [1, 1, 2, 1]])
+    foot = np.array([[0.9, 0.3], [2.0, 3.0]])  # the first is cut at 5/6, the second nowhere
+    row, begin, end = divided(foot, np.diff(foot, axis=1)[:, 0], EDGES, parts)
+    assert row.tolist() == [0] * 7 + [1] * 5
+    ends = [0.0, 0.25, 0.3125, 0.375, 0.4375, 0.5, 5.0 / 6.0]
+    np.testing.assert_allclose(begin[row == 0], ends, rtol=1e-14)
+    np.testing.assert_allclose(begin[row == 1], [0.0, 0.25, 0.5, 0.625, 0.75], rtol=1e-14)
+    for k in (0, 1):
+        np.testing.assert_array_equal(begin[row == k][1:], end[row == k][:-1])
+
+
 def test_cells_change_continuously_while_a_face_slides() -> None:
     """Where an edge passes from one cell's end to the next, it is in the middle between them."""
     before = line(0.9, 0.3)
@@ -50,7 +63,7 @@ def test_cells_change_continuously_while_a_face_slides() -> None:
 def test_a_foot_beyond_reach_stands_a_face_away() -> None:
     """Across the tooth there is none: the other end and the face's length place the cuts."""
     rows = np.array([[np.nan, 0.3], [0.9, np.nan], [np.nan, np.nan]])
-    length, number = np.full(3, -0.6), np.full(3, 16)
+    length, number = np.full(3, -0.6), np.full((3, 1), 16)
     row, begin, end = divided(rows, length, EDGES, number)
     for k in (0, 1):
         np.testing.assert_allclose(begin[row == k], line(0.9, 0.3)[0], atol=1e-12)

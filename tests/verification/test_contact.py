@@ -230,7 +230,7 @@ def test_tangent_of_pressed_lines(slave: int) -> None:
     forces = blocks.forces(u)
     carried = blocks.pressed(forces).force > 0.0
     assert 0.2 < carried.mean() < 0.95
-    blocks.flanks.freeze_cells()
+    blocks.flanks.cells.freeze()
     tangent, h = blocks.tangent(u, keys), 1e-10
     assert abs(tangent - tangent.T).max() < 1e-9 * abs(tangent).max()
     assert np.abs(forces.sum(axis=0)).max() < 1e-9 * np.abs(forces).sum()

@@ -249,7 +249,7 @@ def test_blocks_stick_below_the_limit() -> None:
         shear = share * limit
         force = stack.shear(shear)
         assert force == pytest.approx([-shear, stack.PRESSURE, 0.0], abs=1e-7 * stack.PRESSURE)
-        traction = stack.blocks.flanks.tractions[PAIR.key].traction
+        traction = stack.blocks.flanks.history.tractions[PAIR.key].traction
         assert np.abs(traction - [shear, 0.0]).max() < 0.01 * limit
         tied = np.column_stack([2.0 * shear / stack.YOUNG * y, -strain * y, 0.0 * y])
         # the stuck jump of every increment adds up to the traction over the tangential stiffness
@@ -273,7 +273,7 @@ def test_blocks_slip_above_the_limit() -> None:
         stack.u[top, 0] = way
         force = stack.shear(sign * limit)
         assert -sign * force[0] == pytest.approx(stack.COEFFICIENT * force[1], rel=1e-7)
-        cells = stack.blocks.flanks.saved_cells()
+        cells = stack.blocks.flanks.cells.active
         traction = cells.friction.current
         assert np.abs(traction[..., 1]).max() < 1e-3 * limit
         bound = stack.COEFFICIENT * cells.pressure
@@ -292,7 +292,7 @@ def test_tangent_of_lines_with_friction(way: float) -> None:
     u[top] += 1e-9
     keys = stack.blocks.search(u)
     forces = stack.blocks.forces(u)
-    stack.blocks.flanks.freeze_cells()
+    stack.blocks.flanks.cells.freeze()
     tangent, h = stack.blocks.tangent(u, keys), 1e-11
     assert abs(tangent - tangent.T).max() > 1e-3 * abs(tangent).max() or way < 1e-6
     assert np.abs(forces.sum(axis=0)).max() < 1e-9 * np.abs(forces).sum()
