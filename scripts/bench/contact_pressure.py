@@ -24,7 +24,7 @@ DESIGN, CUP, OUT = (
 TORQUES = (2.0, 8.0)
 """N·m, of the plane drive."""
 
-WIDTHS = (6, 12)
+WIDTHS = (6, 9, 12)
 """Elements over the face width of the cup drive."""
 
 FLANKS, REDUCTIONS = (9, 18, 36), (0.97, 1.0)

@@ -299,14 +299,16 @@ class FlankContact:
             return []
         return self.cells.pressed_lines(u, state.flank_clearance)
 
-    def add_owned_forces(self, u: np.ndarray, state: LoadState, residual: np.ndarray) -> None:
+    def add_owned_forces(
+        self, u: np.ndarray, state: LoadState, residual: np.ndarray, *, friction: bool = True
+    ) -> None:
         """Add the forces of the pairs whose flexible-spline tooth this rank owns to residual
-        (n_local, 3) N."""
+        (n_local, 3) N. friction : with it, or those of the pressures alone"""
         active = self._active
         if state.flank_clearance is None or active is None:
             return
         mine = active.owned & active.carries
-        law = None if active.friction is None else active.friction.subset(mine)
+        law = active.friction.subset(mine) if friction and active.friction is not None else None
         pressure = np.ascontiguousarray(active.pressure[mine])
         faces = active.faces.subset(mine)
         self.kernel(faces, u, pressure, state.flank_clearance, residual, None, law, beyond=SLIDING)

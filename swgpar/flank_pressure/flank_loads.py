@@ -38,12 +38,17 @@ class LineLoad:
         return total / np.linalg.norm(total)
 
 
-def nodal_flank_forces(model: DriveModel, state: LoadState, flanks: FlankContact) -> PETSc.Vec:
+def nodal_flank_forces(
+    model: DriveModel, state: LoadState, flanks: FlankContact, *, friction: bool = True
+) -> PETSc.Vec:
     """Nodal contact forces (N) of the flanks by their last evaluation; collective. Each pair counts
-    on one rank."""
+    on one rank.
+
+    friction : with it, or those of the pressures alone
+    """
     problem = model.problem
     local = np.zeros((len(problem.local_nodes), 3))
-    flanks.add_owned_forces(problem.displacement(), state, local)
+    flanks.add_owned_forces(problem.displacement(), state, local, friction=friction)
     total = create_vector(model.partition)
     total.setValuesBlocked(problem.local_nodes.number, -local, addv=PETSc.InsertMode.ADD_VALUES)
     total.assemble()
@@ -55,10 +60,17 @@ def flank_forces(
 ) -> np.ndarray:
     """Contact forces (n, n_node, 3) N of `flanks` on the nodes of the flexible spline's `teeth`
     (n,); collective."""
-    layout = model.partition.layouts[FLEXIBLE_SPLINE]
     vector = nodal_flank_forces(model, state, flanks)
-    forces = read_field(model.partition, FLEXIBLE_SPLINE, teeth - layout.first_tooth, vector)
+    forces = forces_on_teeth(model, teeth, vector)
     vector.destroy()
+    return forces
+
+
+def forces_on_teeth(model: DriveModel, teeth: np.ndarray, vector: PETSc.Vec) -> np.ndarray:
+    """Nodal forces (n, n_node, 3) N of the flexible spline's `teeth` (n,) out of those of all
+    nodes; collective."""
+    layout = model.partition.layouts[FLEXIBLE_SPLINE]
+    forces = read_field(model.partition, FLEXIBLE_SPLINE, teeth - layout.first_tooth, vector)
     # in the plane both layers have the force of the lower one
     return 0.5 * forces if layout.mesh.plane else forces
 

@@ -22,12 +22,17 @@ from swgpar.contact.flanks import FlankContact
 from swgpar.contact.pressed_lines import PressedLine
 from swgpar.contact.search import FlankPair
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.fem.vectors import read_field
-from swgpar.flank_pressure.flank_loads import LineLoad, flank_forces, line_loads
-from swgpar.flank_pressure.line_contact import largest_shear
-from swgpar.flank_pressure.moved_teeth import MovedTooth
+from swgpar.flank_pressure.flank_loads import (
+    LineLoad,
+    flank_forces,
+    forces_on_teeth,
+    line_loads,
+    nodal_flank_forces,
+)
+from swgpar.flank_pressure.moved_pairs import FlankGap, Neighbours, moved_teeth
 from swgpar.flank_pressure.patch_contact import CELLS_ACROSS, PatchContact, patch_contact
-from swgpar.geometry.rotation import SIXTHS, rotated
+from swgpar.flank_pressure.shear import largest_shear
+from swgpar.geometry.rotation import rotated
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.materials import contact_modulus
@@ -40,10 +45,6 @@ a small force has a pressure as large as others."""
 WIDTH = 0.05
 """Width over the module within which the contact is looked for at first."""
 
-COARSE, FINE = 401, 21
-"""Points along a profile, and between three of them, among which that of the least gap is looked
-for."""
-
 STRIPS = 48
 """Strips of a line on which its pressure is reported in the plane."""
 
@@ -53,9 +54,6 @@ END = 1e-6
 
 CELL_DIGITS = 6
 """Of the pressures of cells in contact_lines.csv."""
-
-Neighbours = tuple[MovedTooth, MovedTooth, MovedTooth]
-"""A tooth between its neighbours, clockwise first."""
 
 
 @dataclass(frozen=True)
@@ -158,19 +156,28 @@ def _contacts(model: DriveModel, state: LoadState, flanks: FlankContact) -> list
     """Contacts of all touching pairs with one ring gear."""
     spline = model.partition.layouts[FLEXIBLE_SPLINE]
     first, end = model.partition.owned_sectors(FLEXIBLE_SPLINE)
-    forces = flank_forces(model, state, spline.first_tooth + np.arange(first, end), flanks)
+    teeth = spline.first_tooth + np.arange(first, end)
+    forces = flank_forces(model, state, teeth, flanks)
     loads = line_loads(spline.mesh, forces)
     pairs = [pair for pair in flanks.pairs if (pair.sector - first, pair.side) in loads]
     carried = _carried(model, state, flanks, pairs, forces, loads)
-    top = max(model.comm.allgather(max((_peak(load) for load in loads.values()), default=0.0)))
+    plane = model.design.drive.model == "plane"
+    # friction presses nothing
+    vector = nodal_flank_forces(model, state, flanks, friction=False)
+    pressing = line_loads(spline.mesh, forces_on_teeth(model, teeth, vector))
+    peaks = {k: _peak(load) for k, load in pressing.items()}
+    top = max(model.comm.allgather(max(peaks.values(), default=0.0)))
     resolved = [
         k
         for k, pair in enumerate(pairs)
-        if _peak(loads[pair.sector - first, pair.side]) > SMALLEST * top
+        if peaks.get((pair.sector - first, pair.side), 0.0) > SMALLEST * top
     ]
-    moved, facing = moved_teeth(model, [pairs[k] for k in resolved], flanks)
+    moved, facing = moved_teeth(
+        model, [pairs[k] for k in resolved], flanks, None if plane else vector
+    )
+    vector.destroy()
     materials = (model.design.materials[layout.name] for layout in (spline, flanks.ring.layout))
-    modulus = contact_modulus(*materials, plane_stress=model.design.drive.model == "plane")
+    modulus = contact_modulus(*materials, plane_stress=plane)
     u = model.problem.displacement()
 
     @cache
@@ -185,12 +192,12 @@ def _contacts(model: DriveModel, state: LoadState, flanks: FlankContact) -> list
         return lines().get((pair.sector, pair.side), [])
 
     failed = []
-    for k, teeth, ring_teeth in zip(resolved, moved, facing):
-        load = loads[pairs[k].sector - first, pairs[k].side]
+    for k, trio, facing_trio in zip(resolved, moved, facing):
+        load = pressing[pairs[k].sector - first, pairs[k].side]
         try:
             of_this = partial(of_pair, pairs[k])
             carried[k] = _with_pressure(
-                carried[k], model, load, of_this, teeth, ring_teeth, modulus
+                carried[k], model, load, of_this, trio, facing_trio, modulus
             )
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             failed.append(f"tooth {pairs[k].sector}: {error}")
@@ -246,41 +253,6 @@ def _peak(load: LineLoad) -> float:
     return float(np.linalg.norm(load.load, axis=1).max())
 
 
-def moved_teeth(
-    model: DriveModel, pairs: list[FlankPair], flanks: FlankContact
-) -> tuple[list[Neighbours], list[Neighbours]]:
-    """The teeth of every pair, of the flexible spline and of the ring gear, between their
-    neighbours; collective."""
-    spline, ring = model.partition.layouts[FLEXIBLE_SPLINE], flanks.ring.layout
-    around, x = np.arange(-1, 2), model.problem.x
-
-    def fields(body: str, sectors: list[int]) -> np.ndarray:
-        every = (np.array(sectors, dtype=np.int64)[:, None] + around).ravel()
-        return read_field(model.partition, body, every, x).reshape(
-            len(sectors), 3, len(model.partition.layouts[body].mesh.coords), 3
-        )
-
-    u, ring_u = (
-        fields(FLEXIBLE_SPLINE, [p.sector for p in pairs]),
-        fields(ring.name, [p.ring for p in pairs]),
-    )
-    crowned = model.design.crowning
-    moved, facing = [], []
-    for k, pair in enumerate(pairs):
-        tooth = spline.first_tooth + pair.sector + around
-        before, middle, after = (
-            MovedTooth(spline, n, pair.side, u[k, i], crowned) for i, n in enumerate(tooth)
-        )
-        moved.append((before, middle, after))
-        turned = ring_u[k] @ SIXTHS[pair.ring_sixths].T
-        tooth = pair.ring_tooth + around
-        before, middle, after = (
-            MovedTooth(ring, n, -pair.side, turned[i]) for i, n in enumerate(tooth)
-        )
-        facing.append((before, middle, after))
-    return moved, facing
-
-
 def _with_pressure(
     contact: PairContact,
     model: DriveModel,
@@ -296,21 +268,19 @@ def _with_pressure(
     where half spaces find no contact: at the end of the face width;  modulus : E*, MPa
     """
     tooth, facing = teeth[1], ring_teeth[1]
-    along = load.load @ load.direction
-    gap, plane = _Gap(tooth, facing), model.design.drive.model == "plane"
+    gap, plane = FlankGap(tooth, facing), model.design.drive.model == "plane"
     patch, lines = None, []
     try:
         if plane:
             lines = lines_of_law()
         else:
-            patch = _patch(model, gap, load, along, contact.force_N, modulus)
+            patch = _patch(model, gap, load, modulus)
     except (ArithmeticError, np.linalg.LinAlgError):
         lines = lines_of_law()
         if not lines:
             raise
     if patch is not None:
-        strongest, reaches = patch.strongest, patch.reaches
-        at_end, shear = strongest.at_end, strongest.largest_shear()
+        at_end, reaches, shear = patch.at_end, patch.reaches, patch.largest_shear
         stations = patch_stations(patch)
         width = len(patch.z) * patch.cell_length
     elif lines:
@@ -393,7 +363,7 @@ def patch_stations(patch: PatchContact) -> tuple[ContactStation, ...]:
 
 
 def _sliding(
-    model: DriveModel, gap: _Gap, teeth: Neighbours, ring_teeth: Neighbours, at: ContactStation
+    model: DriveModel, gap: FlankGap, teeth: Neighbours, ring_teeth: Neighbours, at: ContactStation
 ) -> float:
     """Sliding (mm per rad of the wave generator) of both flanks at a station, towards the root of
     the spline's tooth.
@@ -417,37 +387,10 @@ def _sliding(
     return float((velocity(teeth, s) - velocity(ring_teeth, gap.foot(s, z))) @ tangent)
 
 
-class _Gap:
-    """Gap between two moved teeth over the arc length on the first one and the face width."""
-
-    def __init__(self, tooth: MovedTooth, facing: MovedTooth) -> None:
-        self.tooth, self.facing = tooth, facing
-
-    def _distance(self, s: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return self.facing.sections(z).distance(self.tooth.sections(z).from_profile(s))
-
-    def __call__(self, s: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Gap (m, n) mm at s (m, n) and z (n,) mm, infinite beyond the ends of the profile."""
-        inside = (s >= 0.0) & (s <= self.tooth.profile.length)
-        return np.where(inside, self._distance(np.where(inside, s, 0.0), z)[0], np.inf)
-
-    def foot(self, s: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Arc length (m, n) mm on the facing flank at s (m, n) and z (n,) mm."""
-        return self._distance(s, z)[1]
-
-    def least_at(self, z: np.ndarray) -> np.ndarray:
-        """Arc length (n,) mm of the least gap at z (n,) mm."""
-        length = self.tooth.profile.length
-        s = np.tile(np.linspace(0.0, length, COARSE)[:, None], len(z))
-        s = s[self(s, z).argmin(axis=0), np.arange(len(z))]
-        fine = s + np.linspace(-1.0, 1.0, FINE)[:, None] * length / (COARSE - 1)
-        return fine[self(fine, z).argmin(axis=0), np.arange(len(z))]
-
-
-def _patch(
-    model: DriveModel, gap: _Gap, load: LineLoad, along: np.ndarray, force: float, modulus: float
-) -> PatchContact:
-    """Contact of a pair in space. along : (n,) N/mm, line load of the mesh"""
+def _patch(model: DriveModel, gap: FlankGap, load: LineLoad, modulus: float) -> PatchContact:
+    """Contact of a pair in space. load : of the pressures on the mesh"""
+    along = load.load @ load.direction
+    force = float(trapezoid(along, load.z))
     # the ring gears of a pancake drive are narrower than the flexible spline
     low, high = gap.facing.ends
     ends = max(float(load.z[0]), low), min(float(load.z[-1]), high)

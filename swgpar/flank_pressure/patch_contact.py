@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 
 from swgpar.contact.pressed_lines import contact_end
-from swgpar.flank_pressure.line_contact import LineContact
+from swgpar.flank_pressure.shear import largest_shear
 
 CELLS_ACROSS, CELLS_ALONG = 24, 28
 """Cells of constant pressure over the width and along the length of the grid."""
@@ -50,7 +50,6 @@ class PatchContact:
     middle, half_width : (n,) mm, of the contact at a station
     at_end : whether it reaches the end of a body across;  reaches : whether it reaches one of the
     ends of its length
-    strongest : line contact at the station with the largest pressure
     """
 
     z: np.ndarray
@@ -62,7 +61,6 @@ class PatchContact:
     half_width: np.ndarray
     at_end: bool
     reaches: bool
-    strongest: LineContact
 
     @property
     def line_load(self) -> np.ndarray:
@@ -73,6 +71,17 @@ class PatchContact:
     def pressure(self) -> np.ndarray:
         """Largest pressure (n,) MPa at the stations."""
         return self.cells.max(axis=1)
+
+    @property
+    def largest_shear(self) -> float:
+        """Largest shear stress below the station with the largest pressure, MPa."""
+        top = int(self.pressure.argmax())
+        pressure = self.cells[top]
+        low = self.first[top] + self.cell_width * (np.arange(len(pressure)) - 0.5)
+        acts = pressure > 0.0
+        low, pressure = low[acts], pressure[acts]
+        half_width = float(self.half_width[top])
+        return largest_shear(low, low + self.cell_width, pressure, half_width)
 
 
 Gap = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -256,21 +265,11 @@ class _Grid:
         columns = np.flatnonzero(pressure.any(axis=0))
         sides = np.array([self._sides(pressure[:, k]) for k in columns])
         left, right = sides.T
-        at_end = self._body_ends_beside(pressure)
         reaches = (columns[0] == 0 and self.z[0] - self.dz < ends[0]) or (
             columns[-1] == CELLS_ALONG - 1 and self.z[-1] + self.dz > ends[1]
         )
-        top = int(pressure.max(axis=0)[columns].argmax())
-        column = int(columns[top])
         middle = self.s0[columns] + 0.5 * (left + right)
         half = 0.5 * (right - left)
-        strongest = LineContact(
-            self.s0[column] + self.t,
-            pressure[:, column],
-            float(middle[top]),
-            float(half[top]),
-            at_end,
-        )
         return PatchContact(
             z=self.z[columns],
             cells=pressure[:, columns].T,
@@ -279,9 +278,8 @@ class _Grid:
             cell_length=float(self.dz),
             middle=middle,
             half_width=half,
-            at_end=at_end,
+            at_end=self._body_ends_beside(pressure),
             reaches=bool(reaches),
-            strongest=strongest,
         )
 
     def _sides(self, pressure: np.ndarray) -> tuple[float, float]:

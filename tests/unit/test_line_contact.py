@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from swgpar.flank_pressure.line_contact import line_contact
+from support.line_contact import line_contact
 from swgpar.materials import Isotropic, contact_modulus
 
 E = contact_modulus(*[Isotropic(E=210e3, nu=0.29)] * 2, plane_stress=False)

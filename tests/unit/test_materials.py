@@ -15,6 +15,7 @@ import pytest
 
 from support.element_mesh import ElementMesh
 from support.element_problems import arc, solve
+from support.line_contact import line_contact
 from support.markdown import examples
 from support.own_law import check_patch
 from support.paths import DESIGN, ROOT
@@ -22,7 +23,6 @@ from swgpar.checks.design_file import load_design
 from swgpar.checks.remarks import remarks
 from swgpar.errors import InputError
 from swgpar.fem.element_matrices import element_matrices
-from swgpar.flank_pressure.line_contact import line_contact
 from swgpar.materials import (
     LIBRARY,
     Isotropic,

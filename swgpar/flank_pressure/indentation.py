@@ -1,0 +1,62 @@
+"""Indentation of a flank by its own contact, as far as the elements see it.
+
+The contact of half spaces computes the whole indentation. What of it is in the displacement of the
+mesh has to be taken off first. Along z the elements interpolate linearly. A line load acts on them
+as its projection onto the hat functions N_k of the layers' nodes. It has the coefficients
+w = M^-1 F, of the nodal forces F and M_kl = ∫ N_k N_l dz. In the section the elements yield as the
+Green's function G of the contact law says (`swgpar.contact.missing_compliance`). Farther off than a
+layer is long they yield as a half space does:
+
+    u_a(z) = sum_bk (G_ab N_k(z) + R_k(s_a - s_b, z) / (pi E')) w_bk,
+    R_k(s, z) = ∫ N_k(z') / r dz' + 2 ln|s| N_k(z),    r² = s² + (z - z')².
+
+R is the half space under a line load without the logarithm that is in G. The forces have images at
+the ends of the profile, as in G.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from swgpar.contact.missing_compliance import MissingCompliance
+
+SMALLEST = 1e-9
+"""Distance (mm) that stands for none: R is continuous there."""
+
+
+def indentation(missing: MissingCompliance, z: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """Displacement (n_s, n_z) mm of the nodes of a flank into the body by the indentation under
+    their forces.
+
+    missing : of the flank;  z : (n_z,) mm, stations of its nodes;  force : (n_s, n_z) N, on the
+    nodes, into the body
+    """
+    load = np.linalg.solve(_overlaps(z), force.T).T
+    s, (first, last) = missing.s, missing.s[[0, -1]]
+    out = missing.green @ load
+    for place in (s, 2.0 * first - s, 2.0 * last - s):
+        table = _half_space(place[:, None] - s, z)
+        out += 0.5 * missing.logarithm * np.einsum("ablk,bk->al", table, load)
+    return out
+
+
+def _overlaps(z: np.ndarray) -> np.ndarray:
+    """M (n_z, n_z) mm, integrals of the products of the hat functions."""
+    out, step = np.zeros((len(z), len(z))), np.diff(z)
+    for k, length in enumerate(step):
+        out[k : k + 2, k : k + 2] += length / 6.0 * np.array([[2.0, 1.0], [1.0, 2.0]])
+    return out
+
+
+def _half_space(s: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """R (..., n_z, n_z) at distances s (...) mm along the profile and the stations z, by hat
+    function."""
+    apart = np.maximum(np.abs(s), SMALLEST)[..., None, None]
+    low, high = z[:-1] - z[:, None], z[1:] - z[:, None]
+    # integrals of 1 / r and t / r over a layer, t = z' - z
+    even = np.arcsinh(high / apart) - np.arcsinh(low / apart)
+    odd = np.hypot(high, apart) - np.hypot(low, apart)
+    out = 2.0 * np.log(apart) * np.eye(len(z))
+    out[..., :-1] += (high * even - odd) / np.diff(z)
+    out[..., 1:] += (odd - low * even) / np.diff(z)
+    return out
