@@ -34,6 +34,9 @@ COLOURS = {
 
 QUADRUPLE = {"type": "quadruple_arc", "r_tip": 0.3, "r_addendum": 0.9, "straight_l": 0.3}
 QUADRUPLE |= {"r_dedendum": 1.3, "r_root": 0.25}
+TRAPEZOID = {"type": "trapezoid", "r_tip": 0.12, "r_root": 0.3}
+CENTRES = {"type": "common_tangent", "r_addendum": 1.0, "c_addendum": 0.22, "e_addendum": 0.14}
+CENTRES |= {"r_dedendum": 1.3, "c_dedendum": 0.51, "e_dedendum": 0.24, "r_root": 0.25}
 DOUBLE = {"type": "double_arc", "r_addendum": 1.0, "r_dedendum": 0.45}
 """Radii that show every centre on the paper; all other sizes are those of the reference drive."""
 
@@ -43,7 +46,7 @@ Spot = dict[str, tuple[float, float]]
 
 def design_with(profile: dict[str, object]) -> DriveDesign:
     """The plane reference drive with this profile on both gears."""
-    values = {"profile": dict(profile), "c_l": 0.5 if profile["type"] == "quadruple_arc" else 0.4}
+    values = {"profile": dict(profile), "c_l": 0.4 if profile["type"] == "double_arc" else 0.5}
     return plane_with(flexible_spline=values, ring_gear=values)
 
 
@@ -196,5 +199,20 @@ def double_arc() -> Figure:
     return pair(DOUBLE, (OUTSIDE, INSIDE), "double arc")
 
 
+def trapezoid() -> Figure:
+    return pair(TRAPEZOID, (OUTSIDE, INSIDE), "trapezoid")
+
+
+def common_tangent() -> Figure:
+    return pair(CENTRES, (OUTSIDE, INSIDE), "arcs by their centres")
+
+
 if __name__ == "__main__":
-    run({"profile_quadruple_arc": quadruple_arc, "profile_double_arc": double_arc})
+    run(
+        {
+            "profile_quadruple_arc": quadruple_arc,
+            "profile_double_arc": double_arc,
+            "profile_trapezoid": trapezoid,
+            "profile_common_tangent": common_tangent,
+        }
+    )

@@ -25,6 +25,17 @@ PROFILES = {
     },
     "double arc": {"type": "double_arc", "r_addendum": 0.7, "r_dedendum": 0.6},
     "involute": {"type": "involute", "cutter_radius": 0.2},
+    "trapezoid": {"type": "trapezoid", "r_tip": 0.05, "r_root": 0.2},
+    "arcs by their centres": {
+        "type": "common_tangent",
+        "r_addendum": 1.0,
+        "c_addendum": 0.22,
+        "e_addendum": 0.14,
+        "r_dedendum": 1.3,
+        "c_dedendum": 0.51,
+        "e_dedendum": 0.24,
+        "r_root": 0.3,
+    },
 }
 
 
@@ -41,7 +52,7 @@ designs = {name: with_profile(profile) for name, profile in PROFILES.items()}
 # The right flank of a tooth of the flexible spline. Each segment of the chain has a colour.
 # The dotted lines are the addendum, the pitch and the dedendum circle.
 
-figure, axes = plt.subplots(1, 3, figsize=(10.0, 3.6), sharey=True, layout="constrained")
+figure, axes = plt.subplots(1, len(designs), figsize=(12.0, 3.0), sharey=True, layout="constrained")
 for panel, (name, design) in zip(axes, designs.items()):
     flank = design.profile("flexible_spline")
     for start, end in zip(flank.breaks[:-1], flank.breaks[1:]):
@@ -68,7 +79,7 @@ def teeth(flank, angles, shift):
         yield tooth @ np.array([[c, -s], [s, c]]) + [0.0, shift]
 
 
-figure, axes = plt.subplots(1, 3, figsize=(10.0, 2.4), sharey=True, layout="constrained")
+figure, axes = plt.subplots(1, len(designs), figsize=(14.0, 2.2), sharey=True, layout="constrained")
 for panel, (name, design) in zip(axes, designs.items()):
     spline, ring = design.profile("flexible_spline"), design.profile("ring_gear")
     pitches = np.arange(-3, 4)

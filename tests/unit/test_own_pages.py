@@ -111,7 +111,7 @@ def test_own_profile(tmp_path: Path) -> None:
         insert(profiles / "keys.py", f"{involute} | Conjugate,", "StraightSided | ")
     factory = profiles / "__init__.py"
     insert(factory, "    else:\n        profile = involute(", branch)
-    insert(factory, "    ShaperInvolute,\n)\n", "    StraightSided,\n")
+    insert(factory, "    Trapezoid,\n)\n", "    StraightSided,\n")
     imported = "from swgpar.geometry.profiles.straight_sided import straight_sided\n"
     insert(factory, "from swgpar.geometry.profiles.teeth ", imported)
     execute(

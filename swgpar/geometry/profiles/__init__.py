@@ -5,18 +5,20 @@ A new profile is a module here, keys in `keys.py`, a branch in `_build` (own_cam
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import lru_cache
 
 import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.geometry.profiles.advice import advise
+from swgpar.geometry.profiles.common_tangent import common_tangent
 from swgpar.geometry.profiles.conjugate import conjugate
 from swgpar.geometry.profiles.double_arc import double_arc
 from swgpar.geometry.profiles.flank import ToothProfile, check_flank
 from swgpar.geometry.profiles.involute import Cutter, involute
 from swgpar.geometry.profiles.keys import (
+    CommonTangent,
     Conjugate,
     DoubleArc,
     ExternalProfile,
@@ -24,11 +26,14 @@ from swgpar.geometry.profiles.keys import (
     QuadrupleArc,
     RackInvolute,
     ShaperInvolute,
+    Trapezoid,
 )
 from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 from swgpar.geometry.profiles.quadruple_arc import quadruple_arc
 from swgpar.geometry.profiles.teeth import Teeth
 from swgpar.geometry.profiles.tooth_motion import ToothMotion
+from swgpar.geometry.profiles.trapezoid import trapezoid
+from swgpar.geometry.profiles.turned import thinned
 from swgpar.input.quantities import show
 from swgpar.input.require import require
 
@@ -88,10 +93,11 @@ def _advice(
         return f"several keys of {name} do not fit: allowed are for example " + ", ".join(
             f"{key} = {show(value)}" for key, value in typical.items()
         )
-    if not keys.divides_straight:
+    if keys.thickness_key or hasattr(keys, "cutter_radius"):
         return ""  # the reason says what is allowed
+    shares = "c_P, c_l" if keys.divides_straight else "c_P"
     return (
-        f"no other {' or '.join(lengths)} is allowed: change c_P, c_l, the pressure angle or the "
+        f"no other {' or '.join(lengths)} is allowed: change {shares}, the pressure angle or the "
         f"height of the teeth"
     )
 
@@ -123,6 +129,15 @@ def _build(
         profile = double_arc(
             PitchPointFrame(**asdict(teeth), c_P=c_P), c_l, keys.r_addendum, keys.r_dedendum, name
         )
+    elif isinstance(keys, Trapezoid):
+        frame = PitchPointFrame(**asdict(teeth), c_P=c_P)
+        if keys.flank_angle is not None:
+            at_pitch = np.radians(keys.flank_angle) + frame.sign * frame.half_thickness
+            frame = replace(frame, pressure_angle=float(at_pitch))
+        profile = trapezoid(frame, keys.r_tip, keys.r_root, name)
+    elif isinstance(keys, CommonTangent):
+        frame = PitchPointFrame(**asdict(teeth), c_P=1.0)
+        profile = thinned(common_tangent(keys, frame, name), c_P)
     elif isinstance(keys, Conjugate):
         profile = conjugate(keys, teeth, *partner, name)
     else:

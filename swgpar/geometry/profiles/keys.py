@@ -57,6 +57,49 @@ class DoubleArc(ProfileKeys):
     r_dedendum: float = quantity(unit="mm", text="radius of the dedendum arc", gt=0.0)
 
 
+class Trapezoid(ProfileKeys):
+    """A straight flank through the pitch point, a tip arc and a root arc."""
+
+    typical_lengths = {"r_tip": 0.05, "r_root": 0.2}
+    divides_straight = False
+
+    type: Literal["trapezoid"] = quantity("trapezoid", text="kind of profile")
+    flank_angle: float | None = quantity(
+        None,
+        unit="deg",
+        text="angle between flank and centre line of the tooth; without it that of "
+        "drive.pressure_angle at the pitch point",
+        ge=0.0,
+        lt=60.0,
+    )
+    r_tip: float = quantity(0.0, unit="mm", text="radius of the tip arc; 0: a sharp edge", ge=0.0)
+    r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
+
+
+class CommonTangent(ProfileKeys):
+    """Two arcs with a common tangent, given by their centres, and a root arc."""
+
+    typical_lengths = {"r_addendum": 1.0, "r_dedendum": 1.2, "r_root": 0.3}
+    divides_straight = False
+
+    type: Literal["common_tangent"] = quantity("common_tangent", text="kind of profile")
+    r_addendum: float = quantity(unit="mm", text="radius of the convex arc", gt=0.0)
+    c_addendum: float = quantity(
+        unit="mm", text="centre of the convex arc, beyond the centre line of the tooth"
+    )
+    e_addendum: float = quantity(
+        unit="mm", text="centre of the convex arc, below the pitch circle, towards the root"
+    )
+    r_dedendum: float = quantity(unit="mm", text="radius of the concave arc", gt=0.0)
+    c_dedendum: float = quantity(
+        unit="mm", text="centre of the concave arc, beyond half a pitch from the centre line"
+    )
+    e_dedendum: float = quantity(
+        unit="mm", text="centre of the concave arc, above the pitch circle, towards the tip"
+    )
+    r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
+
+
 class _Involute(ProfileKeys):
     """Section 3.3.1. The typical radius is the bottom clearance."""
 
@@ -98,12 +141,12 @@ class Conjugate(ProfileKeys):
 
 
 ExternalProfile = Annotated[
-    QuadrupleArc | DoubleArc | RackInvolute | Conjugate,
+    QuadrupleArc | DoubleArc | CommonTangent | Trapezoid | RackInvolute | Conjugate,
     Field(discriminator="type"),
     BeforeValidator(default_type("quadruple_arc")),
 ]
 InternalProfile = Annotated[
-    QuadrupleArc | DoubleArc | ShaperInvolute | Conjugate,
+    QuadrupleArc | DoubleArc | CommonTangent | Trapezoid | ShaperInvolute | Conjugate,
     Field(discriminator="type"),
     BeforeValidator(default_type("quadruple_arc")),
 ]

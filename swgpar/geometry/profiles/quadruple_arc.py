@@ -18,7 +18,7 @@ from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 
 
-def _closing_angle(radius: Callable[[float], float], target: float, refusal: str) -> float:
+def closing_angle(radius: Callable[[float], float], target: float, refusal: str) -> float:
     """Smallest angle in (0, pi/2) at which `radius` (mm) is `target`; else InputError(`refusal`).
 
     Long arcs reach their circle twice: `radius` has one extremum in between.
@@ -58,13 +58,25 @@ def quadruple_arc(
     def root_center(angle: float) -> np.ndarray:
         return o_d - (r_dedendum - r_root) * n(star + angle)
 
-    a_a = _closing_angle(
+    if r_tip == r_addendum:
+        raise InputError(
+            f"{name}.r_tip = {r_tip:g} equals r_addendum: one arc cannot reach the addendum circle "
+            f'tangentially with any straight_l: allowed are other radii, and type = "trapezoid", '
+            "whose straight flank ends where its tip arc begins"
+        )
+    if r_root == r_dedendum:
+        raise InputError(
+            f"{name}.r_root = {r_root:g} equals r_dedendum: one arc cannot reach the dedendum "
+            f"circle tangentially with any straight_l: allowed are other radii, and type = "
+            f'"double_arc" or "trapezoid", whose straight flank ends where that arc begins'
+        )
+    a_a = closing_angle(
         lambda t: float(np.hypot(*tip_center(t))) + s * r_tip,
         frame.r_tip_circle,
         f"{name}.r_tip = {r_tip:g} with r_addendum = {r_addendum:g} does not meet the addendum "
         f"circle",
     )
-    a_d = _closing_angle(
+    a_d = closing_angle(
         lambda t: float(np.hypot(*root_center(t))) - s * r_root,
         frame.r_root_circle,
         f"{name}.r_root = {r_root:g} with r_dedendum = {r_dedendum:g} does not meet the dedendum "
