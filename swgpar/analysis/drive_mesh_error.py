@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.flank_pressure.pair_contact import PairContact, pair_contacts
+from swgpar.largest_stress.region_stress import RegionStress
 from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress
 from swgpar.load.load_states import LoadState
 from swgpar.meshing import MeshRecipe
@@ -48,11 +49,13 @@ class CoarserMesh:
 
     stresses : s1 (MPa) on windows, coarse to fine, by part of the teeth
     contacts : of all touching pairs
+    regions : largest stresses of the regions by windows, by name
     """
 
     recipe: MeshRecipe
     stresses: Mapping[str, Sequence[float]]
     contacts: Sequence[PairContact] = ()
+    regions: Mapping[str, RegionStress] = field(default_factory=dict)
 
 
 def coarser_recipes(recipe: MeshRecipe) -> list[MeshRecipe]:
@@ -78,7 +81,7 @@ def coarser_mesh(model: DriveModel, recipe: MeshRecipe, state: LoadState) -> Coa
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
     found = resolve_root_stress(model, state, COMPARED_LEVELS, COMPARED_LEVELS - 1)
-    return CoarserMesh(recipe, found.by_part, pair_contacts(model, state))
+    return CoarserMesh(recipe, found.by_part, pair_contacts(model, state), found.regions)
 
 
 def drive_error(
@@ -110,6 +113,42 @@ def drive_error(
     error = shown_error(meshes) * abs(fine.s1 / fine.levels[shared])
     remains = 0.0 if before is None else before / ratio**ORDER
     return max(error, remains, least * abs(fine.s1))
+
+
+def region_errors(
+    coarser: Sequence[CoarserMesh], recipe: MeshRecipe, fine: RootStress, least: float
+) -> dict[str, RegionStress]:
+    """The stresses of the regions with their errors by the mesh of the drive, where the coarser
+    meshes show them. Arguments are those of `drive_error`."""
+    return {
+        name: replace(
+            stress,
+            drive_error=_region_error(
+                [(one.recipe, one.regions.get(name)) for one in coarser], recipe, stress, least
+            ),
+        )
+        for name, stress in fine.regions.items()
+    }
+
+
+def _region_error(
+    coarser: Sequence[tuple[MeshRecipe, RegionStress | None]],
+    recipe: MeshRecipe,
+    fine: RegionStress,
+    least: float,
+) -> float | None:
+    if not fine.levels:  # nodal averages, whose error is far larger
+        return least * fine.place.value
+    known = [(one, stress) for one, stress in coarser if stress is not None and stress.levels]
+    if not known or len(known) < len(coarser):
+        return None
+    known.append((recipe, fine))
+    shared = min(len(stress.levels) for _, stress in known) - 1
+    meshes = [(one, stress.levels[shared]) for one, stress in known]
+    if not all(value > 0.0 for _, value in meshes):
+        return None
+    change = shown_error(meshes) * fine.place.value / meshes[-1][1]
+    return max(change, least * fine.place.value)
 
 
 def shown_error(meshes: Sequence[tuple[MeshRecipe, float]]) -> float:

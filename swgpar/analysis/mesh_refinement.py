@@ -14,13 +14,14 @@ from mpi4py import MPI
 
 from swgpar.analysis.accuracy import ROUGH
 from swgpar.analysis.coarse_start import solve_to_load
-from swgpar.analysis.coarse_stresses import coarse_stresses
+from swgpar.analysis.coarse_wall import coarse_wall
 from swgpar.analysis.contact_errors import contact_errors
 from swgpar.analysis.drive_mesh_error import (
     coarser_mesh,
     coarser_recipes,
     drive_error,
     least_error,
+    region_errors,
     with_finer_flanks,
 )
 from swgpar.analysis.forecast import fits, forecast
@@ -29,18 +30,13 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.evaluation.contact_error_shares import ContactErrorShares
 from swgpar.flank_pressure.pair_contact import pair_contacts
-from swgpar.largest_stress.place_errors import CoarseStresses
-from swgpar.largest_stress.root_stress import (
-    FEWEST_LEVELS,
-    LEVELS,
-    MOST_LEVELS,
-    RootStress,
-    resolve_root_stress,
-)
+from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress
+from swgpar.largest_stress.wall_stress import CoarseWall
+from swgpar.largest_stress.window_recipes import FEWEST_LEVELS, LEVELS, MOST_LEVELS
 from swgpar.load.load_sequence import load_sequence
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe, build_sector_meshes
-from swgpar.meshing.recipe_counts import RATIO, body_ratio, refined
+from swgpar.meshing.recipe_counts import refined
 from swgpar.model.drive_model import DriveModel
 
 LARGEST = {"plane": 1_500_000, "cup": 700_000}
@@ -52,14 +48,15 @@ class ChosenMesh:
     """The model on the mesh chosen, in its loaded state.
 
     root_stress : with both errors;  error : relative
-    coarse : what the mesh before it gives;  contact_errors : of the contacts of flanks
+    coarse_wall : stresses of the wall on a coarser mesh, where they are known
+    contact_errors : of the contacts of flanks
     """
 
     model: DriveModel
     recipe: MeshRecipe
     root_stress: RootStress
     error: float
-    coarse: CoarseStresses
+    coarse_wall: CoarseWall | None
     contact_errors: ContactErrorShares
 
 
@@ -67,7 +64,7 @@ class ChosenMesh:
 class Refined:
     """What a mesh gives in comparison with coarser ones; see `Refinement`."""
 
-    compared: CoarseStresses
+    compared: CoarseWall | None
     found: RootStress
     contact_errors: ContactErrorShares
 
@@ -86,7 +83,7 @@ class Refinement:
     Attributes
     ----------
     model, recipe, found : the present mesh and the stress by its windows
-    compared : the largest stresses at the places on the coarsest mesh that it is compared with
+    compared : stresses of the wall on the coarsest mesh that it is compared with
     contact_errors : of the contacts of flanks on the present mesh
     """
 
@@ -107,10 +104,12 @@ class Refinement:
             coarser, recipe = with_finer_flanks(recipe, refined(recipe)), refined(recipe)
         self.model = self._solved(coarser[0])
         try:
-            self._take(recipe, self._refined(coarser, recipe))
+            first = self._refined(coarser, recipe)
         except SwgparError:
             self.model.destroy()
             raise
+        self.recipe, self.compared, self.found = recipe, first.compared, first.found
+        self.contact_errors = first.contact_errors
 
     def _refined(
         self, coarser: list[MeshRecipe], recipe: MeshRecipe, before: float | None = None
@@ -119,8 +118,7 @@ class Refinement:
 
         before : error (MPa) of the present mesh by the mesh of the drive, if it is known
         """
-        ratio = body_ratio(coarser[0], recipe) or RATIO
-        compared = coarse_stresses(self.model, self.loaded, coarser[0], recipe, ratio)
+        compared = coarse_wall(self.model, self.loaded, coarser[0], recipe)
         meshes = [coarser_mesh(self.model, coarser[0], self.loaded)]
         for between in coarser[1:]:
             self._replace(between)
@@ -139,7 +137,8 @@ class Refinement:
             100.0 * _bound(error) / found.s1,
         )
         errors = contact_errors(meshes, recipe, contacts)
-        return Refined(compared, replace(found, drive_error=error), errors)
+        regions = region_errors(meshes, recipe, found, least)
+        return Refined(compared, replace(found, drive_error=error, regions=regions), errors)
 
     def _take(self, recipe: MeshRecipe, refined: Refined) -> None:
         self.recipe, self.compared, self.found = recipe, refined.compared, refined.found
@@ -172,7 +171,11 @@ class Refinement:
             logger.warning("no finer window: %s", error)
             return False
         self.levels += 1
-        self.found = replace(found, drive_error=self.found.drive_error)
+        known = {name: one.drive_error for name, one in self.found.regions.items()}
+        regions = {
+            name: replace(one, drive_error=known.get(name)) for name, one in found.regions.items()
+        }
+        self.found = replace(found, drive_error=self.found.drive_error, regions=regions)
         return True
 
     def refine_drive(self) -> bool:

@@ -30,7 +30,6 @@ from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.input.toml_file import to_toml
 from swgpar.largest_stress.accuracy import Accuracy
-from swgpar.largest_stress.place_errors import with_errors
 from swgpar.largest_stress.places import Place, find_places
 from swgpar.largest_stress.resolved_places import with_windows
 from swgpar.load.load_states import LoadState, Stage
@@ -76,7 +75,8 @@ class Recorder(ABC):
             estimated=chosen.error if np.isfinite(chosen.error) else None,
             reached=chosen.error <= accuracy,
         )
-        self.record.root_stress, self.record.coarse = chosen.root_stress, chosen.coarse
+        self.record.root_stress = chosen.root_stress
+        self.record.coarse_wall = chosen.coarse_wall
         self.record.contact_errors = chosen.contact_errors
 
     def keep(self, seconds: float, elapsed: float) -> None:
@@ -125,15 +125,11 @@ class Recorder(ABC):
             for name, place in found.items():
                 if name not in self.record.places or place.value > self.record.places[name].value:
                     self.record.places[name] = place
-            if self.record.coarse is not None and state == self.sequence.loaded:
-                self.record.stress_errors = self.record.coarse.errors(self.record.places)
-                self.record.coarse = None
 
     def resolved_places(self) -> dict[str, Place]:
         """The places with the stresses of windows, and with errors where they are known."""
         record = self.record
-        nodal = with_errors(record.places, record.stress_errors, record.root_stress)
-        return with_windows(nodal, record.loaded, record.root_stress, record.wall_stress)
+        return with_windows(record.places, record.loaded, record.root_stress, record.wall_stress)
 
     def _keep_pairs(self, state: LoadState) -> bool:
         """Keep the contacts of flanks under load; returns whether one lies on the edge of a

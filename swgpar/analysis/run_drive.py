@@ -12,9 +12,15 @@ import numpy as np
 from swgpar.analysis.accuracy import require_refinable, with_accuracy
 from swgpar.analysis.coarse_period import coarse_period
 from swgpar.analysis.coarse_start import start_at_load
-from swgpar.analysis.coarse_stresses import coarse_stresses
+from swgpar.analysis.coarse_wall import coarse_wall
 from swgpar.analysis.contact_errors import contact_errors
-from swgpar.analysis.drive_mesh_error import CoarserMesh, coarser_mesh, drive_error, least_error
+from swgpar.analysis.drive_mesh_error import (
+    CoarserMesh,
+    coarser_mesh,
+    drive_error,
+    least_error,
+    region_errors,
+)
 from swgpar.analysis.evaluate_run import evaluate_run
 from swgpar.analysis.follow_turns import follow_turns
 from swgpar.analysis.forecast import forecast, reported_memory, require_memory
@@ -205,9 +211,9 @@ class DriveRun:
         the finer flanks."""
         loaded = self.stepper.sequence.loaded
         ratio = body_ratio(recipe, self.recipe)
-        if not self.coarser and ratio is not None:
-            coarse = coarse_stresses(model, loaded, recipe, self.recipe, ratio)
-            self.recorder.record.coarse = coarse
+        if not self.coarser:
+            wall = coarse_wall(model, loaded, recipe, self.recipe)
+            self.recorder.record.coarse_wall = wall
         found = None
         if model.design.resolves_root_stress:
             try:
@@ -300,16 +306,17 @@ class DriveRun:
         contacts = pair_contacts(self.model, state)
         record.contact_errors = contact_errors(known, self.recipe, contacts)
         least = least_error(self.model, contacts)
-        return replace(found, drive_error=drive_error(known, self.recipe, found, least))
+        error = drive_error(known, self.recipe, found, least)
+        regions = region_errors(known, self.recipe, found, least)
+        return replace(found, drive_error=error, regions=regions)
 
     def _wall_stress(self, state: LoadState) -> WallStress | None:
         """Largest stresses of the wall behind the teeth; None where they cannot be computed."""
         record = self.recorder.record
         at_teeth = 0.0 if record.root_stress is None else record.root_stress.s1
-        coarse = None if record.coarse is None else record.coarse.wall
         try:
             with self.model.phases("windows"):
-                return resolve_wall(self.model, state, at_teeth, coarse)
+                return resolve_wall(self.model, state, at_teeth, record.coarse_wall)
         except (ConvergenceError, InputError) as error:
             logger.warning("the stress of the wall is not resolved: %s", error)
             return None

@@ -10,10 +10,9 @@ from swgpar.evaluation.period_ranges import CoarsePeriod
 from swgpar.evaluation.ratcheting import TorquePoint
 from swgpar.evaluation.slip_error import SlipCheck
 from swgpar.largest_stress.accuracy import Accuracy
-from swgpar.largest_stress.place_errors import CoarseStresses
 from swgpar.largest_stress.places import Place
 from swgpar.largest_stress.root_stress import RootStress
-from swgpar.largest_stress.wall_stress import WallStress
+from swgpar.largest_stress.wall_stress import CoarseWall, WallStress
 from swgpar.results.history import Row
 
 
@@ -31,8 +30,7 @@ class RunRecord:
     root_stress, wall_stress : of the loaded state, once they are resolved
     places : of the largest nodal averages of stress under load, by column of the history
     loaded : MPa, the averages of the loaded state by the names of `places`
-    coarse : largest stresses on a coarser mesh, until `places` are compared with them
-    stress_errors : by it, as shares, of `places`
+    coarse_wall : stresses of the wall on a coarser mesh; None where they are not known
     contact_errors : by coarser meshes, of what contacts of flanks give
     coarse_period : ranges over the sampled period on a coarser mesh
     pairs, contact_lines : rows of pairs.csv and contact_lines.csv
@@ -54,8 +52,7 @@ class RunRecord:
     wall_stress: WallStress | None = None
     places: dict[str, Place] = field(default_factory=dict)
     loaded: dict[str, float] = field(default_factory=dict)
-    coarse: CoarseStresses | None = None
-    stress_errors: dict[str, float] = field(default_factory=dict)
+    coarse_wall: CoarseWall | None = None
     contact_errors: ContactErrorShares = UNKNOWN
     coarse_period: CoarsePeriod | None = None
     pairs: list[Row] = field(default_factory=list)

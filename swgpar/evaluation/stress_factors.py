@@ -6,9 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from swgpar.largest_stress.places import OF_REGION
+from swgpar.largest_stress.resolved_places import windowed_places
 from swgpar.largest_stress.root_stress import RootStress
 from swgpar.largest_stress.wall_stress import WallStress
-from swgpar.model.regions import TOOTH_END, TOOTH_ROOT
+from swgpar.model.regions import FLANK, TIP, TOOTH_END, TOOTH_ROOT
+
+IN_CONTACT = (FLANK, TIP)
+"""Regions that flanks press on: their largest tension says nothing of what is below a contact."""
 
 TENSION = f"fs_s1{OF_REGION}"
 """Beginning of the names of the largest tensions of the flexible spline's regions."""
@@ -37,17 +41,17 @@ def root_factor(root_stress: RootStress) -> StressFactor:
 def stress_factors(
     root_stress: RootStress | None, wall: WallStress | None, loaded: Mapping[str, float]
 ) -> dict[str, StressFactor]:
-    """Factors by region; none of regions that windows do not resolve.
+    """Factors by region; none of regions that windows do not resolve, and of flanks and tips.
 
-    Those of the wall are at least 1: nodal averages are larger where a region has its largest
-    stress beside the part that is resolved.
+    All but those of the roots are at least 1: nodal averages are larger where a region has its
+    largest stress beside the part that is resolved.
 
     loaded : MPa, nodal averages of the loaded state by the names of `find_places`
     """
     found: dict[str, StressFactor] = {}
-    for name, place in ({} if wall is None else wall.places).items():
+    for name, place in windowed_places(root_stress, wall).items():
         nodal = loaded.get(name)
-        if name.startswith(TENSION) and nodal:
+        if name.startswith(TENSION) and nodal and place.region not in IN_CONTACT:
             error = None if place.error is None else place.error / nodal
             found[place.region] = StressFactor(max(place.value / nodal, 1.0), error)
     if root_stress is not None:

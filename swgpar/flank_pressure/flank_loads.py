@@ -56,21 +56,27 @@ def nodal_flank_forces(
 
 
 def flank_forces(
-    model: DriveModel, state: LoadState, teeth: np.ndarray, flanks: FlankContact
+    model: DriveModel,
+    state: LoadState,
+    teeth: np.ndarray,
+    flanks: FlankContact,
+    gear: str = FLEXIBLE_SPLINE,
 ) -> np.ndarray:
-    """Contact forces (n, n_node, 3) N of `flanks` on the nodes of the flexible spline's `teeth`
-    (n,); collective."""
+    """Contact forces (n, n_node, 3) N of `flanks` on the nodes of the `teeth` (n,) of a gear;
+    collective."""
     vector = nodal_flank_forces(model, state, flanks)
-    forces = forces_on_teeth(model, teeth, vector)
+    forces = forces_on_teeth(model, teeth, vector, gear)
     vector.destroy()
     return forces
 
 
-def forces_on_teeth(model: DriveModel, teeth: np.ndarray, vector: PETSc.Vec) -> np.ndarray:
-    """Nodal forces (n, n_node, 3) N of the flexible spline's `teeth` (n,) out of those of all
-    nodes; collective."""
-    layout = model.partition.layouts[FLEXIBLE_SPLINE]
-    forces = read_field(model.partition, FLEXIBLE_SPLINE, teeth - layout.first_tooth, vector)
+def forces_on_teeth(
+    model: DriveModel, teeth: np.ndarray, vector: PETSc.Vec, gear: str = FLEXIBLE_SPLINE
+) -> np.ndarray:
+    """Nodal forces (n, n_node, 3) N of the `teeth` (n,) of a gear out of those of all nodes;
+    collective."""
+    layout = model.partition.layouts[gear]
+    forces = read_field(model.partition, gear, teeth - layout.first_tooth, vector)
     # in the plane both layers have the force of the lower one
     return 0.5 * forces if layout.mesh.plane else forces
 

@@ -1,8 +1,9 @@
-"""A window of the flexible spline on a finer mesh, driven by a state of the drive.
+"""A window of a gear on a finer mesh, driven by a state of the drive.
 
 The displacements of a drive converge long before its stresses. A few tooth sectors are cut out,
-meshed finely, and solved once more: the cuts have the displacements of the drive, the flanks carry
-its contact forces, and the exact cam stays in contact with the inner surface. Stresses hold one
+meshed finely, and solved once more: the cuts have the displacements of the drive, and the flanks
+carry its contact forces. On the inner surface of the flexible spline the exact cam stays in
+contact, the outer surface of the ring gear has the displacements of the drive. Stresses hold one
 pitch or more inside of the cuts.
 """
 
@@ -10,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -17,7 +19,7 @@ from swgpar.constraints.boundary_conditions import DeadLoad, PrescribedDisplacem
 from swgpar.constraints.distributing_coupling import node_weights
 from swgpar.constraints.supports import Supports
 from swgpar.errors import ConvergenceError
-from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR, STRESS_PREFIXES
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
@@ -26,6 +28,8 @@ from swgpar.fem.vectors import read_field, write_field
 from swgpar.flank_pressure.flank_loads import flank_forces, line_loads, nodal_forces
 from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.geometry.rotation import rotated
+from swgpar.largest_stress.places import OF_REGION
+from swgpar.largest_stress.window_regions import decay_length, pressed, read_regions
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe
@@ -41,6 +45,9 @@ from swgpar.solve.newton import NewtonSolver
 
 SECTORS, MARGIN = 5, 1
 """Tooth sectors of a window, and those next to each cut whose stresses are not read."""
+
+RING_SECTORS = 3
+"""Those of a window of the ring gear, which its rim supports all around."""
 
 CUP_LENGTH = 2.0
 """Length of the cup's wall behind the teeth that belongs to a window, over sqrt(radius *
@@ -64,7 +71,7 @@ it."""
 
 @dataclass(frozen=True)
 class WindowStress:
-    """Largest tensile stress in a window.
+    """A largest stress in a window.
 
     value : MPa;  tooth : where;  position : (3,) mm, undeformed, with the tooth at +y
     region, warning : as of a `Place`;  elements : of the window
@@ -78,15 +85,24 @@ class WindowStress:
     elements: int
 
 
-def window_mesh(geometry: DriveGeometry, recipe: MeshRecipe) -> SectorMesh:
-    """The sector of a window: the toothed part and the beginning of the cup's wall, which ends in
-    the set ``cut``."""
-    mesh = build_sector(geometry, recipe, "flexible_spline")
-    if mesh.plane:
+@dataclass(frozen=True)
+class _Found:
+    """A largest stress (MPa), the tooth and the node of its sector."""
+
+    value: float
+    tooth: int
+    node: int
+
+
+def window_mesh(
+    geometry: DriveGeometry, recipe: MeshRecipe, gear: str = FLEXIBLE_SPLINE
+) -> SectorMesh:
+    """The sector of a window of a gear. Of a flexible spline it is the toothed part and the
+    beginning of the cup's wall, which ends in the set ``cut``."""
+    mesh = build_sector(geometry, recipe, gear)
+    if mesh.plane or gear != FLEXIBLE_SPLINE:
         return mesh
-    end = 0.5 * geometry.face_width + CUP_LENGTH * np.sqrt(
-        geometry.inner_radius * geometry.cup_thickness
-    )
+    end = 0.5 * geometry.face_width + CUP_LENGTH * decay_length(geometry)
     return trimmed(mesh, mesh.coords[mesh.hexes, 2].min(axis=1) < end)
 
 
@@ -107,6 +123,11 @@ def tooth_nodes(mesh: SectorMesh, geometry: DriveGeometry, ends: bool) -> np.nda
     )
 
 
+def sectors_of(gear: str) -> int:
+    """Tooth sectors of a window of a gear."""
+    return RING_SECTORS if gear == RING_GEAR else SECTORS
+
+
 class LocalProblem:
     """A window around a tooth.
 
@@ -115,35 +136,47 @@ class LocalProblem:
     model, state : the drive in its equilibrium under that load state
     tooth : in the middle of the window
     recipe : of the window's mesh
+    gear : name of the body
     """
 
-    def __init__(self, model: DriveModel, state: LoadState, tooth: int, recipe: MeshRecipe) -> None:
+    def __init__(
+        self,
+        model: DriveModel,
+        state: LoadState,
+        tooth: int,
+        recipe: MeshRecipe,
+        gear: str = FLEXIBLE_SPLINE,
+    ) -> None:
         self.model, self.state, geometry = model, state, model.geometry
-        first = tooth - SECTORS // 2
-        mesh = window_mesh(geometry, recipe)
-        layout = model.partition.layouts[FLEXIBLE_SPLINE]
+        self.gear = gear
+        count = sectors_of(gear)
+        first = tooth - count // 2
+        mesh = window_mesh(geometry, recipe, gear)
+        layout = model.partition.layouts[gear]
         self.layout = BodyLayout(
             body=replace(layout.body, mesh=mesh),
             first_tooth=first,
-            count=SECTORS,
+            count=count,
             closed=False,
             copies=1,
             fixed=np.zeros(0, dtype=np.int32),
         )
         self.partition = Partition([self.layout], model.comm)
         self.elements = Elements(self.partition)
-        self.body = self.elements.bodies[FLEXIBLE_SPLINE]
-        teeth = first + np.arange(SECTORS)
+        self.body = self.elements.bodies[gear]
+        teeth = first + np.arange(count)
         self.loads = line_loads(
-            layout.mesh, flank_forces(model, state, teeth, model.problem.flanks_of(RING_GEAR))
+            layout.mesh,
+            flank_forces(model, state, teeth, model.problem.flanks_of(RING_GEAR), gear),
         )
+        self.pressing = np.zeros((count, len(mesh.coords)))
         displacement = self._of_the_drive(teeth)
         self.scale = model.problem.supports.scale
         problem = DiscreteProblem(
             partition=self.partition,
             elements=self.elements,
             supports=Supports(self.partition, [], scale=self.scale, share=1.0),
-            wave_generator=model.rigid_contacts(self.body),
+            wave_generator=model.rigid_contacts(self.body) if gear == FLEXIBLE_SPLINE else None,
             boundary_terms=[self._dead_load(), self._cuts(displacement)],
             module=geometry.module,
             phases=PhaseTimes(),
@@ -158,17 +191,15 @@ class LocalProblem:
             ),
         )
         self.problem = problem
-        own = displacement[self.partition.owned_indices(FLEXIBLE_SPLINE)]
-        write_field(self.partition, FLEXIBLE_SPLINE, own, problem.x)
+        own = displacement[self.partition.owned_indices(gear)]
+        write_field(self.partition, gear, own, problem.x)
 
     def _of_the_drive(self, teeth: np.ndarray) -> np.ndarray:
         """Displacement (n_teeth, n_node, 3) mm of the drive at the nodes of the window;
         collective."""
         model = self.model
-        coarse = model.partition.layouts[FLEXIBLE_SPLINE]
-        field = read_field(
-            model.partition, FLEXIBLE_SPLINE, teeth - coarse.first_tooth, model.problem.x
-        )
+        coarse = model.partition.layouts[self.gear]
+        field = read_field(model.partition, self.gear, teeth - coarse.first_tooth, model.problem.x)
         angle = self.layout.sector_angle(teeth)
         local = rotated(field, -angle[:, None])
         matrix = interpolation(coarse.mesh, self.layout.mesh)
@@ -177,7 +208,7 @@ class LocalProblem:
     def _numbers(self, sectors: np.ndarray, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Own local indices (n_sectors, n) of nodes, and whether this rank owns them."""
         partition = self.partition
-        number, _ = partition.node_numbers(FLEXIBLE_SPLINE, sectors, nodes)
+        number, _ = partition.node_numbers(self.gear, sectors, nodes)
         return number - partition.row_start, partition.owns(number)
 
     def _attached(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
@@ -195,10 +226,12 @@ class LocalProblem:
 
     def _cuts(self, displacement: np.ndarray) -> PrescribedDisplacement:
         """The nodes of all cuts and of the attachment, held at the displacements of the drive."""
-        mesh, every = self.layout.mesh, np.arange(SECTORS)
+        mesh, every = self.layout.mesh, np.arange(self.layout.count)
         held: dict[int, np.ndarray] = {}
         parts = [(every[:1], mesh.cw_nodes), (every[-1:], mesh.ccw_nodes)]
-        if not mesh.plane:
+        if self.gear == RING_GEAR:
+            parts.append((every, mesh.node_sets["outer"]))
+        elif not mesh.plane:
             parts += [
                 (every, mesh.node_sets["cut"]),
                 (every, mesh.node_sets["bore"]),
@@ -222,9 +255,10 @@ class LocalProblem:
         for (sector, side), load in self.loads.items():
             grid = grids[side]
             nodal = nodal_forces(load, grid, HALF_WIDTH * module).reshape(-1, 3)
+            self.pressing[sector, grid.nodes.ravel()] = np.linalg.norm(nodal, axis=1)
             index, own = self._numbers(np.array([sector]), grid.nodes.ravel().astype(np.int64))
             np.add.at(forces, index[0, own[0]], nodal[own[0]])
-        if self.layout.mesh.plane:
+        if self.layout.mesh.plane and self.gear == FLEXIBLE_SPLINE:
             self._add_torque(forces)
         nodes = np.flatnonzero(np.abs(forces).sum(axis=1))
         return DeadLoad(nodes, forces[nodes])
@@ -252,35 +286,66 @@ class LocalProblem:
         result = self.solver.solve(state)
         if not result.converged:
             raise ConvergenceError(
-                f"a window around tooth {self.layout.first_tooth + SECTORS // 2}: {result.reason}"
+                f"a window around tooth {self.layout.first_tooth + self.layout.count // 2}: "
+                f"{result.reason}"
             )
 
-    def stress(self) -> tuple[np.ndarray, np.ndarray]:
-        """Stress (n, n_node, 6) MPa at the nodes of owned sectors inside of the margin, and their
-        indices (n,)."""
-        first, end = self.partition.owned_sectors(FLEXIBLE_SPLINE)
+    @cached_property
+    def _stresses(self) -> tuple[dict[str, np.ndarray], np.ndarray]:
+        """s1, |s3| and von Mises stress (n, n_node) MPa at the nodes of owned sectors inside of the
+        margin, by the names of columns, and their indices (n,)."""
+        first, end = self.partition.owned_sectors(self.gear)
         sectors = np.arange(first, end)
-        inside = (sectors >= MARGIN) & (sectors < SECTORS - MARGIN)
-        return self.body.nodal_stress(self.problem.displacement())[inside], sectors[inside]
+        inside = (sectors >= MARGIN) & (sectors < self.layout.count - MARGIN)
+        s1, s3, mises = principal(self.body.nodal_stress(self.problem.displacement())[inside])
+        prefix = STRESS_PREFIXES[self.gear][0]
+        named = {f"{prefix}_s1": s1, f"{prefix}_s3": -s3, f"{prefix}_vm": mises}
+        return named, sectors[inside]
 
     def largest(self, ends: bool = False) -> WindowStress:
         """Largest s1 of the teeth at their ends or between them, one pitch or more inside of the
         cuts; collective."""
         mesh = self.layout.mesh
-        stress, sectors = self.stress()
+        stresses, _ = self._stresses
         toothed = tooth_nodes(mesh, self.model.geometry, ends)
-        best = (-np.inf, 0, 0)
-        if len(sectors):
-            s1 = principal(stress[:, toothed])[0]
-            k, i = np.unravel_index(s1.argmax(), s1.shape)
-            best = (float(s1[k, i]), self.layout.first_tooth + int(sectors[k]), int(toothed[i]))
-        value, tooth, node = max(self.model.comm.allgather(best), key=lambda found: found[0])
-        geometry = self.model.geometry
-        region = region_of(geometry, mesh, node, False)
-        warning = warning_of(geometry, region, mesh.coords[node])
-        return WindowStress(
-            value, tooth, mesh.coords[node], region, warning, SECTORS * len(mesh.hexes)
-        )
+        found = self._found(stresses[f"{STRESS_PREFIXES[self.gear][0]}_s1"][:, toothed], toothed)
+        region = region_of(self.model.geometry, mesh, found.node, False)
+        return self._named(found, region)
+
+    def by_region(self) -> dict[str, WindowStress]:
+        """Largest stresses of the regions that the window resolves, by names with `OF_REGION`;
+        collective."""
+        geometry, mesh = self.model.geometry, self.layout.mesh
+        length = CUP_LENGTH * decay_length(geometry) if "cut" in mesh.node_sets else 0.0
+        regions = read_regions(geometry, mesh, length)
+        stresses, sectors = self._stresses
+        near = pressed(geometry, mesh, self.pressing)[sectors]
+        found = {}
+        for region in sorted(set(regions) - {""}):
+            nodes = np.flatnonzero(regions == region)
+            for name, values in stresses.items():
+                read = np.where(near[:, nodes], -np.inf, values[:, nodes])
+                best = self._found(read, nodes)
+                if best.value > 0.0:
+                    found[f"{name}{OF_REGION}{region}"] = self._named(best, region)
+        return found
+
+    def _found(self, values: np.ndarray, nodes: np.ndarray) -> _Found:
+        """The largest of values (n, n_read) MPa at nodes (n_read,) of the sectors of `_stresses`;
+        collective."""
+        best = _Found(-np.inf, 0, 0)
+        if values.size:
+            k, i = np.unravel_index(values.argmax(), values.shape)
+            tooth = self.layout.first_tooth + int(self._stresses[1][k])
+            best = _Found(float(values[k, i]), tooth, int(nodes[i]))
+        return max(self.model.comm.allgather(best), key=lambda one: one.value)
+
+    def _named(self, found: _Found, region: str) -> WindowStress:
+        mesh = self.layout.mesh
+        position = mesh.coords[found.node]
+        warning = warning_of(self.model.geometry, region, position)
+        elements = self.layout.count * len(mesh.hexes)
+        return WindowStress(found.value, found.tooth, position, region, warning, elements)
 
     def destroy(self) -> None:
         """Release the solver; collective."""

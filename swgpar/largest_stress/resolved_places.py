@@ -1,20 +1,23 @@
-"""The largest stresses of the flexible spline by windows where these resolve them, by nodal
-averages elsewhere."""
+"""The largest stresses of both gears by windows where these resolve them, by nodal averages
+elsewhere."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.largest_stress.place_errors import MOST_LOST
-from swgpar.largest_stress.places import APART, OF_REGION, Place
+from swgpar.largest_stress.places import APART, OF_REGION, ROLLER, Place
 from swgpar.largest_stress.root_stress import RootStress
 from swgpar.largest_stress.wall_stress import WallStress
-from swgpar.model.regions import UNDER_CONTACT, WALL
+from swgpar.model.regions import CUP_WALL, INSIDE, UNDER_CONTACT
 
-STRESSES = "fs_s1", "fs_s3", "fs_vm"
+STRESSES = "fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm"
 """Stresses that windows resolve."""
+
+MOST_LOST = 1.0
+"""Share of a stress that it may lack where nothing says how much it does. A stress that such a one
+may overtake has no estimate."""
 
 
 def with_windows(
@@ -26,32 +29,39 @@ def with_windows(
     """The places with the values and errors of windows.
 
     Windows resolve the loaded state. Where nodal averages are larger at another angle, so are the
-    stresses in proportion. The largest stress of the body is that of the largest region. Nodal
-    averages of the wall have no error: the meshes of a drive may have one or two elements in its
-    fillet, so that none of them shows its stress.
+    stresses in proportion. The largest stress of a body is that of its largest region. Nodal
+    averages have no error: a mesh with one or two elements in a fillet does not show its stress.
 
-    places : by names of `find_places`, with their errors;  loaded : MPa, nodal averages of the
-    loaded state by these names
+    places : by names of `find_places`;  loaded : MPa, nodal averages of the loaded state by these
+    names
     """
-    found = {
-        name: replace(place, error=None) if place.region in WALL else place
-        for name, place in places.items()
-    }
-    resolved = dict(wall.places) if wall is not None else {}
-    if root_stress is not None:
-        resolved |= _of_root(root_stress)
+    found, resolved = dict(places), windowed_places(root_stress, wall)
     for name, place in resolved.items():
-        found[name] = _risen(place, places.get(name), loaded.get(name))
+        nodal, risen = places.get(name), _risen(place, places.get(name), loaded.get(name))
+        beyond = nodal is not None and nodal.value > risen.value
+        if nodal is not None and nodal.warning and (beyond or nodal.warning == ROLLER):
+            continue  # the largest of the region has no limit, or is not resolved
+        if place.region == CUP_WALL and (wall is None or name not in wall.places):
+            # windows see no more of the wall than what is beside the teeth
+            if beyond:
+                continue
+            risen = replace(risen, error=None)
+        found[name] = risen
     for stress in STRESSES:
-        if not any(name.startswith(stress + OF_REGION) for name in resolved):
-            continue
-        regions = [place for name, place in found.items() if name.startswith(stress + OF_REGION)]
-        names = (stress, stress + APART) if stress + APART in places else (stress,)
-        for name in names:
-            if name.endswith(APART):
-                regions = [place for place in regions if place.region != UNDER_CONTACT]
-            found[name] = replace(_largest(regions), on_mesh=places[name].value)
+        if any(name.startswith(stress + OF_REGION) for name in resolved):
+            found |= _totals(stress, found, places)
     return found
+
+
+def windowed_places(root_stress: RootStress | None, wall: WallStress | None) -> dict[str, Place]:
+    """Places that windows, rings and slices give, by name. What two of them resolve has the larger
+    stress."""
+    found = dict(wall.places) if wall is not None else {}
+    if root_stress is None:
+        return found
+    for name, stress in root_stress.regions.items():
+        found[name] = _largest([p for p in (stress.resolved, found.get(name)) if p is not None])
+    return found | _of_root(root_stress)
 
 
 def _of_root(root_stress: RootStress) -> dict[str, Place]:
@@ -83,7 +93,29 @@ def _risen(place: Place, nodal: Place | None, loaded: float | None) -> Place:
     return replace(place, value=rise * place.value, error=error, on_mesh=nodal.value)
 
 
-def _largest(regions: list[Place]) -> Place:
+def _totals(
+    stress: str, found: Mapping[str, Place], nodal: Mapping[str, Place]
+) -> dict[str, Place]:
+    """The largest stress of a body, and that apart from the contact of flanks.
+
+    A tension below a contact comes from the elements alone: surfaces are pressed there. What
+    compression and von Mises stress have below it is not resolved, so that the largest of all has
+    no estimate where flanks touch.
+    """
+    regions = [place for name, place in found.items() if name.startswith(stress + OF_REGION)]
+    apart = [place for place in regions if place.region not in (UNDER_CONTACT, INSIDE)]
+    if stress.endswith("s1"):
+        return {stress: replace(_largest(apart), on_mesh=nodal[stress].value)}
+    largest = _largest(regions)
+    if any(place.region == UNDER_CONTACT for place in regions):
+        largest = replace(largest, error=None)
+    known = {stress: replace(largest, on_mesh=nodal[stress].value)}
+    if stress + APART in nodal:
+        known[stress + APART] = replace(_largest(apart), on_mesh=nodal[stress + APART].value)
+    return known
+
+
+def _largest(regions: Sequence[Place]) -> Place:
     """The largest of several regions. Its error reaches as far as the largest one may."""
     largest = max(regions, key=lambda place: place.value)
     error = largest.error

@@ -11,8 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -28,80 +27,25 @@ from swgpar.answers.answer import (
     with_no_limit,
 )
 from swgpar.design.drive_design import DriveDesign
-from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.stress import principal
+from swgpar.largest_stress.candidate_teeth import candidates, followed
 from swgpar.largest_stress.convergence import error_of
-from swgpar.largest_stress.local_problem import SECTORS, LocalProblem, WindowStress, tooth_nodes
-from swgpar.largest_stress.places import root_nodes
+from swgpar.largest_stress.local_problem import LocalProblem, WindowStress, tooth_nodes
+from swgpar.largest_stress.places import OF_REGION, root_nodes
+from swgpar.largest_stress.region_stress import RegionStress, WindowReadings, nodal_by_sector
+from swgpar.largest_stress.window_recipes import (
+    LEVELS,
+    PERIOD_LEVEL,
+    RATIO,
+    RING_LEVELS,
+    window_recipe,
+)
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
-from swgpar.meshing.recipe import make_recipe
 from swgpar.model.drive_model import DriveModel
-from swgpar.model.regions import AT_ENDS as END_REGIONS
-from swgpar.model.regions import TOOTH_END, TOOTH_ROOT
-
-RATIO = {"plane": 2.0, "cup": 1.5}
-"""Ratio of element sizes of successive windows."""
-
-COUNTS: dict[str, dict[str, dict[str, tuple[int, ...]]]] = {
-    "plane": {
-        "flexible_spline": {
-            "root": (4, 8, 16, 32, 64),
-            "under": (3, 6, 12, 24, 48),
-            "rim": (4, 8, 16, 32, 64),
-            "layers": (1, 2, 4, 8, 16),
-            "tip": (2, 4, 8, 16, 32),
-            "flank": (8, 16, 32, 64, 128),
-        }
-    },
-    "cup": {
-        "flexible_spline": {
-            "root": (4, 6, 9, 13),
-            "under": (2, 3, 4, 6),
-            "rim": (2, 3, 4, 6),
-            "layers": (1, 1, 2, 3),
-            "tip": (2, 2, 2, 2),  # the flanks are far from the root
-            "flank": (8, 8, 8, 8),
-        },
-        "face_width": {"elements": (8, 12, 18, 26)},  # even: a crowned cam touches along the middle
-        "cup": {"cylinder": (6, 9, 13, 20), "fillet": (1, 1, 1, 1), "closed_end": (1, 1, 1, 1)},
-    },
-}
-"""Counts of the windows, coarse to fine. That of the cylinder is along all of it; fillet and closed
-end are outside."""
-
-MOST_LEVELS = {"plane": 5, "cup": 4}
-"""Windows that there are; the last one has some 200,000 and 60,000 elements."""
-
-END_RATIO = 3.0
-"""Middle elements along the face width over those at both ends."""
-
-LEVELS = {"plane": 4, "cup": 3}
-"""Windows in the loaded state."""
-
-FEWEST_LEVELS = {"plane": 4, "cup": 2}
-"""The same for a rough answer."""
-
-PERIOD_LEVEL = {"plane": 1, "cup": 1}
-"""Index of the window with which the further angles of a period are computed."""
-
-CLOSE = 0.85
-"""Share of the largest stress on the drive's own mesh from which a tooth outside of the first
-window is looked at."""
-
-CLOSE_IN_ROOT = 0.7
-"""The same for the largest stress in a root where the largest one is elsewhere: nodal averages lose
-up to a quarter in roots, and little inside of the rim."""
-
-IN_ROOT = (0.82, 0.92, 0.97)
-"""Shares of the largest stress, which is not in a root, from which one in a root is followed after
-the first windows: there up to 15, 8 and 2 % are still to come."""
-
-SAME_REGION, AT_ENDS, BETWEEN_ENDS = 0.995, (0.9, 1.0), 0.88
-"""Shares of the largest stress from which another is followed on finer windows: in the same region;
-at the ends of teeth after the first window, and after later ones; between them while an end has the
-largest. At the ends the second window gives the most, up to 12 % too much."""
+from swgpar.model.regions import RIM_INSIDE, TOOTH_END, TOOTH_ROOT
 
 PARTS = BETWEEN, ENDS = "between the ends", "ends"
 """Of teeth, in which stresses converge differently; a flag `ends` is the index."""
@@ -137,6 +81,8 @@ class RootStress(AnswerGroup):
     in_root : MPa, largest nodal average in the roots on the drive's mesh, between the ends of the
     teeth
     drive_error : MPa, estimated, of the drive's mesh; None where it is not known
+    regions : largest stresses of the regions of both gears that windows resolve, by names with
+    `OF_REGION`
     period : angles of the wave generator (degrees) and s1 (MPa) there, of one sampled period
     """
 
@@ -169,6 +115,7 @@ class RootStress(AnswerGroup):
     elements: int
     in_root: float = 0.0
     drive_error: float | None = None
+    regions: Mapping[str, RegionStress] = field(default_factory=dict)
     period: tuple[tuple[float, float], ...] = part_answers(
         AnswerKind(
             "root.mean_s1",
@@ -216,19 +163,6 @@ class RootStress(AnswerGroup):
         return joined_error(self.error, self.drive_error)
 
     @property
-    def lost_in_root(self) -> float | None:
-        """Share of the root's tension that nodal averages on the drive's mesh lose, with its error;
-        None if unknown."""
-        if (
-            self.in_root <= 0.0
-            or self.region not in (TOOTH_ROOT, TOOTH_END)
-            or self.total_error is None
-        ):
-            return None
-        s1 = self.s1 if self.region == TOOTH_ROOT else self.by_part[BETWEEN][-1]
-        return (abs(s1 - self.in_root) + self.total_error) / self.in_root
-
-    @property
     def over_period(self) -> OverPeriod | None:
         """Mean and maximum of s1 over the sampled period; None where it is not sampled."""
         if len(self.period) < 2:
@@ -240,23 +174,11 @@ class RootStress(AnswerGroup):
         return OverPeriod(mean, None if share is None else share * mean, half, float(values.max()))
 
 
-def window_recipe(model: str, level: int) -> MeshRecipe:
-    """Recipe of the window `level`, from 0 on, of the "plane" or "cup" model."""
-    content: dict[str, Any] = {
-        section: {name: values[level] for name, values in counts.items()}
-        for section, counts in COUNTS[model].items()
-    }
-    if "face_width" in content:
-        content["face_width"]["end_ratio"] = END_RATIO
-    content["ring_gear"] = content["flexible_spline"]  # not meshed
-    return make_recipe(content)
-
-
 def resolve_root_stress(
     model: DriveModel, state: LoadState, levels: int | None = None, skipped: int = 0
 ) -> RootStress:
-    """Resolve the largest tensile stress at the teeth in the model's equilibrium under `state`;
-    collective.
+    """Resolve the largest tensile stress at the teeth in the model's equilibrium under `state`, and
+    read the other stresses of both gears; collective.
 
     levels : windows, each finer than the one before; None for those of `LEVELS`
     skipped : coarsest of these windows that are left out; their stresses are not numbers
@@ -271,11 +193,15 @@ def resolve_root_stress(
     in_root = _largest_nodal(
         model, root_nodes(model.geometry, model.partition.layouts[FLEXIBLE_SPLINE].mesh)
     )
-    teeth = candidates(*on_mesh, in_root=in_root)
+    nodal = nodal_by_sector(model, state, FLEXIBLE_SPLINE)
+    parts_of_teeth = [f"fs_vm{OF_REGION}{part}" for part in (TOOTH_ROOT, TOOTH_END, RIM_INSIDE)]
+    mises = np.max([nodal[name] for name in parts_of_teeth if name in nodal], axis=0)
+    teeth = candidates(*on_mesh, in_root=in_root, mises=mises)
     places = [(tooth, ends) for tooth in teeth for ends in parts]
     values: dict[tuple[int, bool], list[float]] = {place: [math.nan] * skipped for place in places}
+    readings = WindowReadings(skipped)
     for level in range(skipped, levels or LEVELS[kind]):
-        found = _solve(model, state, places, window_recipe(kind, level))
+        found = _solve(model, state, places, window_recipe(kind, level), readings)
         for place, stress in found.items():
             values[place].append(stress.value)
         best = max(places, key=lambda place: found[place].value)
@@ -297,64 +223,33 @@ def resolve_root_stress(
             error_at_ends(by_part, RATIO[kind]) if len(values[best]) >= LEVELS[kind] else math.inf
         )
     known = _place(model, found[best], PARTS[best[1]], by_part, error, float(np.max(on_mesh)))
-    return replace(known, in_root=float(in_root.max()))
+    regions = readings.stresses(model, FLEXIBLE_SPLINE, nodal, RATIO[kind])
+    regions |= _ring_stresses(model, state, levels or LEVELS[kind], skipped)
+    return replace(known, in_root=float(in_root.max()), regions=regions)
+
+
+def _ring_stresses(
+    model: DriveModel, state: LoadState, levels: int, skipped: int
+) -> dict[str, RegionStress]:
+    """Largest stresses of the ring gear by windows around the tooth with the largest tension in
+    its root; collective."""
+    kind, nodal = model.geometry.model, nodal_by_sector(model, state, RING_GEAR)
+    tooth = int(nodal[f"rg_s1{OF_REGION}{TOOTH_ROOT}"].argmax())
+    readings = WindowReadings(skipped)
+    first = model.partition.layouts[RING_GEAR].first_tooth
+    for level in range(skipped, min(levels, RING_LEVELS[kind])):
+        window = LocalProblem(model, state, first + tooth, window_recipe(kind, level), RING_GEAR)
+        try:
+            window.solve()
+            readings.add(tooth, window.by_region())
+        finally:
+            window.destroy()
+    return readings.stresses(model, RING_GEAR, nodal, RATIO[kind])
 
 
 def _reached(levels: list[float]) -> tuple[int, float]:
     """Number of windows, and s1 on the finest one."""
     return len(levels), levels[-1]
-
-
-def candidates(
-    between: np.ndarray, at_ends: np.ndarray | None = None, *, in_root: np.ndarray
-) -> list[int]:
-    """Teeth whose stresses are looked at: the one with the largest between its ends, and others
-    that are close to it.
-
-    between, at_ends, in_root : (n_modelled,) largest nodal s1, MPa, of the teeth between their
-    ends, in the cup at them, and in their roots
-    """
-    first = int(between.argmax())
-    teeth = [first]
-    shares = [(between, CLOSE)]
-    if in_root[first] < between[first]:
-        shares.append((in_root, CLOSE_IN_ROOT))
-    if at_ends is not None:
-        shares.append((at_ends, CLOSE))
-    for stresses, share in shares:
-        far = stresses.copy()
-        far[_near(first, len(far))] = -np.inf
-        other = int(far.argmax())
-        if far[other] > share * between[first] and other not in teeth:
-            teeth.append(other)
-    return teeth
-
-
-def may_be_largest(one: WindowStress, best: WindowStress, level: int) -> bool:
-    """Whether a stress may overtake the largest one on windows finer than `level`; one region
-    converges alike."""
-    share = SAME_REGION
-    if one.region != best.region:
-        share = BETWEEN_ENDS if best.region in END_REGIONS else AT_ENDS[min(level, 1)]
-        if one.region == TOOTH_ROOT and best.region not in END_REGIONS:
-            share = IN_ROOT[min(level, len(IN_ROOT) - 1)]
-    return one is best or one.value > share * best.value
-
-
-def followed(found: Mapping[tuple[int, bool], WindowStress], level: int) -> list[tuple[int, bool]]:
-    """Places that may have the largest stress on windows finer than `level`: each may overtake the
-    first of both parts.
-
-    found : by tooth and whether at its ends
-    """
-    firsts: dict[bool, WindowStress] = {}
-    for (_, ends), stress in found.items():
-        firsts[ends] = max(firsts.get(ends, stress), stress, key=lambda s: s.value)
-    return [
-        place
-        for place, stress in found.items()
-        if all(may_be_largest(stress, f, level) for f in firsts.values())
-    ]
 
 
 def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootStress:
@@ -387,12 +282,6 @@ def error_at_ends(by_part: Mapping[str, Sequence[float]], ratio: float) -> float
     return error
 
 
-def _near(tooth: int, count: int) -> np.ndarray:
-    """Modelled teeth (n,) whose stresses the window of a tooth resolves."""
-    inside = SECTORS // 2 - 1
-    return (tooth + np.arange(-inside, inside + 1)) % count
-
-
 def _largest_by_tooth(model: DriveModel, ends: bool) -> np.ndarray:
     """Largest s1 (n_modelled,) MPa of the teeth of all modelled sectors, at their ends or between
     them; collective."""
@@ -411,10 +300,17 @@ def _largest_nodal(model: DriveModel, nodes: np.ndarray) -> np.ndarray:
 
 
 def _solve(
-    model: DriveModel, state: LoadState, places: list[tuple[int, bool]], recipe: MeshRecipe
+    model: DriveModel,
+    state: LoadState,
+    places: list[tuple[int, bool]],
+    recipe: MeshRecipe,
+    readings: WindowReadings | None = None,
 ) -> dict[tuple[int, bool], WindowStress]:
     """Largest stresses at the ends of teeth or between them, by tooth and whether at the ends: a
-    window per tooth."""
+    window per tooth.
+
+    readings : takes the stresses of all regions
+    """
     first = model.partition.layouts[FLEXIBLE_SPLINE].first_tooth
     found: dict[tuple[int, bool], WindowStress] = {}
     for tooth in dict.fromkeys(tooth for tooth, _ in places):
@@ -422,6 +318,8 @@ def _solve(
         try:
             window.solve()
             found |= {place: window.largest(place[1]) for place in places if place[0] == tooth}
+            if readings is not None:
+                readings.add(tooth, window.by_region())
         finally:
             window.destroy()
     return found

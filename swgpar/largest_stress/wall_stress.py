@@ -17,6 +17,7 @@ from swgpar.fem.stress import principal
 from swgpar.largest_stress.convergence import error_of
 from swgpar.largest_stress.places import OF_REGION, Place
 from swgpar.largest_stress.wall_problem import Source, WallProblem
+from swgpar.largest_stress.window_regions import BEHIND, wall_start
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.meshing.sector import SectorMesh
@@ -42,10 +43,6 @@ sides; fewest and most sectors of a slice."""
 REACH, READ, HELD = 4.0, 1.0, 0.5
 """Distances along the section from the middle of a slice over the thickness there: as far as which
 it extends, as far as which it is read, and as far as which it resolves other stresses too."""
-
-CUT = 1.5
-"""Distance from the cut at the back of the teeth over the thickness there from which stresses of a
-ring are read."""
 
 CLOSE_IN_FILLET, CLOSE, FOLLOWED = 0.6, 0.85, 0.8
 """Shares of the largest stress from which another is resolved by slices, in the fillet and
@@ -107,13 +104,6 @@ class WallStress:
     places: Mapping[str, Place]
     levels: Mapping[str, tuple[float, ...]]
     on_ring: Mapping[str, float]
-
-
-def wall_start(model: DriveModel) -> float:
-    """Distance (mm) from the back of the teeth at which rings begin: behind its fillet, and where
-    no cam touches."""
-    geometry = model.geometry
-    return max(geometry.cup.back_fillet, 0.5 * (geometry.cam_width - geometry.face_width))
 
 
 def ring_stresses(model: DriveModel, state: LoadState) -> dict[str, float]:
@@ -206,7 +196,7 @@ def _solved_ring(
     model: DriveModel, state: LoadState, counts: WallCounts, coarser: Sequence[Ring] = ()
 ) -> Ring:
     """coarser : a ring whose displacements to begin with, if there is one"""
-    grid = wall_sector(model.geometry, counts, wall_start(model))
+    grid = wall_sector(model.geometry, counts, wall_start(model.geometry, model.geometry.cup))
     begin = coarser[0].displacements() if coarser else None
     problem = WallProblem.ring(model, state, grid.mesh, begin)
     try:
@@ -225,7 +215,11 @@ def _regions_of_ring(ring: WallProblem) -> np.ndarray:
 def _first_z(model: DriveModel) -> float:
     """z (mm) from which stresses are read: away from the cut."""
     geometry = model.geometry
-    return geometry.cup.wall.back + wall_start(model) + CUT * geometry.cup_thickness
+    return (
+        geometry.cup.wall.back
+        + wall_start(geometry, geometry.cup)
+        + BEHIND * geometry.cup_thickness
+    )
 
 
 def _largest(
@@ -349,7 +343,7 @@ def _slice_mesh(
 ) -> tuple[SectorMesh, np.ndarray]:
     """Mesh within `reach` (mm) along the section of a stress, and distances (n_node,) mm from it"""
     model = ring.problem.model
-    mesh = wall_sector(model.geometry, counts, wall_start(model)).mesh
+    mesh = wall_sector(model.geometry, counts, wall_start(model.geometry, model.geometry.cup)).mesh
 
     def distance(points: np.ndarray) -> np.ndarray:
         section = np.column_stack([np.hypot(*points[:, :2].T), points[:, 2]])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -85,6 +86,15 @@ class SectorMesh:
         """Elements of each material: those of the gear, then those of a housing."""
         every = np.arange(len(self.hexes), dtype=np.int32)
         return (np.setdiff1d(every, self.housing), self.housing) if len(self.housing) else (every,)
+
+    @cached_property
+    def arc_lengths(self) -> dict[int, float]:
+        """Arc length (mm) on the tooth profile of every node of the flanks."""
+        found: dict[int, float] = {}
+        for grid in reversed(self.flanks):
+            for s, row in zip(grid.s[::-1], grid.nodes[::-1], strict=True):
+                found.update(dict.fromkeys(row.tolist(), float(s)))
+        return found
 
     def nodes_of(self, part: int) -> Ints:
         """Nodes (n,) of a part, those on its boundary included; in the plane of both layers."""

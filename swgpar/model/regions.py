@@ -19,16 +19,26 @@ TOOTH_ROOT, TOOTH_END, UNDER_CONTACT = "tooth root", "tooth end", "flank under c
 """Regions of the roots and of the ends of the teeth; of the flanks that touch and of what is close
 below them."""
 
+FLANK, TIP, INSIDE = "flank", "tip", "inside the tooth"
+"""Regions of the flanks that do not touch, of the tips, and of what lies on no surface."""
+
+RIM_INSIDE, RIM, NOTCH_REGION = "rim inside", "rim", "notch"
+"""Regions of the inner half of the flexible spline's rim, of the ring gear's rim, and of the corner
+without a fillet behind the teeth."""
+
+CUP_WALL = "cup wall"
+"""Region of the wall between the back of the teeth and its fillet."""
+
 FILLET = "fillet"
 """Region of the fillet before the closed end or flange, and of the wall beside it."""
 
-WALL = ("cup wall", FILLET, "closed end", "bore", "flange", "rim of the flange")
+WALL = (CUP_WALL, FILLET, "closed end", "bore", "flange", "rim of the flange")
 """Regions of the wall behind the teeth."""
 
 END = 0.45
 """Share of the face width from its middle beyond which a place belongs to the end of a tooth."""
 
-AT_ENDS = (TOOTH_END, BACK, "notch")
+AT_ENDS = (TOOTH_END, BACK, NOTCH_REGION)
 """Regions of the ends of the teeth."""
 
 NEAR = 0.02
@@ -75,31 +85,30 @@ def region_of(geometry: DriveGeometry, mesh: SectorMesh, node: int, touched: boo
         and radius < geometry.inner_radius + 0.5 * geometry.gears["flexible_spline"].rim
     )
     if inner:
-        return "rim inside"
-    for grid in mesh.flanks:
-        rows, _ = np.nonzero(grid.nodes == node)
-        if len(rows):
-            return _region_of_the_flank(geometry, mesh, float(grid.s[rows[0]]), float(z), touched)
+        return RIM_INSIDE
+    s = mesh.arc_lengths.get(node)
+    if s is not None:
+        return _region_of_the_flank(geometry, mesh, s, float(z), touched)
     root = mesh.profile.r_root_circle
     near = NEAR * geometry.module
-    inside = UNDER_CONTACT if touched else "inside the tooth"
+    inside = UNDER_CONTACT if touched else INSIDE
     if mesh.body == "ring_gear":
         outer = geometry.gears["ring_gear"].outer_radius
         if radius < root - near:
-            return "tip" if radius < mesh.profile.r_tip_circle + near else inside
+            return TIP if radius < mesh.profile.r_tip_circle + near else inside
         return (
             "outer surface"
             if radius > outer - near
-            else "rim"
+            else RIM
             if radius > root + near
             else TOOTH_ROOT
         )
     if geometry.cup is not None and abs(z - half) < near and radius < root + near:
-        return "notch"
+        return NOTCH_REGION
     if radius < root + near:
         return TOOTH_END if abs(z) > END * geometry.face_width and not mesh.plane else TOOTH_ROOT
     if radius > mesh.profile.r_tip_circle - near:
-        return "tip"
+        return TIP
     at_end = abs(z) > END * geometry.face_width and not mesh.plane
     return TOOTH_END if at_end and not touched else inside
 
@@ -124,7 +133,7 @@ def _region_of_the_flank(
         return TOOTH_END
     if s >= mesh.profile.root_start:
         return TOOTH_ROOT
-    return UNDER_CONTACT if touched else "flank"
+    return UNDER_CONTACT if touched else FLANK
 
 
 def _region_of_the_cup(
@@ -141,7 +150,7 @@ def _region_of_the_cup(
     beyond = radius - r_center if wall.outwards else r_center - radius
     if beyond > on_end and z > min(wall.faces) - near:
         return "flange" if wall.outwards else "closed end"
-    return FILLET if z > z_center - BESIDE * wall.thickness else "cup wall"
+    return FILLET if z > z_center - BESIDE * wall.thickness else CUP_WALL
 
 
 def _is_attached(cup: CupGeometry, radius: float, beside: float) -> bool:
@@ -158,12 +167,12 @@ def warning_of(geometry: DriveGeometry, region: str, point: np.ndarray) -> str:
     it converges."""
     if region == UNDER_CONTACT:
         return AVERAGE
-    if region == "notch":
+    if region == NOTCH_REGION:
         return NOTCH
     if region == ATTACHED:
         return CLAMPED
     edge = 0.5 * geometry.cam_width
-    at_edge = region == "rim inside" and abs(abs(point[2]) - edge) < NEAR * geometry.module
+    at_edge = region == RIM_INSIDE and abs(abs(point[2]) - edge) < NEAR * geometry.module
     if geometry.model != "plane" and at_edge:
         return EDGE
     return ""

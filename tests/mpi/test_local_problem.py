@@ -14,13 +14,16 @@ from support.cup_shapes import CLAMPED, shaped
 from support.paths import RECIPE
 from support.stepping import WORLD, loaded, small
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.stress import principal
+from swgpar.largest_stress import local_problem
 from swgpar.largest_stress.convergence import HIGHEST_ORDER, error_of
-from swgpar.largest_stress.local_problem import MARGIN, SECTORS, LocalProblem
+from swgpar.largest_stress.local_problem import MARGIN, SECTORS, LocalProblem, sectors_of
+from swgpar.largest_stress.places import OF_REGION
+from swgpar.largest_stress.region_stress import nodal_by_sector
 from swgpar.largest_stress.root_stress import resolve_root_stress
 from swgpar.meshing import MeshRecipe, load_recipe
-from swgpar.model.regions import END
+from swgpar.model.regions import END, TOOTH_ROOT
 
 
 @lru_cache
@@ -103,6 +106,67 @@ def test_on_the_drive_s_mesh_a_window_has_the_drive_s_stress(
     expected = on_the_drive(stepper, inside)
     print(f"{model}, tooth {tooth}: {found:.2f} and {expected:.2f} MPa")
     parallel_assert(found == pytest.approx(expected, rel=rel), f"{found} and {expected}")
+
+
+def roots(stepper: LoadStepper, gear: str) -> tuple[dict[str, float], dict[str, float]]:
+    """Largest stresses (MPa) in the roots of a gear in a window with the drive's mesh, and in the
+    same sectors of the drive, by name; collective."""
+    model = stepper.model
+    nodal = nodal_by_sector(model, stepper.load_state, gear)
+    names = [name for name in nodal if name.endswith(f"{OF_REGION}{TOOTH_ROOT}")]
+    tooth = int(nodal[names[0]].argmax())
+    window = LocalProblem(model, stepper.load_state, tooth, load_recipe(RECIPE), gear)
+    window.solve()
+    found = window.by_region()
+    window.destroy()
+    count = sectors_of(gear)
+    inside = tooth + np.arange(MARGIN, count - MARGIN) - count // 2
+    inside %= model.partition.layouts[gear].count
+    return (
+        {name: found[name].value for name in names},
+        {name: float(nodal[name][inside].max()) for name in names},
+    )
+
+
+# in the ring gear of a cup with two elements along its width the load of one tooth is at one node
+@pytest.mark.parametrize(
+    ("model", "gear"),
+    [("plane", FLEXIBLE_SPLINE), ("plane", RING_GEAR), ("cup", FLEXIBLE_SPLINE)],
+)
+@pytest.mark.parallel([1, 2])
+def test_on_the_drive_s_mesh_roots_have_the_drive_s_stresses(model: str, gear: str) -> None:
+    found, expected = roots(drive(model), gear)
+    assert len(found) == 3
+    for name, value in found.items():
+        print(f"{model}, {name}: {value:.2f} and {expected[name]:.2f} MPa")
+        # the flanks' load is a parabola in the window
+        parallel_assert(value == pytest.approx(expected[name], rel=0.03), name)
+
+
+def test_three_sectors_of_a_ring_gear_are_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    few, _ = roots(drive("cup"), RING_GEAR)
+    monkeypatch.setattr(local_problem, "RING_SECTORS", 5)
+    more, _ = roots(drive("cup"), RING_GEAR)
+    for name, value in more.items():
+        assert few[name] == pytest.approx(value, rel=1e-3) and value > 1.0
+
+
+@pytest.mark.parametrize("model", ["plane", "cup"])
+def test_errors_of_regions_hold(model: str) -> None:
+    """Of the windows alone, against further windows with smaller elements."""
+    stepper = drive(model)
+    found = resolve_root_stress(stepper.model, stepper.load_state)
+    finer = resolve_root_stress(
+        stepper.model, stepper.load_state, len(found.by_part[found.part]) + 1
+    )
+    assert {name[:2] for name in found.regions} == {"fs", "rg"}
+    for name, one in found.regions.items():
+        # of the ring gear both have the same windows
+        if name[:2] != "fs" or one.place.error is None or one.place.value < 0.2 * found.s1:
+            continue
+        truth = finer.regions[name].place.value
+        print(f"{name}: {one.place.value:.1f} ± {one.place.error:.1f}, {truth:.1f} MPa")
+        assert abs(one.place.value - truth) < 1.5 * one.place.error + 0.002 * truth
 
 
 def test_the_estimated_error_holds() -> None:

@@ -29,13 +29,8 @@ from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
 from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.input.toml_file import to_toml
-from swgpar.largest_stress.root_stress import (
-    BETWEEN,
-    ENDS,
-    LEVELS,
-    RootStress,
-    resolve_root_stress,
-)
+from swgpar.largest_stress.root_stress import BETWEEN, ENDS, RootStress, resolve_root_stress
+from swgpar.largest_stress.window_recipes import LEVELS
 from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe_counts import (

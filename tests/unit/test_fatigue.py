@@ -203,7 +203,7 @@ def test_a_run_has_figures_and_quantities() -> None:
 
 
 def test_windows_scale_the_tooth_root() -> None:
-    """Stresses in the root grow by the factor, all others stay."""
+    """Stresses grow by the factor of their region, those without one stay."""
     pytest.importorskip("rainflow")
     sampled = [*PLANE, "steps.samples=2", "steps.rotation=9", "fatigue.size_factor=1.0"]
     sampled += ["steps.start_levels=1"]  # a coarser mesh, for the error of the drive's mesh
@@ -215,8 +215,10 @@ def test_windows_scale_the_tooth_root() -> None:
     )
     root, factor = scaled.root_stress, scaled.fatigue.root_factor
     assert factor == pytest.approx(root.s1 / root.on_mesh) and factor > 1.0
+    factors = scaled.fatigue.factors
+    assert set(factors) == {"tooth root", "rim inside"} and factors["tooth root"] == factor
     for region, values in plain.fatigue.regions.items():
-        by = factor if region == "tooth root" else 1.0
+        by = factors.get(region, 1.0)
         found = scaled.fatigue.regions[region].safety["goodman"]
         assert found == pytest.approx(values.safety["goodman"] / by, rel=1e-5)
     relative = scaled.fatigue.mesh_error / scaled.fatigue.least["goodman"].safety

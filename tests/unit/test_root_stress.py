@@ -5,16 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from swgpar.largest_stress.candidate_teeth import candidates, followed, may_be_largest
 from swgpar.largest_stress.convergence import error_of
 from swgpar.largest_stress.local_problem import WindowStress
-from swgpar.largest_stress.root_stress import (
-    BETWEEN,
-    ENDS,
-    candidates,
-    error_at_ends,
-    followed,
-    may_be_largest,
-)
+from swgpar.largest_stress.root_stress import BETWEEN, ENDS, error_at_ends
 
 
 def teeth(**values: float) -> np.ndarray:
@@ -41,8 +35,9 @@ def teeth(**values: float) -> np.ndarray:
     ],
 )
 def test_candidates(ends: dict[str, float], between: dict[str, float], expected: list[int]) -> None:
-    in_root = teeth(**between)
-    assert candidates(teeth(**between), teeth(**ends), in_root=in_root) == expected
+    tension = teeth(**between)
+    found = candidates(tension, teeth(**ends), in_root=tension, mises=tension)
+    assert found == expected
 
 
 @pytest.mark.parametrize(
@@ -59,7 +54,16 @@ def test_candidates(ends: dict[str, float], between: dict[str, float], expected:
 def test_roots_are_looked_at_where_the_largest_stress_is_not_in_one(
     in_root: dict[str, float], expected: list[int]
 ) -> None:
-    assert candidates(teeth(t0=100.0), in_root=teeth(**in_root)) == expected
+    tension = teeth(t0=100.0)
+    assert candidates(tension, in_root=teeth(**in_root), mises=tension) == expected
+
+
+@pytest.mark.parametrize(("value", "expected"), [(86.0, [0, 7]), (84.0, [0])])
+def test_a_tooth_with_a_large_von_mises_stress_is_looked_at(
+    value: float, expected: list[int]
+) -> None:
+    tension = teeth(t0=100.0)
+    assert candidates(tension, in_root=tension, mises=teeth(t1=100.0, t7=value)) == expected
 
 
 def test_a_root_is_followed_below_a_stress_that_falls() -> None:

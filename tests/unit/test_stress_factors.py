@@ -2,24 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
+
 import pytest
 
 from swgpar.evaluation.stress_factors import stress_factors
-from swgpar.largest_stress.places import Place
+from swgpar.largest_stress.places import ROLLER, Place
+from swgpar.largest_stress.region_stress import RegionStress
 from swgpar.largest_stress.resolved_places import with_windows
+from swgpar.largest_stress.root_stress import BETWEEN, RootStress
 from swgpar.largest_stress.wall_stress import WallStress
+from swgpar.model.regions import AVERAGE, NOTCH
 
 
-def place(value: float, region: str, error: float | None = None) -> Place:
-    return Place(value, "flexible_spline", region, 0, 20.0, 5.0, 0.0, "", error=error)
+def place(
+    value: float, region: str, error: float | None = None, body: str = "flexible_spline"
+) -> Place:
+    return Place(value, body, region, 0, 20.0, 5.0, 0.0, "", error=error)
 
 
 NODAL = {
-    "fs_s1": place(500.0, "tooth root", 20.0),
-    "fs_vm": place(450.0, "tooth root", 20.0),
-    "fs_s1 in tooth root": place(500.0, "tooth root", 20.0),
-    "fs_s1 in fillet": place(300.0, "fillet", 10.0),
-    "fs_s1 in cup wall": place(250.0, "cup wall", 10.0),
+    "fs_s1": place(500.0, "tooth root"),
+    "fs_vm": place(450.0, "tooth root"),
+    "fs_vm_apart": place(450.0, "tooth root"),
+    "fs_s1 in tooth root": place(500.0, "tooth root"),
+    "fs_s1 in fillet": place(300.0, "fillet"),
+    "fs_s1 in cup wall": place(250.0, "cup wall"),
+    "fs_vm in tooth root": place(450.0, "tooth root"),
+    "fs_vm in flank under contact": replace(place(200.0, "flank under contact"), warning=AVERAGE),
 }
 LOADED = {name: one.value for name, one in NODAL.items()} | {"fs_s1 in fillet": 240.0}
 
@@ -33,6 +44,28 @@ def wall(fillet: float, error: float | None = 30.0) -> WallStress:
     return WallStress(places, {}, {})
 
 
+def root(s1: float, regions: Mapping[str, Place] | None = None) -> RootStress:
+    """Windows whose root has `s1` ± 5 MPa, and the regions with no further error by the drive."""
+    return RootStress(
+        s1=s1,
+        error=3.0,
+        on_mesh=500.0,
+        region="tooth root",
+        warning="",
+        tooth=0,
+        radius=59.0,
+        z=0.0,
+        angle_deg=0.0,
+        part=BETWEEN,
+        by_part={BETWEEN: (s1,)},
+        elements=1,
+        drive_error=4.0,
+        regions={
+            name: RegionStress((one.value,), 1.0, one, 0.0) for name, one in (regions or {}).items()
+        },
+    )
+
+
 def test_factors_of_the_wall_are_those_of_the_largest_tension() -> None:
     found = stress_factors(None, wall(600.0), LOADED)
     assert set(found) == {"fillet", "cup wall"}
@@ -43,23 +76,65 @@ def test_factors_of_the_wall_are_those_of_the_largest_tension() -> None:
     assert stress_factors(None, wall(600.0), {}) == {} == stress_factors(None, None, LOADED)
 
 
+def test_factors_of_the_teeth_are_those_of_their_windows() -> None:
+    regions = {"fs_s1 in tooth root": place(600.0, "tooth root", 9.0)}
+    regions["fs_s1 in cup wall"] = place(275.0, "cup wall", 10.0)
+    regions["fs_s1 in flank"] = place(275.0, "flank", 10.0)
+    found = stress_factors(root(600.0, regions), None, LOADED | {"fs_s1 in flank": 100.0})
+    assert set(found) == {"tooth root", "cup wall"}  # flanks are pressed on
+    assert found["tooth root"].factor == pytest.approx(600.0 / 500.0)
+    assert found["tooth root"].error == pytest.approx(5.0 / 500.0)
+    assert found["cup wall"].factor == pytest.approx(275.0 / 250.0)
+
+
 def test_the_largest_stress_is_that_of_the_largest_region() -> None:
     found = with_windows(NODAL, LOADED, None, wall(600.0))
     # at another angle the nodal average of the fillet is larger by a quarter
     assert found["fs_s1"].region == "fillet" and found["fs_s1"].value == pytest.approx(750.0)
-    assert found["fs_s1"].error == pytest.approx(37.5) and found["fs_s1"].on_mesh == 500.0
+    assert found["fs_s1"].on_mesh == 500.0
+    assert found["fs_s1"].error is None  # the root may have twice its nodal average
     assert found["fs_s1 in fillet"].on_mesh == 300.0
+    assert found["fs_s1 in fillet"].error == pytest.approx(37.5)
+    both = with_windows(NODAL, LOADED, root(600.0), wall(600.0))["fs_s1"]
+    assert both.value == pytest.approx(750.0) and both.error == pytest.approx(37.5)
 
 
-def test_nodal_averages_of_the_wall_have_no_error() -> None:
-    found = with_windows(NODAL, LOADED, None, None)
-    for name, one in found.items():
-        assert one == NODAL[name] if one.region == "tooth root" else one.error is None
-        assert one.value == NODAL[name].value
+def test_nodal_averages_have_no_error() -> None:
+    assert with_windows(NODAL, LOADED, None, None) == NODAL
+    assert all(one.error is None for one in NODAL.values())
 
 
 def test_the_error_reaches_as_far_as_another_region_may() -> None:
-    close = with_windows(NODAL, LOADED, None, wall(392.0, 40.0))["fs_s1"]
+    close = with_windows(NODAL, LOADED, root(500.0), wall(392.0, 40.0))["fs_s1"]
     assert close.region == "tooth root" and close.error == pytest.approx(490.0 + 50.0 - 500.0)
-    unknown = with_windows(NODAL, LOADED, None, wall(300.0, None))["fs_s1"]
+    unknown = with_windows(NODAL, LOADED, root(500.0), wall(300.0, None))["fs_s1"]
     assert unknown.region == "tooth root" and unknown.error is None
+
+
+def test_below_a_contact_nothing_is_known() -> None:
+    regions = {"fs_vm in tooth root": place(480.0, "tooth root", 12.0)}
+    found = with_windows(NODAL, LOADED, root(600.0, regions), wall(10.0))
+    assert found["fs_vm"].value == found["fs_vm_apart"].value == 480.0
+    assert found["fs_vm"].error is None and found["fs_vm_apart"].error == 12.0
+    assert found["fs_vm in flank under contact"].warning == AVERAGE
+
+
+def test_a_place_without_a_limit_stays_where_it_is_the_largest() -> None:
+    name, regions = "fs_s1 in tooth root", {"fs_s1 in tooth end": place(480.0, "tooth end", 9.0)}
+    end = "fs_s1 in tooth end"
+    for value, kept in ((490.0, True), (400.0, False)):
+        nodal = NODAL | {end: replace(place(value, "tooth end"), warning=NOTCH)}
+        found = with_windows(nodal, LOADED | {end: value}, root(600.0, regions), None)
+        assert (found[end].warning == NOTCH) == kept and found[name].value == 600.0
+    nodal = NODAL | {end: replace(place(1.0, "tooth end"), warning=ROLLER)}
+    assert with_windows(nodal, LOADED, root(600.0, regions), None)[end].warning == ROLLER
+
+
+def test_windows_of_the_teeth_see_the_beginning_of_the_wall_only() -> None:
+    """Without rings the nodal average of the rest may be the largest of the wall."""
+    for value, expected in ((240.0, 250.0), (260.0, 260.0)):
+        regions = {"fs_s1 in cup wall": place(value, "cup wall", 9.0)}
+        found = with_windows(NODAL, LOADED, root(600.0, regions), None)["fs_s1 in cup wall"]
+        assert found.value == expected and found.error is None
+    beside = with_windows(NODAL, LOADED, root(600.0, regions), wall(10.0))["fs_s1 in cup wall"]
+    assert beside.value == 260.0 and beside.error == 9.0

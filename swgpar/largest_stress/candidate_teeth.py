@@ -1,0 +1,87 @@
+"""Teeth that get a window, and stresses that are followed over finer ones."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from swgpar.largest_stress.local_problem import SECTORS, WindowStress
+from swgpar.largest_stress.region_stress import CLOSE, CLOSE_IN_ROOT
+from swgpar.model.regions import AT_ENDS as END_REGIONS
+from swgpar.model.regions import TOOTH_ROOT
+
+IN_ROOT = (0.82, 0.92, 0.97)
+"""Shares of the largest stress, which is not in a root, from which one in a root is followed after
+the first windows: there up to 15, 8 and 2 % are still to come."""
+
+SAME_REGION, AT_ENDS, BETWEEN_ENDS = 0.995, (0.9, 1.0), 0.88
+"""Shares of the largest stress from which another is followed on finer windows: in the same region;
+at the ends of teeth after the first window, and after later ones; between them while an end has the
+largest. At the ends the second window gives the most, up to 12 % too much."""
+
+
+def candidates(
+    between: np.ndarray,
+    at_ends: np.ndarray | None = None,
+    *,
+    in_root: np.ndarray,
+    mises: np.ndarray,
+) -> list[int]:
+    """Teeth whose stresses are looked at: the one with the largest between its ends, and others
+    that are close to it.
+
+    between, at_ends, in_root : (n_modelled,) largest nodal s1, MPa, of the teeth between their
+    ends, in the cup at them, and in their roots
+    mises : (n_modelled,) largest von Mises stress of teeth and rim, apart from the contact
+    """
+    first = int(between.argmax())
+    teeth = [first]
+    shares = [(between, CLOSE)]
+    if in_root[first] < between[first]:
+        shares.append((in_root, CLOSE_IN_ROOT))
+    if at_ends is not None:
+        shares.append((at_ends, CLOSE))
+    near = _near(first, len(between))
+    limits = [(stresses, share * between[first]) for stresses, share in shares]
+    limits.append((mises, CLOSE * mises[near].max()))
+    for stresses, limit in limits:
+        far = stresses.copy()
+        far[near] = -np.inf
+        other = int(far.argmax())
+        if far[other] > limit and other not in teeth:
+            teeth.append(other)
+    return teeth
+
+
+def may_be_largest(one: WindowStress, best: WindowStress, level: int) -> bool:
+    """Whether a stress may overtake the largest one on windows finer than `level`; one region
+    converges alike."""
+    share = SAME_REGION
+    if one.region != best.region:
+        share = BETWEEN_ENDS if best.region in END_REGIONS else AT_ENDS[min(level, 1)]
+        if one.region == TOOTH_ROOT and best.region not in END_REGIONS:
+            share = IN_ROOT[min(level, len(IN_ROOT) - 1)]
+    return one is best or one.value > share * best.value
+
+
+def followed(found: Mapping[tuple[int, bool], WindowStress], level: int) -> list[tuple[int, bool]]:
+    """Places that may have the largest stress on windows finer than `level`: each may overtake the
+    first of both parts.
+
+    found : by tooth and whether at its ends
+    """
+    firsts: dict[bool, WindowStress] = {}
+    for (_, ends), stress in found.items():
+        firsts[ends] = max(firsts.get(ends, stress), stress, key=lambda s: s.value)
+    return [
+        place
+        for place, stress in found.items()
+        if all(may_be_largest(stress, f, level) for f in firsts.values())
+    ]
+
+
+def _near(tooth: int, count: int) -> np.ndarray:
+    """Modelled teeth (n,) whose stresses the window of a tooth resolves."""
+    inside = SECTORS // 2 - 1
+    return (tooth + np.arange(-inside, inside + 1)) % count

@@ -1,0 +1,204 @@
+"""The largest stresses of the regions of both gears, read from windows.
+
+A window is around one tooth. Where nodal averages have the largest stress of a region at another
+one, the stress there is that of the window in proportion. Where it is far larger there, it is
+loaded in another way: nodal averages stand for it, with what they may lose.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+import numpy as np
+
+from swgpar.answers.answer import joined_error
+from swgpar.fem.body import FLEXIBLE_SPLINE, STRESS_PREFIXES
+from swgpar.fem.stress import principal
+from swgpar.largest_stress.convergence import error_of
+from swgpar.largest_stress.local_problem import MARGIN, WindowStress, sectors_of
+from swgpar.largest_stress.places import (
+    APART_DISTANCE,
+    OF_REGION,
+    Place,
+    near_contact,
+    pressed_nodes,
+)
+from swgpar.load.load_states import LoadState
+from swgpar.model.drive_model import DriveModel
+from swgpar.model.regions import BACK, FLANK, TIP, TOOTH_END, TOOTH_ROOT
+
+UNREFINED = {"plane": (), "cup": (FLANK, TIP)}
+"""Regions of the flexible spline whose elements are the same in all windows: no error follows from
+them."""
+
+ALIKE = 1.5
+"""Ratio of the stresses of two teeth up to which the windows of one stand for those of the
+other."""
+
+LEAST_STRESS = 1e-6
+"""MPa: the least stress that another is divided by."""
+
+CLOSE = 0.85
+"""Share of the largest stress on the drive's own mesh from which a tooth outside of the first
+window is looked at."""
+
+CLOSE_IN_ROOT = 0.7
+"""The same for the largest stress in a root where the largest one is elsewhere: nodal averages lose
+up to a quarter in roots, and little inside of the rim."""
+
+IN_TEETH = (TOOTH_ROOT, TOOTH_END, BACK)
+"""Regions in which nodal averages lose as much as in roots."""
+
+
+@dataclass(frozen=True)
+class RegionStress:
+    """Largest stress of a region.
+
+    levels : MPa, in the windows around one tooth, coarse to fine, not numbers where left out; none
+    where nodal averages stand for them
+    spread : largest stress of the region over that in these windows, at least 1
+    place : with the error by the windows
+    drive_error : MPa, by the mesh of the drive; None where it is not known
+    """
+
+    levels: tuple[float, ...]
+    spread: float
+    place: Place
+    drive_error: float | None = None
+
+    @property
+    def resolved(self) -> Place:
+        """The place with both errors."""
+        return replace(self.place, error=joined_error(self.place.error, self.drive_error))
+
+
+@dataclass
+class WindowReadings:
+    """Stresses that windows of a gear have given, by tooth in the middle and by name.
+
+    skipped : coarsest windows that are left out
+    count : windows so far, by tooth
+    """
+
+    skipped: int
+    levels: dict[int, dict[str, list[float]]] = field(default_factory=dict)
+    last: dict[int, dict[str, WindowStress]] = field(default_factory=dict)
+    count: dict[int, int] = field(default_factory=dict)
+
+    def add(self, tooth: int, found: Mapping[str, WindowStress]) -> None:
+        """Keep what the next window around a tooth gives."""
+        of_tooth, before = self.levels.setdefault(tooth, {}), self.count.get(tooth, 0)
+        for name, stress in found.items():
+            # a region that coarser windows had not had no stress there
+            unknown = [math.nan] * self.skipped + [0.0] * before
+            of_tooth.setdefault(name, unknown).append(stress.value)
+            self.last.setdefault(tooth, {})[name] = stress
+        self.count[tooth] = before + 1
+
+    def stresses(
+        self, model: DriveModel, gear: str, nodal: Mapping[str, np.ndarray], ratio: float
+    ) -> dict[str, RegionStress]:
+        """The largest stress of every region.
+
+        nodal : MPa, see `nodal_by_sector`;  ratio : of element sizes of successive windows
+        """
+        names = sorted({name for of_tooth in self.levels.values() for name in of_tooth})
+        return {name: self._stress(model, gear, name, nodal.get(name), ratio) for name in names}
+
+    def _stress(
+        self, model: DriveModel, gear: str, name: str, nodal: np.ndarray | None, ratio: float
+    ) -> RegionStress:
+        known = {tooth: by[name] for tooth, by in self.levels.items() if name in by}
+        main = max(known, key=lambda tooth: (len(known[tooth]), known[tooth][-1]))
+        shares = {
+            tooth: of[-1] / max(known[main][len(of) - 1], LEAST_STRESS)
+            for tooth, of in known.items()
+        }
+        other = max(shares, key=lambda tooth: shares[tooth])
+        spread = shares[other]
+        if spread > ALIKE:
+            main, spread = other, 1.0
+        levels, tooth, read = known[main], self.last[other][name].tooth, 0.0
+        region = name.partition(OF_REGION)[2]
+        unrefined = gear == FLEXIBLE_SPLINE and region in UNREFINED[model.geometry.model]
+        place = partial(_place, model, gear, self.last[main][name].position, region)
+        if nodal is not None:
+            read, elsewhere = _read_and_elsewhere(nodal, main, known, gear)
+            beyond = float(nodal[elsewhere]) / read if read > 0.0 else 1.0
+            if nodal[elsewhere] > ALIKE * spread * read:
+                lost = 1.0 / (CLOSE_IN_ROOT if region in IN_TEETH else CLOSE) - 1.0
+                error = math.inf if unrefined else lost * float(nodal[elsewhere])
+                return RegionStress((), 1.0, place(elsewhere, float(nodal[elsewhere]), error))
+            if beyond > spread:
+                spread, tooth = beyond, elsewhere
+        error = math.inf if unrefined else error_of(levels, ratio)
+        error = spread * error + (spread - 1.0) * abs(levels[-1] - read)
+        return RegionStress(tuple(levels), spread, place(tooth, spread * levels[-1], error))
+
+
+def _read_and_elsewhere(
+    nodal: np.ndarray, main: int, known: Iterable[int], gear: str
+) -> tuple[float, int]:
+    """Largest of nodal averages (n_modelled,) that windows around a tooth read, and the sector
+    with the largest that none of the windows reads."""
+    count = sectors_of(gear)
+    beside = np.arange(MARGIN, count - MARGIN) - count // 2
+    far = nodal.copy()
+    for tooth in known:
+        far[(tooth + beside) % len(nodal)] = -np.inf
+    return float(nodal[(main + beside) % len(nodal)].max()), int(far.argmax())
+
+
+def _place(
+    model: DriveModel,
+    gear: str,
+    position: np.ndarray,
+    region: str,
+    tooth: int,
+    value: float,
+    error: float,
+) -> Place:
+    """position : (3,) mm, undeformed, with the tooth at +y;  error : MPa, infinite if unknown"""
+    x, y, z = position
+    layout = model.partition.layouts[gear]
+    angle = float(layout.sector_angle(np.array(tooth)) - np.arctan2(x, y))
+    return Place(
+        value=value,
+        body=gear,
+        region=region,
+        tooth=tooth % layout.mesh.n_sectors,
+        radius=float(np.hypot(x, y)),
+        z=0.0 if layout.mesh.plane else float(z),
+        angle_deg=float(np.degrees(angle)) % 360.0,
+        warning="",
+        error=error if math.isfinite(error) else None,
+    )
+
+
+def nodal_by_sector(model: DriveModel, state: LoadState, gear: str) -> dict[str, np.ndarray]:
+    """Largest nodal averages (n_modelled,) MPa of the drive's mesh apart from the contact of
+    flanks, by sector and by names with `OF_REGION`; collective.
+
+    Of the ring gear any flank may be touched.
+    """
+    body = model.elements.bodies[gear]
+    mesh, regions = body.layout.mesh, model.regions[gear][False]
+    s1, s3, mises = principal(body.nodal_stress(model.problem.displacement()))
+    distance = APART_DISTANCE * model.geometry.module
+    if gear == FLEXIBLE_SPLINE:
+        near = near_contact(mesh, pressed_nodes(model, state), distance)
+    else:
+        touched = np.ones((1, len(mesh.coords)), dtype=bool)
+        near = np.broadcast_to(near_contact(mesh, touched, distance), s1.shape)
+    found = {}
+    prefix = STRESS_PREFIXES[gear][0]
+    for region in np.unique(regions):
+        nodes = np.flatnonzero(regions == region)
+        for stress, values in (("s1", s1), ("s3", -s3), ("vm", mises)):
+            read = np.where(near[:, nodes], 0.0, values[:, nodes]).max(axis=1, initial=0.0)
+            gathered = np.concatenate(model.comm.allgather(read))
+            found[f"{prefix}_{stress}{OF_REGION}{region}"] = gathered
+    return found

@@ -1,0 +1,76 @@
+"""Elements of windows, from one to the next finer one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from swgpar.meshing import MeshRecipe
+from swgpar.meshing.recipe import make_recipe
+
+RATIO = {"plane": 2.0, "cup": 1.5}
+"""Ratio of element sizes of successive windows."""
+
+COUNTS: dict[str, dict[str, dict[str, tuple[int, ...]]]] = {
+    "plane": {
+        "flexible_spline": {
+            "root": (4, 8, 16, 32, 64),
+            "under": (3, 6, 12, 24, 48),
+            "rim": (4, 8, 16, 32, 64),
+            "layers": (1, 2, 4, 8, 16),
+            "tip": (2, 4, 8, 16, 32),
+            "flank": (8, 16, 32, 64, 128),
+        }
+    },
+    "cup": {
+        "flexible_spline": {
+            "root": (4, 6, 9, 13),
+            "under": (2, 3, 4, 6),
+            "rim": (2, 3, 4, 6),
+            "layers": (1, 1, 2, 3),
+            "tip": (2, 2, 2, 2),  # the flanks are far from the root
+            "flank": (8, 8, 8, 8),
+        },
+        "ring_gear": {
+            "root": (4, 6, 9, 13),
+            "under": (2, 3, 4, 6),
+            "rim": (2, 3, 4, 6),
+            "layers": (1, 1, 2, 3),
+            "tip": (2, 3, 4, 6),
+            "flank": (8, 12, 18, 26),
+        },
+        "face_width": {"elements": (8, 12, 18, 26)},  # even: a crowned cam touches along the middle
+        "cup": {"cylinder": (6, 9, 13, 20), "fillet": (1, 1, 1, 1), "closed_end": (1, 1, 1, 1)},
+    },
+}
+"""Counts of the windows, coarse to fine. That of the cylinder is along all of it; fillet and closed
+end are outside."""
+
+MOST_LEVELS = {"plane": 5, "cup": 4}
+"""Windows that there are; the last one has some 200,000 and 60,000 elements."""
+
+END_RATIO = 3.0
+"""Middle elements along the face width over those at both ends."""
+
+LEVELS = {"plane": 4, "cup": 3}
+"""Windows in the loaded state."""
+
+FEWEST_LEVELS = {"plane": 4, "cup": 2}
+"""The same for a rough answer."""
+
+RING_LEVELS = {"plane": 3, "cup": 2}
+"""Windows of the ring gear: its stresses are far below those of the flexible spline."""
+
+PERIOD_LEVEL = {"plane": 1, "cup": 1}
+"""Index of the window with which the further angles of a period are computed."""
+
+
+def window_recipe(model: str, level: int) -> MeshRecipe:
+    """Recipe of the window `level`, from 0 on, of the "plane" or "cup" model."""
+    content: dict[str, Any] = {
+        section: {name: values[level] for name, values in counts.items()}
+        for section, counts in COUNTS[model].items()
+    }
+    if "face_width" in content:
+        content["face_width"]["end_ratio"] = END_RATIO
+    content.setdefault("ring_gear", content["flexible_spline"])
+    return make_recipe(content)

@@ -1,0 +1,92 @@
+"""Regions that a window resolves.
+
+A window reaches from its teeth into the wall behind them. Near its cuts, at the contact of flanks,
+near the edge of the wave generator and near a corner without a radius its stresses mean nothing.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from swgpar.fem.body import RING_GEAR
+from swgpar.geometry.drive_geometry import CupGeometry, DriveGeometry
+from swgpar.largest_stress.places import APART_DISTANCE, inside_teeth, near_contact
+from swgpar.meshing.sector import SectorMesh
+from swgpar.model.regions import (
+    BACK,
+    BESIDE,
+    CUP_WALL,
+    FLANK,
+    RIM,
+    RIM_INSIDE,
+    TIP,
+    TOOTH_END,
+    TOOTH_ROOT,
+    region_of,
+    warning_of,
+)
+
+OF_SPLINE = (TOOTH_ROOT, TOOTH_END, FLANK, TIP, RIM_INSIDE, BACK, CUP_WALL)
+OF_RING = (TOOTH_ROOT, TOOTH_END, FLANK, TIP, RIM)
+"""Regions that windows of the gears resolve. The outer surface of a ring gear is held in them."""
+
+BEHIND = 1.5
+"""Distance from the back of the teeth over the thickness of the wall as far as which rings of the
+wall do not resolve it, and that from the cut of a window from which it does."""
+
+
+def decay_length(geometry: DriveGeometry) -> float:
+    """Length (mm) over which a disturbance of the wall decays."""
+    return float(np.sqrt(geometry.inner_radius * geometry.cup_thickness))
+
+
+def wall_start(geometry: DriveGeometry, cup: CupGeometry) -> float:
+    """Distance (mm) from the back of the teeth at which rings begin: behind its fillet, and where
+    no cam touches."""
+    return max(cup.back_fillet, 0.5 * (geometry.cam_width - geometry.face_width))
+
+
+def read_regions(geometry: DriveGeometry, mesh: SectorMesh, length: float) -> np.ndarray:
+    """Region (n_node,) of the nodes of a window's sector, empty where nothing is read.
+
+    length : mm, of the wall behind the teeth that belongs to the window
+    """
+    wanted = OF_RING if mesh.body == RING_GEAR else OF_SPLINE
+    regions = np.full(len(mesh.coords), "", dtype=object)
+    read = np.zeros(len(mesh.coords), dtype=bool)
+    read[mesh.nodes_of(0)] = True  # the housing of a ring gear is another body
+    read[mesh.node_sets.get("outer", [])] = False
+    read &= ~inside_teeth(geometry, mesh) & ~_beside_edges(geometry, mesh, length)
+    if mesh.lower_nodes is not None:
+        read &= mesh.lower_nodes == np.arange(len(read))
+    for node in np.flatnonzero(read):
+        region = region_of(geometry, mesh, int(node), False)
+        if region in wanted and not warning_of(geometry, region, mesh.coords[node]):
+            regions[node] = region
+    return regions
+
+
+def _beside_edges(geometry: DriveGeometry, mesh: SectorMesh, length: float) -> np.ndarray:
+    """Nodes (n_node,) bool near a cut of the wall, a corner without a radius, or the edge of the
+    wave generator."""
+    radius, z = np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]
+    if mesh.plane or mesh.body == RING_GEAR:
+        return np.zeros(len(z), dtype=bool)
+    reach = BESIDE * geometry.gears[mesh.body].rim
+    on_rim = radius < geometry.inner_radius + reach
+    beside = on_rim & (np.abs(np.abs(z) - 0.5 * geometry.cam_width) < reach)
+    if geometry.cup is None:
+        return beside
+    thickness, back = geometry.cup_thickness, geometry.cup.wall.back
+    resolved = max(decay_length(geometry), wall_start(geometry, geometry.cup) + BEHIND * thickness)
+    beside |= z > back + min(resolved, length - BEHIND * thickness)
+    if geometry.cup.back_fillet == 0.0:
+        corner = geometry.inner_radius + thickness
+        beside |= np.hypot(radius - corner, z - back) < BESIDE * thickness
+    return beside
+
+
+def pressed(geometry: DriveGeometry, mesh: SectorMesh, forces: np.ndarray) -> np.ndarray:
+    """Nodes (n_sectors, n_node) bool near the contact of flanks. forces : (n_sectors, n_node) N, of
+    the flanks"""
+    return near_contact(mesh, forces > 0.0, APART_DISTANCE * geometry.module)

@@ -1,0 +1,146 @@
+"""Largest stresses of regions from the windows around several teeth and nodal averages."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import nan
+from typing import cast
+
+import numpy as np
+import pytest
+
+from swgpar.analysis.drive_mesh_error import SAFETY, CoarserMesh, region_errors
+from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.largest_stress.convergence import error_of
+from swgpar.largest_stress.local_problem import WindowStress
+from swgpar.largest_stress.places import Place
+from swgpar.largest_stress.region_stress import ALIKE, CLOSE_IN_ROOT, RegionStress, WindowReadings
+from swgpar.largest_stress.root_stress import BETWEEN, RootStress
+from swgpar.meshing import load_recipe
+from swgpar.meshing.recipe_counts import coarsened
+from swgpar.model.drive_model import DriveModel
+
+ROOT, FLANK = "fs_vm in tooth root", "fs_vm in flank"
+RATIO = 2.0
+
+
+def place_of(
+    _model: object,
+    gear: str,
+    _position: np.ndarray,
+    region: str,
+    tooth: int,
+    value: float,
+    error: float,
+) -> Place:
+    known = None if error == np.inf else error
+    return Place(value, gear, region, tooth, 20.0, 0.0, 0.0, "", error=known)
+
+
+class Model:
+    """What the readings ask a model for."""
+
+    class Geometry:
+        model = "cup"
+
+    geometry = Geometry()
+
+
+@pytest.fixture(autouse=True)
+def _no_layout(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("swgpar.largest_stress.region_stress._place", place_of)
+
+
+def readings(levels: dict[int, list[float]], name: str = ROOT, skipped: int = 0) -> WindowReadings:
+    """Windows around teeth."""
+    found = WindowReadings(skipped)
+    for tooth, values in levels.items():
+        for value in values:
+            found.add(tooth, {name: WindowStress(value, tooth, np.zeros(3), "", "", 1)})
+    return found
+
+
+def stress(found: WindowReadings, nodal: np.ndarray, name: str = ROOT) -> RegionStress:
+    return found.stresses(cast(DriveModel, Model()), FLEXIBLE_SPLINE, {name: nodal}, RATIO)[name]
+
+
+def nodal(**values: float) -> np.ndarray:
+    """20 sectors with 10 MPa, others by number."""
+    found = np.full(20, 10.0)
+    for tooth, value in values.items():
+        found[int(tooth[1:])] = value
+    return found
+
+
+LEVELS = [80.0, 90.0, 94.0]
+
+
+def test_the_stress_is_that_of_the_finest_window() -> None:
+    one = stress(readings({3: LEVELS}), nodal(t3=70.0))
+    assert one.levels == tuple(LEVELS) and one.spread == 1.0
+    assert one.place.value == 94.0 and one.place.tooth == 3
+    assert one.place.error == pytest.approx(error_of(LEVELS, RATIO))
+
+
+def test_a_window_that_was_not_followed_counts_in_proportion() -> None:
+    one = stress(readings({3: LEVELS, 9: [84.0]}), nodal(t3=70.0, t9=72.0))
+    assert one.spread == pytest.approx(84.0 / 80.0) and one.place.tooth == 9
+    assert one.place.value == pytest.approx(94.0 * 84.0 / 80.0)
+    beyond = one.spread * error_of(LEVELS, RATIO) + (one.spread - 1.0) * (94.0 - 70.0)
+    assert one.place.error == pytest.approx(beyond)
+
+
+def test_a_window_that_is_loaded_in_another_way_stands_for_itself() -> None:
+    one = stress(readings({3: LEVELS, 9: [150.0, 160.0]}), nodal(t3=70.0, t9=140.0))
+    assert one.levels == (150.0, 160.0) and one.place.tooth == 9 and one.spread == 1.0
+
+
+def test_a_tooth_without_a_window_has_the_stress_in_proportion() -> None:
+    one = stress(readings({3: LEVELS}), nodal(t3=70.0, t9=77.0))
+    assert one.place.value == pytest.approx(1.1 * 94.0) and one.place.tooth == 9
+    assert one.place.error == pytest.approx(1.1 * error_of(LEVELS, RATIO) + 0.1 * (94.0 - 70.0))
+
+
+def test_a_tooth_that_is_loaded_in_another_way_has_its_nodal_average() -> None:
+    beyond = 1.01 * ALIKE * 70.0
+    one = stress(readings({3: LEVELS}), nodal(t3=70.0, t9=beyond))
+    assert one.levels == () and one.place.value == beyond and one.place.tooth == 9
+    assert one.place.error == pytest.approx(beyond * (1.0 / CLOSE_IN_ROOT - 1.0))
+
+
+def test_flanks_of_cups_are_the_same_in_all_windows() -> None:
+    one = stress(readings({3: LEVELS}, FLANK), nodal(t3=70.0), FLANK)
+    assert one.place.value == 94.0 and one.place.error is None
+
+
+def test_the_error_by_the_drive_is_that_of_the_compared_window() -> None:
+    fine_recipe = load_recipe("forces")
+    coarse_recipe = coarsened(fine_recipe)
+    coarse = stress(readings({3: [85.0]}, skipped=1), nodal(t3=60.0))
+    assert coarse.levels[1:] == (85.0,) and np.isnan(coarse.levels[0])
+    fine = stress(readings({3: LEVELS}), nodal(t3=70.0))
+    root = RootStress(
+        s1=100.0,
+        error=None,
+        on_mesh=0.0,
+        region="tooth root",
+        warning="",
+        tooth=0,
+        radius=59.0,
+        z=0.0,
+        angle_deg=0.0,
+        part=BETWEEN,
+        by_part={BETWEEN: (nan, 100.0)},
+        elements=1,
+        regions={ROOT: fine},
+    )
+    meshes = [CoarserMesh(coarse_recipe, root.by_part, regions={ROOT: coarse})]
+    found = region_errors(meshes, fine_recipe, root, 0.001)[ROOT]
+    assert found.drive_error is not None
+    share = found.drive_error / 94.0
+    # of second order, by the smallest ratio of counts: 3 / 2
+    assert share == pytest.approx(SAFETY * (5.0 / 90.0) / (1.5**2 - 1.0))
+    assert region_errors(meshes, fine_recipe, root, 0.5)[ROOT].drive_error == 47.0
+    unknown = [replace(meshes[0], regions={})]
+    assert region_errors(unknown, fine_recipe, root, 0.5)[ROOT].drive_error is None
+    assert region_errors([], fine_recipe, root, 0.5)[ROOT].resolved.error is None
