@@ -8,16 +8,17 @@ import scipy
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
-from swgpar.geometry.cams import FourRoller
-from swgpar.geometry.cams.keys import Harmonic, Points, Polar, Reduced
+from swgpar.geometry.cams import FourRoller, OffsetCam, TwoRoller
+from swgpar.geometry.cams.keys import Harmonic, Points, Polar, Reduced, Simplified
 from swgpar.input.require import require, require_available
 
 UNIQUE = 0.25
 """1 less curvature of a concave cam times its distance from the bore, at least: at 0 foot points
 are not unique."""
 
-SMALLEST_MINOR_AXIS = 0.4
-"""Smallest minor semi-axis of a cam over the inner radius of the flexible spline."""
+SMALLEST_MINOR_AXIS, NARROWEST = 0.4, 0.1
+"""Smallest minor semi-axis of a cam over the inner radius of the flexible spline, and that of two
+semicircles, from which points have one foot however narrow they are."""
 
 OUTLINE_POINTS, CURVE_POINTS = 2000, 7200
 """Points of the cam's outline at which its largest radius is measured, and at which a curve from
@@ -42,9 +43,11 @@ def check_cam(design: DriveDesign) -> None:
         require(wave.beta < wave.pin_half_angle, "wave_generator.beta", wave.beta, allowed)
     if isinstance(wave, Reduced):
         _check_minor_axis(design, wave)
-    if isinstance(wave, Harmonic):
+    if wave.offset:
+        _check_offset(design)
+    if isinstance(wave, Harmonic) and not wave.offset:
         _check_concave(design, wave)
-    if isinstance(wave, Polar | Points):
+    elif isinstance(wave, Harmonic | Polar | Points):
         _check_curve(design)
 
 
@@ -67,7 +70,7 @@ def _check_deflection(design: DriveDesign) -> None:
         "a rim that leaves an inner radius above the deflection",
     )
     if given:
-        value = getattr(wave, given[0])
+        value = getattr(wave, given[0])  # of the curve, with an offset
         per_key = 2.0 if given[0] == "major_axis" else 1.0
         least = value - per_key * deflection
         lowest, highest = max(least, 0.0), least + per_key * 0.5 * bore
@@ -84,22 +87,24 @@ def _require_points_fit(wave: Points, bore: float, deflection: float) -> None:
             f"the deflection, {deflection:.6g} mm: allowed is one of them"
         )
     if not 0.0 < deflection < 0.5 * bore:
+        given, least, most = (x - wave.offset for x in (bore + deflection, bore, 1.5 * bore))
+        less = " less wave_generator.offset" if wave.offset else ""
         raise InputError(
-            f"wave_generator.points have the radius {bore + deflection:.6g} mm at the major axis: "
-            f"allowed above {bore:.6g} mm (the bore) to below {1.5 * bore:.6g} mm"
+            f"wave_generator.points have the radius {given:.6g} mm at the major axis: allowed "
+            f"above {least:.6g} mm (the bore{less}) to below {most:.6g} mm"
         )
 
 
 def _check_minor_axis(design: DriveDesign, wave: Reduced) -> None:
     """A minor axis from one key, below the major one and not much smaller than the bore."""
-    least = SMALLEST_MINOR_AXIS * design.inner_radius
+    share = NARROWEST if isinstance(wave, Simplified) else SMALLEST_MINOR_AXIS
+    least = share * design.inner_radius
     if wave.minor_axis is None:
         require(
             design.minor_semi_axis >= least,
             "wave_generator.C",
             wave.C,
-            f"values whose minor semi-axis is at least {SMALLEST_MINOR_AXIS:g} of the spline's "
-            f"inner radius",
+            f"values whose minor semi-axis is at least {share:g} of the spline's inner radius",
         )
         return
     if wave.C != 1.0:
@@ -107,8 +112,8 @@ def _check_minor_axis(design: DriveDesign, wave: Reduced) -> None:
             "wave_generator.C and wave_generator.minor_axis are both given: allowed is one of them"
         )
     allowed = (
-        f"{2.0 * least:.6g} ({SMALLEST_MINOR_AXIS:g} of the bore) to below "
-        f"{2.0 * design.major_semi_axis:.6g} mm (the major axis)"
+        f"{2.0 * (least - wave.offset):.6g} ({share:g} of the bore) to below "
+        f"{2.0 * (design.major_semi_axis - wave.offset):.6g} mm (the major axis)"
     )
     fits = least <= design.minor_semi_axis < design.major_semi_axis
     require(fits, "wave_generator.minor_axis", wave.minor_axis, allowed)
@@ -130,6 +135,25 @@ def _check_concave(design: DriveDesign, wave: Harmonic) -> None:
             allowed = f"{2.0 * root:.6g} {reason} below {2.0 * a:.6g} mm"
             require(False, "wave_generator.minor_axis", wave.minor_axis, allowed)
         require(False, "wave_generator.C", wave.C, f"{wave.C * root / b:.4g} {reason} 1")
+
+
+def _check_offset(design: DriveDesign) -> None:
+    """A parallel curve without corners, of a cam and not of rollers."""
+    wave, cam = design.wave_generator, design.cam()
+    require_available(
+        not isinstance(wave, FourRoller | TwoRoller),
+        f"wave_generator.offset = {wave.offset:g}",
+        f'wave_generator.type = "{wave.type}"',
+        "0",
+    )
+    assert isinstance(cam, OffsetCam)
+    curvature = cam.cam.evaluate(cam.cam.outline(CURVE_POINTS))[2]
+    sharp, hollow = float(curvature.max()), float(curvature.min())
+    least = (UNIQUE - 1.0) / sharp if sharp > 0.0 else -np.inf
+    most = (UNIQUE - 1.0) / hollow if hollow < 0.0 else np.inf
+    most = min(most, 0.5 * design.inner_radius)
+    allowed = f"{least:.4g} to {most:.4g} mm (curvature of the cam)"
+    require(least <= wave.offset <= most, "wave_generator.offset", wave.offset, allowed)
 
 
 def _check_curve(design: DriveDesign) -> None:

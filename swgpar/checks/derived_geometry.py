@@ -6,7 +6,7 @@ import numpy as np
 
 from swgpar.checks.clearance import WORDS, Clearance, clearances
 from swgpar.design.drive_design import DriveDesign
-from swgpar.geometry.cams import Cam, PolarCam, pin_travel, taut_length
+from swgpar.geometry.cams import Cam, OffsetCam, PolarCam, pin_travel, taut_length
 from swgpar.geometry.profiles.rigid_teeth import RigidMesh
 
 
@@ -20,9 +20,10 @@ def _smallest(cam: Cam, lobes: int) -> dict[str, float]:
 
 def _deviation(cam: Cam) -> dict[str, float]:
     """Deviation of a cam from its points, or from its expression; none of other cams."""
-    if not isinstance(cam, PolarCam):
+    curve = cam.cam if isinstance(cam, OffsetCam) else cam
+    if not isinstance(curve, PolarCam):
         return {}
-    return {"largest deviation of the cam from what is given (mm)": cam.deviation}
+    return {"largest deviation of the cam from what is given (mm)": curve.deviation}
 
 
 def derived_geometry(design: DriveDesign) -> dict[str, float]:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GearName
-from swgpar.geometry.cams import FourRoller
+from swgpar.errors import InputError
 from swgpar.input.require import require
+
+LARGEST_DEDENDUM = 2.0
+"""Largest dedendum in modules, of both sections that have the key."""
 
 ROUND_OFF = 1e-9
 """Modules by which tips may be beyond the root circle they touch."""
@@ -24,7 +27,14 @@ def check_heights(design: DriveDesign) -> None:
         key = f"{faced if own else 'drive'}.dedendum_coef"
         value = design.teeth(faced).dedendum / module
         least = value - _room(design, gear, faced) / module
-        allowed = f"{least:.6g} to 2 modules (tips of {gear} at the major axis)"
+        if least > LARGEST_DEDENDUM:
+            raise InputError(
+                f"{key} = {value:g} leaves no room for the tips of {gear} at the major axis with a "
+                f"radial deflection of {0.5 * design.deflection / module:.4g} modules: "
+                f"{least:.4g} modules would, allowed up to {LARGEST_DEDENDUM:g}; a smaller "
+                f"deflection or addendum_coef of {gear} leaves room"
+            )
+        allowed = f"{least:.6g} to {LARGEST_DEDENDUM:g} modules (tips of {gear} at the major axis)"
         require(value >= least - ROUND_OFF, key, value, allowed)
 
 
@@ -39,15 +49,8 @@ def _faced(design: DriveDesign) -> list[tuple[GearName, GearName]]:
 def _room(design: DriveDesign, gear: GearName, faced: GearName) -> float:
     """From the tips of a gear to the root circle of the one it faces at the major axis, mm."""
     teeth, other = design.teeth(gear), design.teeth(faced)
-    between = abs(teeth.r_pitch - other.r_pitch) - _lobe_deflection(design)
+    between = abs(teeth.r_pitch - other.r_pitch) - 0.5 * design.deflection
     return between + other.dedendum - teeth.addendum
-
-
-def _lobe_deflection(design: DriveDesign) -> float:
-    """Radial deflection at the major axis, mm: between four rollers that of the neutral line."""
-    if isinstance(design.wave_generator, FourRoller):
-        return design.tooth_motion().line.deflections[0]
-    return 0.5 * design.deflection
 
 
 def tooth_remarks(design: DriveDesign) -> list[str]:

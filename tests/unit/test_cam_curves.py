@@ -16,7 +16,7 @@ from support.small_drive import SHORT
 from swgpar.checks.derived_geometry import derived_geometry
 from swgpar.checks.remarks import remarks
 from swgpar.errors import InputError
-from swgpar.geometry.cams import EllipticalCam, HarmonicCam, make_cam
+from swgpar.geometry.cams import EllipticalCam, HarmonicCam, make_cam, taut_length
 from swgpar.geometry.cams.expression import PolarExpression
 from swgpar.geometry.cams.keys import Polar
 from swgpar.geometry.cams.simplified import simplified
@@ -263,6 +263,49 @@ def test_lines_that_are_no_points(text: str, words: str, tmp_path: Path) -> None
 def test_expressions_that_give_no_cam(radius: str, words: str) -> None:
     with pytest.raises(InputError, match=words):
         on("polar", radius=radius)
+
+
+def test_a_parallel_curve() -> None:
+    """Its points are 6 mm away from many points of the ellipse, and it is longer by a circle of
+    that radius (Steiner); a point between the curves is as far from both as it should be."""
+    design = on("elliptical", major_axis=2.0 * A - 12.0, minor_axis=2.0 * B - 12.0, offset=6.0)
+    cam, curve = design.cam(), EllipticalCam(A - 6.0, B - 6.0)
+    assert (design.deflection, design.minor_semi_axis) == (pytest.approx(2.0), pytest.approx(B))
+    dense = curve.outline(100_000)
+    for point in cam.outline(12):
+        assert np.hypot(*(dense - point).T).min() == pytest.approx(6.0, abs=1e-6)
+    exact = taut_length(curve, 20_000) + 12.0 * np.pi
+    assert taut_length(cam, 20_000) == pytest.approx(exact, rel=1e-7)
+    assert cam.evaluate(np.array([[0.0, A - 2.0]]))[0][0] == pytest.approx(-2.0, abs=1e-12)
+    x, h = near(cam, 50), 1e-5
+    for k in range(2):
+        step = h * np.eye(2)[k]
+        slope = (cam.evaluate(x + step)[0] - cam.evaluate(x - step)[0]) / (2.0 * h)
+        assert slope == pytest.approx(cam.evaluate(x)[1][:, k], abs=1e-8)
+
+
+def test_a_cam_within_a_bearing() -> None:
+    """Points of the cam's own contour, 3.2 mm inside of the bore, with a clearance of 0.05 mm."""
+    points = EllipticalCam(A - 3.2, B - 3.2).outline(180).tolist()
+    design = on("points", points=points, offset=3.2 - 0.05, tolerance=1e-5)
+    assert design.deflection == pytest.approx(2.0 * (1.0 - 0.05), abs=2e-4)
+    assert design.tooth_motion().line.deflections[0] == pytest.approx(0.95, abs=2e-4)
+    assert derived_geometry(design)["largest deviation of the cam from what is given (mm)"] < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ({"type": "two_roller", "r_2": 9.0, "offset": 1.0}, "not available with"),
+        ({"type": "elliptical", "offset": 40.0}, "offset = 40 is out of range"),
+        ({"type": "simplified", "C": 0.9, "major_axis": 90.0, "offset": -42.0}, "major_axis = 90"),
+        ({"type": "points", "points": EllipticalCam(0.9 * A, 0.9 * B).outline(60).tolist(),
+          "offset": 3.0}, r"the bore less wave_generator.offset"),
+    ],
+)  # fmt: skip
+def test_offsets_that_do_not_fit(keys: dict[str, Any], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        on(keys.pop("type"), **keys)
 
 
 def test_parameters() -> None:

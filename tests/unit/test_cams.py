@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipe
 
 from support.paths import DRIVERS, REFERENCE
+from swgpar.checks.derived_geometry import derived_geometry
 from swgpar.checks.design_file import load_design
 from swgpar.contact.rigid_surface import pin_directions
 from swgpar.errors import InputError
@@ -185,6 +186,7 @@ CAMS = {
     "harmonic-three-deep": (HarmonicCam(A, 0.85 * A, 3), harmonic(A, 0.85 * A, 3)),
     "simplified": (simplified(A, 0.97 * B), stadium(A, 0.97 * B)),
     "simplified-0.5": (simplified(A, 0.5 * B), stadium(A, 0.5 * B)),
+    "simplified-0.15": (simplified(A, 0.15 * A), stadium(A, 0.15 * A)),
     "arcs": (arcs(A, B, 0.8, "beta"), oval(A, B, 0.8)),
     "arcs-0.5": (arcs(A, 0.5 * B, 0.8, "beta"), oval(A, 0.5 * B, 0.8)),
     "parabolic": (
@@ -241,6 +243,7 @@ SECTIONS = {
         points=[[5.0 * k, 58.2 + np.cos(np.radians(10.0 * k))] for k in range(19)],
         tolerance=1e-6,
     ),
+    "narrow": keys("simplified", C=0.15),
     "axes": keys("simplified", major_axis=117.8, minor_axis=115.0),
 }
 
@@ -393,6 +396,32 @@ def test_deflection_and_axes(design_file: Callable) -> None:
             assert np.abs(outline[:, 0]).max() == pytest.approx(minor, abs=1e-6)
 
 
+@pytest.mark.parametrize("modules", [0.82, 0.93, 0.98, 1.05, 1.19, 1.5, 1.67, 2.25])
+def test_published_deflections(modules: float) -> None:
+    """With heights that leave room at the major axis, `check` prints each as it is given."""
+    arcs = {"r_tip": 0.02, "r_addendum": 20.0, "r_dedendum": 20.0, "r_root": 0.1}
+    values = {
+        "drive.addendum_coef": 0.15,
+        "drive.dedendum_coef": max(0.8, modules - 0.75),
+        "drive.pressure_angle": 10.0,
+        "flexible_spline.profile": arcs,
+        "ring_gear.profile": arcs,
+        "wave_generator.deflection": modules,
+    }
+    design = load_design(DRIVERS / "plane_half_turn.toml").with_values(values)
+    printed = derived_geometry(design)
+    assert printed["radial deflection at the major axis (modules)"] == pytest.approx(
+        modules, rel=1e-5
+    )
+    room = 1.0 + design.drive.dedendum_coef - 0.15 - modules
+    for name in ("tip of spline to root of ring", "tip of ring to root of spline"):
+        assert printed[f"{name}, major axis (mm)"] == pytest.approx(room, abs=1e-5)
+    # an ellipse with a + b = 2 r is longer than the bore by a quarter of (w0 / r)^2
+    stretch = 0.25 * (modules / design.inner_radius) ** 2 * design.inner_radius
+    radius = design.inner_radius + 0.5 * design.flexible_spline.rim
+    assert printed["stretch of the neutral line"] == pytest.approx(stretch / radius, rel=0.01)
+
+
 def test_rollers_reach_to_the_circle_of_radius_a() -> None:
     distance = CAMS["four_roller"][0].evaluate(A * np.array([[np.sin(BETA), np.cos(BETA)]]))[0]
     assert distance[0] == pytest.approx(0.0, abs=1e-12)
@@ -537,7 +566,8 @@ def test_crowning_is_the_amount_at_the_edges_and_nothing_in_the_middle(shape: st
         (keys("elliptical", minor_axis=40.0), "wave_generator.minor_axis = 40 is out of range"),
         (keys("elliptical", minor_axis=119.0), "to below 118.4 mm (the major axis)"),
         (keys("harmonic", minor_axis=50.0), "(a concave cam near the spline) to below 118.4 mm"),
-        (keys("simplified", C=0.2), "wave_generator.C = 0.2"),
+        (keys("simplified", C=0.09), "wave_generator.C = 0.09"),
+        (keys("elliptical", C=0.2), "wave_generator.C = 0.2"),
         (keys("arcs", beta=1.5), "wave_generator.beta = 1.5 is out of range: allowed above 1.97"),
         (keys("arcs"), "wave_generator.beta is missing"),
         (keys("elliptical", lobes=3), "wave_generator.lobes = 3"),

@@ -30,9 +30,11 @@ from swgpar.geometry.cams.keys import (
     TwoRoller,
     WaveGenerator,
 )
+from swgpar.geometry.cams.offset import OffsetCam
 from swgpar.geometry.cams.parabolic import Side, parabolic
 from swgpar.geometry.cams.polar import PolarCam
 from swgpar.geometry.cams.rollers import RollerCam, rollers
+from swgpar.geometry.cams.semi_axes import roller_radius
 from swgpar.geometry.cams.simplified import simplified
 
 OUTLINE_POINTS = 5760
@@ -67,12 +69,16 @@ def make_cam(
 
     Raises InputError where the keys give no closed curve, TypeError where they are those of no cam.
     """
-    centred = isinstance(keys, FourRoller | TwoRoller) and keys.centre_radius is not None
-    if isinstance(keys, FourRoller):
-        beta = float(np.radians(keys.beta))
-        return rollers(a - keys.r_4, beta, keys.r_4, f"{name}.r_4", centred=centred)
-    if isinstance(keys, TwoRoller):
-        return rollers(a - keys.r_2, 0.0, keys.r_2, f"{name}.r_2", centred=centred)
+    if keys.offset:
+        curve = keys.model_copy(update={"offset": 0.0})
+        within = None if b is None else b - keys.offset
+        return OffsetCam(make_cam(curve, a - keys.offset, within, name), keys.offset)
+    if isinstance(keys, FourRoller | TwoRoller):
+        beta, key = 0.0, "r_2"
+        if isinstance(keys, FourRoller):
+            beta, key = float(np.radians(keys.beta)), "r_4"
+        radius, centred = roller_radius(keys), keys.centre_radius is not None
+        return rollers(a - radius, beta, radius, f"{name}.{key}", centred=centred)
     if isinstance(keys, Elliptical):
         return EllipticalCam(a, b)
     if isinstance(keys, Harmonic):
@@ -124,6 +130,7 @@ __all__ = [
     "EllipticalCam",
     "FourRoller",
     "HarmonicCam",
+    "OffsetCam",
     "PolarCam",
     "RollerCam",
     "TwoRoller",

@@ -25,6 +25,12 @@ class _WaveGenerator(Section):
         "the module times the difference of the teeth",
         gt=0.0,
     )
+    offset: float = quantity(
+        0.0,
+        unit="mm",
+        text="distance of the surface on the spline from the curve of the cam, outwards: thickness "
+        "of a bearing, less a clearance",
+    )
     face_width: float = quantity(unit="mm", text="width of the cam", gt=0.0)
     # Pins begin where they first touch. Flat or rotated parabolas touch beside the major axis, as
     # far as 30 degrees from it, and rollers wherever they are: the pins have to reach that far.

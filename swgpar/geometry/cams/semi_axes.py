@@ -19,23 +19,23 @@ def radial_deflection(keys: WaveGenerator, inner_radius: float, standard: float)
     standard : mm, deflection of a cam without a key for it
     """
     if isinstance(keys, Points):
-        return float(points_cam(keys).values[0, 0]) - inner_radius
+        return float(points_cam(keys).values[0, 0]) + keys.offset - inner_radius
     if keys.deflection is not None:
         return keys.deflection
     if isinstance(keys, Reduced) and keys.major_axis is not None:
-        return 0.5 * keys.major_axis - inner_radius
+        return 0.5 * keys.major_axis + keys.offset - inner_radius
     if isinstance(keys, FourRoller | TwoRoller) and keys.centre_radius is not None:
         return keys.centre_radius + roller_radius(keys) - inner_radius
     return standard
 
 
 def minor_semi_axis(keys: WaveGenerator, inner_radius: float, deflection: float) -> float | None:
-    """Minor semi-axis b, mm (eqs 3.2, 3.4); rollers have none.
+    """Minor semi-axis b, mm (eqs 3.2, 3.4), of the surface on the spline; rollers have none.
 
     inner_radius : mm, of the undeformed flexible spline;  deflection : mm, w0
     """
     if not isinstance(keys, Reduced):
         return None
     if keys.minor_axis is not None:
-        return 0.5 * keys.minor_axis
+        return 0.5 * keys.minor_axis + keys.offset
     return keys.C * (inner_radius - deflection)
