@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.constraints.boundary_conditions import DeadLoad
 from swgpar.constraints.distributing_coupling import DistributingCoupling
 from swgpar.constraints.supports import Supports
 from swgpar.contact.rigid_surface import RigidContact, SurfacePose, cam_pose, pin_pose
@@ -174,8 +175,10 @@ class RingBody:
         self.elements = Elements(self.partition)
         self.body = self.elements.bodies[body.name]
 
-    def solver(self, contact: RigidContact) -> NewtonSolver:
-        """Solver of the ring with one contact."""
+    def solver(
+        self, contact: RigidContact | None = None, load: DeadLoad | None = None
+    ) -> NewtonSolver:
+        """Solver of the ring with one contact, or under forces."""
         design, solver = self.design, self.design.solver
         couplings = [DistributingCoupling(self.partition, self.body, "bore", self.copies > 1)]
         scale, share = design.material.modulus * REFERENCE_LENGTH, 1.0 / self.copies
@@ -184,6 +187,7 @@ class RingBody:
             elements=self.elements,
             supports=Supports(self.partition, couplings, scale=scale, share=share),
             wave_generator=WaveGeneratorContacts(cam=contact),
+            boundary_terms=[] if load is None else [load],
             module=REFERENCE_LENGTH,
             phases=PhaseTimes(),
         )

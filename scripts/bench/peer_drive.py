@@ -42,6 +42,9 @@ PLANE = (
 )
 PLANE += ("micro_geometry.fs_crowning=0",)
 
+CLAMPED = ("cup.attachment=clamped", "cup.clamping_radius=10")
+"""A hub of the cup, from the bore of 6 mm on."""
+
 
 @dataclass(frozen=True)
 class Case:
@@ -59,6 +62,7 @@ CASES = {
     "plane, flank 8, root 4, rim 2": Case(PLANE, {"flank": 8, "root": 4, "rim": 2}),
     "plane, flank 6, spline fixed": Case((*PLANE, "drive.layout=spline_fixed"), {"flank": 6}),
     "cup, flank 2": Case((), {"flank": 2}),
+    "cup, flank 2, clamped": Case(CLAMPED, {"flank": 2}),
     "cup, flank 2, finer wall": Case(
         (), {"flank": 2}, {"cylinder": 4, "fillet": 2, "closed_end": 4}
     ),
@@ -127,7 +131,7 @@ def compare(name: str, out: Path, cores: int) -> dict[str, object]:
     if not isinstance(design, DriveDesign):
         raise TypeError(DESIGN)
     swgpar.run(design, recipe, folder / "run")
-    swgpar.export(design, folder, ["inp"], recipe)
+    swgpar.export(design, folder, ["inp"], mesh=recipe)
     calculix("drive", folder, cores)
     result = swgpar.open_result(folder / "run")
     model = JobModel(design, recipe)

@@ -58,7 +58,7 @@ def pinched(
     # the search is made for contact: in bending without it a full step, which stretches the ring,
     # is the way out
     LineSearch.TRIALS = 0
-    solver = ring.solver(DeadLoad(np.concatenate(local), np.concatenate(forces)))
+    solver = ring.solver(load=DeadLoad(np.concatenate(local), np.concatenate(forces)))
     solved = solver.solve(
         LoadState(Stage.LOAD, 3, cam_clearance=0.0)
     )  # keeps a factor once the residual is small

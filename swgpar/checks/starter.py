@@ -47,13 +47,14 @@ RING_RIM = 0.04
 FACE_WIDTH = 0.17
 LENGTH = 0.5
 FILLET = 0.02
-BORE = 0.17
-"""Over the pitch diameter: rim of the ring gear, face width, length, fillet and bore radius of the
-cup."""
+BORE, HUB = 0.17, 0.30
+"""Over the pitch diameter: rim of the ring gear, face width, length, fillet, bore radius and radius
+of the clamped hub of the cup."""
 
-SHORT_LENGTH, FLANGE, FLANGE_THICKNESS = 0.25, 0.68, 0.016
-"""Over the pitch diameter: length of a short cup, radius and thickness of the flange of a silk
-hat."""
+SHORT_LENGTH = 0.25
+FLANGE, FLANGE_THICKNESS, CLAMPED_FLANGE = 0.68, 0.016, 0.60
+"""Over the pitch diameter: length of a short cup, radius and thickness of the flange of a silk hat,
+radius from which it is clamped."""
 
 RING_RIM_MODULES = 8.0
 """Largest rim of the ring gear, modules: a thicker one behaves alike."""
@@ -276,12 +277,17 @@ def _table(request: Request, play: float) -> dict[str, Any]:
 def _end(shape: Shape, pitch: float) -> dict[str, Any]:
     """Keys of the closed end or flange. pitch : mm, pitch diameter"""
     if shape != "hat":
-        return {"inner_radius": _rounded(BORE * pitch)}
+        return {"inner_radius": _rounded(BORE * pitch), **_clamped(HUB * pitch)}
     flange = {
         "flange_radius": _rounded(FLANGE * pitch),
         "end_thickness": _rounded(FLANGE_THICKNESS * pitch),
     }
-    return {"shape": "hat", **flange}
+    return {"shape": "hat", **flange, **_clamped(CLAMPED_FLANGE * pitch)}
+
+
+def _clamped(radius: float) -> dict[str, Any]:
+    """Keys of a hub or flange that is clamped: a bare edge bends, and halves the stiffness."""
+    return {"attachment": "clamped", "clamping_radius": _rounded(radius)}
 
 
 def _dynamic_spline(table: dict[str, Any], module: float) -> dict[str, Any]:

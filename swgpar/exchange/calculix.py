@@ -24,6 +24,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.exchange.calculix_model import JobModel, Surface, Term
 from swgpar.exchange.cam_facets import OUTER_FACE, CamFacets, cam_facets
+from swgpar.geometry.arrays import Ints
 from swgpar.load.negligible_torque import negligible_torque
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.inp import write_inp
@@ -81,8 +82,8 @@ def _check(design: DriveDesign) -> None:
     for key, given in sections.items():
         if given:
             refuse(key, "a design without it")
-    if design.has_attachment:
-        refuse(f'cup.attachment = "{design.cup.attachment}"', '"edge"')
+    if design.is_bolted:
+        refuse('cup.attachment = "bolted"', '"edge" or "clamped"')
     least = 0.001 * negligible_torque(design)
     if design.load.torque <= least:
         refuse(
@@ -106,14 +107,17 @@ def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
     planar = ("ALL_NODES, 3, 3",) if model.plane else ()
     fixed = ["CAM, 1, 3", *planar]
     bore_held: list[str] = []
+    equations: list[list[Term]] = []
     if ring_fixed:
         fixed.append(f"RING_GEAR_OUTER, 1, {2 if model.plane else 3}")
-        equations = [*model.mean_motion(bore, output)]
     else:
-        equations = [*model.mean_motion(outer, output, in_housing=True), *model.housing(outer)]
-        equations += model.mean_motion(bore, output + 2)
+        equations += [*model.mean_motion(outer, output, in_housing=True), *model.housing(outer)]
         bore_held = [f"{output + 3}, 1, 3", f"{output + 4}, 1, 3"]
-    held, rotation = [f"{first}, 1, 3", f"{second}, 1, 2", *bore_held], f"{second}, 3, 3"
+    of_spline = output if ring_fixed else output + 2
+    if not design.has_attachment:
+        equations += model.mean_motion(bore, of_spline)
+    held, turn = [f"{first}, 1, 3", f"{second}, 1, 2", *bore_held], f"{second}, 3"
+    rotation = f"{turn}, 3"
     dependent = {terms[0][0] for terms in equations}
     equations += model.ties() if model.plane else ()
 
@@ -123,6 +127,8 @@ def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
     yield from ("*NODE, NSET=OUTPUT", f"{first}, 0., 0., 0.", f"{second}, 0., 0., 0.")
     if bore_held:
         yield from ("*NODE, NSET=HELD", f"{output + 3}, 0., 0., 0.", f"{output + 4}, 0., 0., 0.")
+    if design.has_attachment:
+        yield from _clamped(model.clamped_nodes(), of_spline)
     for terms in equations:
         yield from _equation(terms)
     on_flanks = design.penalty("flexible_spline", "ring_gear")
@@ -139,7 +145,11 @@ def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
     yield from _step("2: on the cam", "*BOUNDARY, OP=NEW", *fixed, *held, rotation, add=[CAM])
     rotate = ("*BOUNDARY", f"{rotation}, {model.closing_rotation:.12e}")
     yield from _step("3: the loaded flanks meet", *rotate, add=FLANKS, acting=[CAM, *FLANKS])
-    load = ["*BOUNDARY, OP=NEW", *fixed, *held, *_torque(model, bore if ring_fixed else outer)]
+    if ring_fixed and design.has_attachment:
+        torque = ["*CLOAD", f"{turn}, {_internal_torque(design):.12e}"]
+    else:
+        torque = [*_torque(model, bore if ring_fixed else outer)]
+    load = ["*BOUNDARY, OP=NEW", *fixed, *held, *torque]
     yield from _step("4: torque", *load, acting=[CAM, *FLANKS], parameters=", AMPLITUDE=STEP")
     yield from _step("5: at rest", acting=[CAM, *FLANKS], parameters=", AMPLITUDE=STEP")
 
@@ -184,9 +194,22 @@ def _bend(model: JobModel, dependent: set[int], held: Iterable[str]) -> Iterator
     yield from _step("1: bent without contact", *lines, remove=[CAM, *FLANKS])
 
 
+def _clamped(nodes: Ints, reference: int) -> Iterator[str]:
+    """Nodes of a clamped ring as one rigid body, whose rotations are the degrees of freedom 1 to 3
+    of the node after `reference`."""
+    yield "*NSET, NSET=CLAMPED"
+    for start in range(0, len(nodes), 16):
+        yield ", ".join(str(node) for node in nodes[start : start + 16] + 1)
+    yield f"*RIGID BODY, NSET=CLAMPED, REF NODE={reference + 1}, ROT NODE={reference + 2}"
+
+
+def _internal_torque(design: DriveDesign) -> float:
+    return design.kinematics.internal_torque(design.load.torque)
+
+
 def _torque(model: JobModel, surface: Surface) -> Iterator[str]:
     """Forces of the torque: those of the distributing coupling at the angle zero of the output."""
-    torque = model.design.kinematics.internal_torque(model.design.load.torque)
+    torque = _internal_torque(model.design)
     x = model.points[surface.nodes, :2]
     share = torque * surface.weight / float((surface.weight * (x**2).sum(axis=1)).sum())
     yield "*CLOAD"

@@ -33,6 +33,9 @@ MEAN_NODES = 8
 """Least number of nodes of a mean motion; the mean of this many nodes at equal angles is free of
 the waves of the bent flexible spline up to this order."""
 
+AT_EDGE = 1e-6
+"""Distance (mm) within which a node lies on the edge of a clamped ring."""
+
 Term = tuple[int, int, float]
 """Node from 0, degree of freedom from 1, coefficient."""
 
@@ -110,6 +113,14 @@ class JobModel:
         nodes = np.unique(self.spline.faces["inner"])
         nodes = np.intersect1d(nodes, self.spline.node_sets["bore"]) if self.plane else nodes
         return np.unique(self.numbers(self.spline, nodes))
+
+    def clamped_nodes(self) -> Ints:
+        """Nodes (n,), from 0, of the clamped ring of closed end or flange."""
+        low, high = self.design.cup.attached_ring
+        nodes = np.unique(self.spline.faces["end"])
+        radius = np.hypot(*self.spline.coords[nodes, :2].T)
+        within = (radius >= low - AT_EDGE) & (radius <= high + AT_EDGE)
+        return np.unique(self.numbers(self.spline, nodes[within]))
 
     def inner_gap(self) -> float:
         """Mean distance (mm) of the inner surface's facets from the exact cylinder."""

@@ -11,7 +11,7 @@ import pytest
 
 import swgpar
 from support.bearing import BEARING
-from support.paths import DESIGN, DRIVERS, RECIPE
+from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
@@ -132,11 +132,42 @@ def test_what_the_job_does_not_carry(
     assert words in str(raised.value)
 
 
-def test_a_clamped_flange_is_not_carried(tmp_path: Path) -> None:
-    with pytest.raises(
-        InputError, match='cup.attachment = "clamped" is not available with the format inp'
-    ):
-        swgpar.export(load_design(DRIVERS / "silk_hat.toml"), tmp_path, ["inp"], mesh="coarse")
+BOLTS = (
+    "cup.attachment=bolted",
+    "cup.bolts=6",
+    "cup.bolt_circle=20",
+    "cup.washer_diameter=3",
+)
+
+
+def test_bolts_are_not_carried(tmp_path: Path) -> None:
+    words = 'cup.attachment = "bolted" is not available with the format inp: allowed "edge" or'
+    with pytest.raises(InputError, match=words):
+        swgpar.export(load_design(DESIGN, BOLTS), tmp_path, ["inp"], mesh=RECIPE)
+
+
+@pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
+def test_a_clamped_ring_is_a_rigid_body(tmp_path: Path, layout: str) -> None:
+    clamped = ("cup.attachment=clamped", "cup.clamping_radius=10", f"drive.layout={layout}")
+    design = load_design(DESIGN, clamped)
+    job, _ = swgpar.export(design, tmp_path, ["inp"], mesh=RECIPE)
+    model, text = JobModel(design, load_recipe(RECIPE)), job.read_text()
+    listed = text.split("*NSET, NSET=CLAMPED\n")[1].split("*")[0].replace("\n", ", ").split(", ")
+    nodes = np.array([int(node) for node in listed if node]) - 1
+    radius = np.hypot(*model.points[nodes, :2].T)
+    assert radius.min() == pytest.approx(design.cup.inner_radius)
+    assert radius.max() == pytest.approx(10.0)
+    # the whole ring: both faces, all sectors
+    assert len(np.unique(model.points[nodes, 2].round(6))) == 2
+    assert len(nodes) % design.drive.teeth_fs == 0
+    assert "*RIGID BODY, NSET=CLAMPED" in text
+    loads = text.split("*CLOAD\n")[1].split("*")[0].splitlines()
+    if layout == "ring_fixed":  # the torque on the node of the rotations
+        (load,) = (line.split(", ") for line in loads)
+        assert load[1] == "3"
+        assert float(load[2]) == pytest.approx(2000.0)
+    else:  # forces on the ring gear
+        assert len(loads) > 100
 
 
 def test_a_mesh_is_needed_for_the_job_and_for_nothing_else(tmp_path: Path) -> None:
