@@ -14,6 +14,7 @@ from swgpar.drive_results.drive_tables import DriveTables
 from swgpar.drive_results.summary import BodySizes, DriveSummary
 from swgpar.evaluation.bearing_loads import BallLoads, evaluate_bearing
 from swgpar.evaluation.fatigue import FatigueResult, evaluate_fatigue
+from swgpar.evaluation.frequencies import NaturalFrequencies
 from swgpar.evaluation.housing_values import HousingStresses
 from swgpar.evaluation.largest_contact import largest_contact
 from swgpar.evaluation.load_sharing import LoadSharing, load_sharing
@@ -129,6 +130,7 @@ def evaluate_run(
         losses=losses,
         bearing=_bearing(recorder),
         clearance=rigid_clearance(clearances(design)),
+        frequencies=NaturalFrequencies(modes=record.modes) if record.modes else None,
         housing=HousingStresses(**record.housing) if record.housing else None,
     )
     tables = DriveTables(losses=losses_table)

@@ -20,6 +20,7 @@ from swgpar.drive_results.summary import DriveSummary
 from swgpar.drive_results.summary_file import summary_from, summary_to_json
 from swgpar.evaluation.bearing_loads import ball_rows
 from swgpar.evaluation.compliance import bearing_shares
+from swgpar.evaluation.frequencies import natural_modes
 from swgpar.evaluation.housing_values import housing_values, keep_largest
 from swgpar.evaluation.losses import cam_force
 from swgpar.evaluation.program_results import PointRow, point_rows
@@ -104,6 +105,9 @@ class Recorder(ABC):
                 self.cycle.keep(state, body_fields[FLEXIBLE_SPLINE])
             if model.design.losses:
                 self.record.cam_forces.append(cam_force(model))
+        if model.design.frequencies is not None and state == self.sequence.loaded:
+            with model.phases("frequencies"):
+                self.record.modes = natural_modes(model, state)
         with model.phases("output"):
             fields = dict(body_fields)
             if model.design.output.fields:

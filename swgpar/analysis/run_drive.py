@@ -55,7 +55,15 @@ from swgpar.results.atomic import on_all
 from swgpar.results.folder import RECIPE, open_log, prepare
 from swgpar.results.lock import releasing
 from swgpar.run_options import RunOptions
+from swgpar.solve.eigenmodes import require_slepc
 from swgpar.solve.time_limit import limited
+
+
+def _require(design: DriveDesign, recipe: MeshRecipe) -> None:
+    """Refuse a recipe or an installation that lacks what the design needs."""
+    require_sections(design.drive.model, recipe)
+    if design.frequencies is not None:
+        require_slepc()
 
 
 @releasing
@@ -76,7 +84,7 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
     if recipe is None:
         recipe_name = MESHES[design.drive.model]
         recipe = load_recipe(recipe_name)
-    require_sections(design.drive.model, recipe)
+    _require(design, recipe)
     if options.accuracy is not None:
         require_refinable(design, options.accuracy)
         design = with_accuracy(design, options.accuracy)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from swgpar.evaluation.bearing_loads import ComplianceShares
 from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares
+from swgpar.evaluation.frequencies import NaturalMode
 from swgpar.evaluation.period_ranges import CoarsePeriod
 from swgpar.evaluation.ratcheting import TorquePoint
 from swgpar.evaluation.slip_error import SlipCheck
@@ -42,6 +43,7 @@ class RunRecord:
     race_stress : largest stresses of the outer race under load, MPa
     housing : largest values under load, by fields of `HousingStresses`
     bearing_shares : of the bearing in the compliance of the loaded state
+    modes : natural modes of the loaded state
     components : of the nodal fields in files, by body and name
     """
 
@@ -65,4 +67,5 @@ class RunRecord:
     race_stress: dict[str, float] = field(default_factory=dict)
     housing: dict[str, float] = field(default_factory=dict)
     bearing_shares: dict[str, ComplianceShares] = field(default_factory=dict)
+    modes: list[NaturalMode] = field(default_factory=list)
     components: dict[str, dict[str, int]] = field(default_factory=dict)

@@ -9,6 +9,7 @@ from swgpar.checks.bearing_checks import check_bearing
 from swgpar.checks.cam_checks import check_cam, check_outline
 from swgpar.checks.cup_checks import check_cup
 from swgpar.checks.deviation_checks import check_deviations
+from swgpar.checks.frequency_checks import check_frequencies
 from swgpar.checks.program_checks import check_program
 from swgpar.checks.tooth_checks import check_heights
 from swgpar.design.drive_design import DriveDesign
@@ -54,6 +55,8 @@ def check_fit(design: DriveDesign) -> None:
         check_deviations(design, design.deviations)
     if design.bearing is not None:
         check_bearing(design)
+    if design.frequencies is not None:
+        check_frequencies(design)
 
 
 def _check_conjugate(design: DriveDesign) -> None:

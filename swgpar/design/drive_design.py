@@ -8,6 +8,7 @@ import numpy as np
 from swgpar.design.cup_section import Cup
 from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.deviations import Deviations
+from swgpar.design.frequency_section import Frequencies
 from swgpar.design.kinematics import Kinematics, make_kinematics
 from swgpar.design.program_sections import Ratcheting, Stiffness
 from swgpar.design.sections import (
@@ -72,6 +73,7 @@ class DriveDesign(Design):
     fatigue: Fatigue | None = None
     losses: Losses | None = None
     deviations: Deviations | None = None
+    frequencies: Frequencies | None = None
 
     @property
     def gears(self) -> tuple[GearName, ...]:
@@ -156,7 +158,8 @@ class DriveDesign(Design):
             counts.append(self.bearing.balls)
         if self.is_bolted:
             counts.append(self.cup.bolts)
-        symmetric = all(count % lobes == 0 for count in counts)
+        # modes of a part of the drive are not all modes
+        symmetric = all(count % lobes == 0 for count in counts) and self.frequencies is None
         return lobes if symmetric and self.solver.symmetry else 1
 
     @property
@@ -264,16 +267,21 @@ class DriveDesign(Design):
         return omitted_bending(self.deflection, *sizes, self.drive.teeth_fs, wave.lobes, elliptical)
 
     @property
+    def leaves_out_far_teeth(self) -> bool:
+        """Whether teeth out of reach are left out; they have mass."""
+        return self.solver.far_teeth == "left_out" and self.frequencies is None
+
+    @property
     def condenses_teeth(self) -> bool:
         """Whether a tooth is one element where nothing touches it."""
-        return self.solver.far_teeth == "left_out" and self.drive.model != "plane"
+        return self.leaves_out_far_teeth and self.drive.model != "plane"
 
     @property
     def leaves_out_sectors(self) -> bool:
         """Whether sectors of the ring gear out of reach are left out; an elastic housing gives way
         all round."""
         clamped = self.kinematics.standing_gear == "ring_gear" and self.housing is None
-        return self.solver.far_teeth == "left_out" and clamped
+        return self.leaves_out_far_teeth and clamped
 
     @property
     def can_condense(self) -> bool:

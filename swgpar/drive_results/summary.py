@@ -10,6 +10,7 @@ from swgpar.answers.table import AnswerTable
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.bearing_loads import BallLoads
 from swgpar.evaluation.fatigue import SafetyAndLife
+from swgpar.evaluation.frequencies import NaturalFrequencies
 from swgpar.evaluation.housing_values import HousingStresses
 from swgpar.evaluation.largest_contact import LargestContact
 from swgpar.evaluation.load_sharing import LoadSharing
@@ -41,6 +42,7 @@ ANSWER_GROUPS: dict[str, type[AnswerGroup]] = {
     "fatigue": SafetyAndLife,
     "losses": DriveLosses,
     "bearing": BallLoads,
+    "frequencies": NaturalFrequencies,
     "housing": HousingStresses,
     "stresses": LargestStresses,
     "steps": StepValues,
@@ -119,6 +121,7 @@ class DriveSummary(AnswerTable):
     losses: DriveLosses | None = None
     bearing: BallLoads | None = None
     clearance: RigidClearance | None = None
+    frequencies: NaturalFrequencies | None = None
     housing: HousingStresses | None = None
     slip: SlipError | None = None
 

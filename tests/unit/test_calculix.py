@@ -23,7 +23,7 @@ from swgpar.meshing import load_recipe
 from swgpar.meshing.inp import HEX_FACES
 from swgpar.meshing.quality import hex_volumes
 
-ROLLERS = ("wave_generator.type=four_roller", "wave_generator.beta=30", "wave_generator.r_4=4")
+ROLLERS = ("wave_generator.type=four_roller", "wave_generator.beta=15", "wave_generator.r_4=4")
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,8 @@ def test_pinched_rings_agree_with_calculix(tmp_path: Path) -> None:
         "--levels",
         "0",
     ]
-    command += ["--out", str(tmp_path / "jobs"), "--tables", str(tmp_path)]
+    page = shutil.copy(ROOT / "docs/verification/peer.md", tmp_path)
+    command += ["--out", str(tmp_path / "jobs"), "--tables", str(tmp_path), "--page", page]
     subprocess.run(command, check=True, cwd=ROOT, env=environment(), stdout=subprocess.DEVNULL)
     rows = json.loads((tmp_path / "peer.json").read_text(encoding="utf-8"))
     assert [row["problem"].split(":")[0] for row in rows] == ["linear", "finite rotation"]
