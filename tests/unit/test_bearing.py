@@ -32,6 +32,28 @@ def test_contact_of_spheres() -> None:
     assert contact.major == pytest.approx(contact.minor, rel=1e-12)
 
 
+@pytest.mark.parametrize("kind", ["polar", "points", "offset"])
+def test_balls_on_curves(kind: str) -> None:
+    """An ellipse by an expression, through points, and as the cam inside of the bearing: its balls
+    are where those of the ellipse are, or on its parallel curve."""
+    given = load_design(DESIGN, PLANE)
+    a, b = given.major_semi_axis, given.minor_semi_axis
+    keys: dict[str, object] = {
+        "polar": {"radius": "1 / sqrt((cos(theta) / a)**2 + (sin(theta) / b)**2)"},
+        "points": {"points": EllipticalCam(a, b).outline(90).tolist(), "tolerance": 0.0},
+        "offset": {"type": "elliptical", "major_axis": 2 * a - 5, "minor_axis": 2 * b - 5,
+                   "offset": 2.5},
+    }[kind]  # fmt: skip
+    bearing = {"balls": 20, "ball_diameter": 2.0, "race_thickness": 0.5}
+    wave = {"type": kind, "face_width": 4.0, "bearing": bearing, **keys}
+    design = given.with_values({"wave_generator": wave})
+    depth, angle = design.bearing_sizes.centre_depth, np.radians(np.arange(0.0, 360.0, 7.0))
+    curve = EllipticalCam(a - 2.5, b - 2.5) if kind == "offset" else EllipticalCam(a, b)
+    expected = ball_lines(curve, depth - (2.5 if kind == "offset" else 0.0), angle)
+    for value, exact in zip(ball_lines(design.cam(), depth, angle), expected, strict=True):
+        assert value == pytest.approx(exact, abs=1e-6)
+
+
 def surface_displacement(contact, force: float, x: float, y: float) -> float:
     """Displacement of half spaces below the ellipse, by integration of p / r over all chords
     through a point."""

@@ -15,9 +15,22 @@ from swgpar.load.negligible_torque import RING_FLEXIBILITY
 HALF_ANGLE = np.radians(15.0)
 
 
+LONG_ARCS = {"r_tip": 0.02, "r_addendum": 20.0, "r_dedendum": 20.0, "r_root": 0.1}
+
+
 def design_on(**wave_generator: object) -> swgpar.DriveDesign:
-    """The plane drive of module 1 mm on a cam with these keys."""
-    return swgpar.load_design(PLANE, {"wave_generator": {"face_width": 10.0, **wave_generator}})
+    """The plane drive of module 1 mm on a cam with these keys, with low teeth that leave room for
+    other deflections."""
+    return swgpar.load_design(
+        PLANE,
+        {
+            "drive.addendum_coef": 0.15,
+            "drive.pressure_angle": 10.0,
+            "flexible_spline.profile": LONG_ARCS,
+            "ring_gear.profile": LONG_ARCS,
+            "wave_generator": {"face_width": 10.0, **wave_generator},
+        },
+    )
 
 
 def mounted(design: swgpar.DriveDesign, counts: RingCounts) -> tuple[float, float]:
@@ -39,6 +52,43 @@ def test_a_ring_on_a_cam_of_another_deflection(modules: float) -> None:
     stress, force = mounted(design, RingCounts(240, 4, 1))
     assert stress == pytest.approx(exact["s1"], rel=5e-3)
     assert force == pytest.approx(exact["contact force"], rel=1e-2)
+
+
+def test_kinematics_of_a_published_drive() -> None:
+    """240 and 242 teeth on a cosine cam (after Dong 2011): deflection of 0.41713 mm (0.824 modules)
+    on a neutral line of 60.31 mm.
+
+    The line deflects by w0 cos 2 phi, and its normal turns by 3/2 w0 / r sin 2 phi. Both are of
+    first order: what is left out is of second order, (w0 / r)^2.
+    """
+    module, neutral, w0, rim = 121.46 / 240.0, 60.31, 0.41713, 0.3
+    bore = neutral - 0.5 * rim
+    drive = {
+        "drive.teeth_fs": 240,
+        "drive.teeth_rg": 242,
+        "drive.module": module,
+        "drive.dedendum_coef": (0.5 * 121.46 - rim - bore) / module,
+        "drive.addendum_coef": 0.3,
+    }
+    arcs = {**LONG_ARCS, "r_root": 0.05}
+    design = swgpar.load_design(
+        PLANE,
+        {
+            **drive,
+            "flexible_spline.profile": arcs,
+            "ring_gear.profile": arcs,
+            "flexible_spline.rim": rim,
+            "wave_generator": {"type": "harmonic", "face_width": 10.0, "deflection": w0},
+        },
+    )
+    line = design.tooth_motion().line
+    assert (line.radius, design.inner_radius) == pytest.approx((neutral, bore))
+    assert 0.5 * design.deflection / module == pytest.approx(0.824, abs=5e-4)
+    phi, ratio = np.radians(np.arange(0.0, 181.0, 5.0)), w0 / neutral
+    outward = np.abs(line.position(phi)) - neutral
+    assert outward == pytest.approx(w0 * np.cos(2.0 * phi), abs=2.0 * w0 * ratio)
+    normal = line.tilt(phi)[0]
+    assert normal == pytest.approx(1.5 * w0 / neutral * np.sin(2.0 * phi), abs=2.0 * ratio**2)
 
 
 def test_a_ring_on_two_rollers() -> None:
