@@ -137,9 +137,9 @@ def _region_error(
     fine: RegionStress,
     least: float,
 ) -> float | None:
-    if not fine.levels:  # nodal averages, whose error is far larger
+    if fine.nodal:  # its error is far larger
         return least * fine.place.value
-    known = [(one, stress) for one, stress in coarser if stress is not None and stress.levels]
+    known = [(one, stress) for one, stress in coarser if stress is not None]
     if not known or len(known) < len(coarser):
         return None
     known.append((recipe, fine))

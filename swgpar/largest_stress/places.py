@@ -54,8 +54,6 @@ class Place:
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
     warning : why the value depends on the mesh; empty where it converges
-    in_root : largest value, MPa, in the roots of the body's teeth; at least 0
-    root_spacing : mm, length of an element along the root
     error : MPa, estimated; None where it is not known
     on_mesh : MPa, nodal average on the drive's mesh where the value is by windows; else None
     """
@@ -68,8 +66,6 @@ class Place:
     z: float
     angle_deg: float
     warning: str
-    in_root: float = 0.0
-    root_spacing: float = 0.0
     error: float | None = None
     on_mesh: float | None = None
 
@@ -271,13 +267,6 @@ def near_contact(mesh: SectorMesh, touched: np.ndarray, distance: float) -> np.n
     return near
 
 
-def root_spacing(mesh: SectorMesh) -> float:
-    """Mean length (mm) of the elements along the root of a tooth, on the flank's side."""
-    s = mesh.flanks[0].s
-    begin = mesh.profile.root_start
-    return float((s[-1] - begin) / max(np.count_nonzero(s > begin + 1e-9 * s[-1]), 1))
-
-
 def _largest(model: DriveModel, name: str, values: np.ndarray, touched: np.ndarray) -> Place:
     """Place of the largest of values (n_sectors, n_node) MPa of a body; collective. touched : nodes
     under contact"""
@@ -292,8 +281,6 @@ def _largest(model: DriveModel, name: str, values: np.ndarray, touched: np.ndarr
             int(node),
             bool(touched[sector, node]),
         )
-    mine = float(values[:, root_nodes(model.geometry, body.layout.mesh)].max(initial=0.0))
-    in_root = max(model.comm.allgather(mine))
     value, sector, node, pressed = max(model.comm.allgather(best), key=lambda one: one[0])
     x, y, z = point = body.layout.mesh.coords[node]
     region = str(model.regions[name][pressed][node])
@@ -308,6 +295,4 @@ def _largest(model: DriveModel, name: str, values: np.ndarray, touched: np.ndarr
         z=0.0 if body.layout.mesh.plane else float(z),
         angle_deg=float(np.degrees(angle)) % 360.0,
         warning=warning_of(model.geometry, region, point),
-        in_root=in_root,
-        root_spacing=root_spacing(body.layout.mesh),
     )

@@ -57,16 +57,17 @@ IN_TEETH = (TOOTH_ROOT, TOOTH_END, BACK)
 class RegionStress:
     """Largest stress of a region.
 
-    levels : MPa, in the windows around one tooth, coarse to fine, not numbers where left out; none
-    where nodal averages stand for them
+    levels : MPa, in the windows around one tooth, coarse to fine, not numbers where left out
     spread : largest stress of the region over that in these windows, at least 1
     place : with the error by the windows
+    nodal : whether it is a nodal average at a tooth that is loaded in another way
     drive_error : MPa, by the mesh of the drive; None where it is not known
     """
 
     levels: tuple[float, ...]
     spread: float
     place: Place
+    nodal: bool = False
     drive_error: float | None = None
 
     @property
@@ -131,7 +132,8 @@ class WindowReadings:
             if nodal[elsewhere] > ALIKE * spread * read:
                 lost = 1.0 / (CLOSE_IN_ROOT if region in IN_TEETH else CLOSE) - 1.0
                 error = math.inf if unrefined else lost * float(nodal[elsewhere])
-                return RegionStress((), 1.0, place(elsewhere, float(nodal[elsewhere]), error))
+                average = place(elsewhere, float(nodal[elsewhere]), error)
+                return RegionStress(tuple(levels), 1.0, average, nodal=True)
             if beyond > spread:
                 spread, tooth = beyond, elsewhere
         error = math.inf if unrefined else error_of(levels, ratio)

@@ -78,8 +78,6 @@ class RootStress(AnswerGroup):
     part : of the tooth;  by_part : largest s1 (MPa) of every part on the windows, coarse to fine,
     while it was followed
     elements : of the finest window
-    in_root : MPa, largest nodal average in the roots on the drive's mesh, between the ends of the
-    teeth
     drive_error : MPa, estimated, of the drive's mesh; None where it is not known
     regions : largest stresses of the regions of both gears that windows resolve, by names with
     `OF_REGION`
@@ -113,7 +111,6 @@ class RootStress(AnswerGroup):
     part: str
     by_part: Mapping[str, Sequence[float]]
     elements: int
-    in_root: float = 0.0
     drive_error: float | None = None
     regions: Mapping[str, RegionStress] = field(default_factory=dict)
     period: tuple[tuple[float, float], ...] = part_answers(
@@ -225,7 +222,7 @@ def resolve_root_stress(
     known = _place(model, found[best], PARTS[best[1]], by_part, error, float(np.max(on_mesh)))
     regions = readings.stresses(model, FLEXIBLE_SPLINE, nodal, RATIO[kind])
     regions |= _ring_stresses(model, state, levels or LEVELS[kind], skipped)
-    return replace(known, in_root=float(in_root.max()), regions=regions)
+    return replace(known, regions=regions)
 
 
 def _ring_stresses(

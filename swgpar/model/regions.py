@@ -48,6 +48,10 @@ BESIDE = 0.5
 """Distance over the thickness of the wall within which a place belongs to the fillet beside it, or
 to the edge of an attachment: as far as the stress there reaches."""
 
+AT_CORNER = 0.1
+"""Distance over the thickness of the wall within which a place on the back of the teeth belongs to
+the corner there."""
+
 AVERAGE = "below the contact of teeth: an average over elements, larger on a finer mesh"
 NOTCH = "in the notch behind the teeth, a corner without fillet: no limit to converge to"
 EDGE = "at the edge of the wave generator: edge contact, no limit to converge to"
@@ -87,6 +91,8 @@ def region_of(geometry: DriveGeometry, mesh: SectorMesh, node: int, touched: boo
     if inner:
         return RIM_INSIDE
     s = mesh.arc_lengths.get(node)
+    if _on_the_corner(geometry, mesh, radius, float(z), s is not None):
+        return NOTCH_REGION
     if s is not None:
         return _region_of_the_flank(geometry, mesh, s, float(z), touched)
     root = mesh.profile.r_root_circle
@@ -103,8 +109,6 @@ def region_of(geometry: DriveGeometry, mesh: SectorMesh, node: int, touched: boo
             if radius > root + near
             else TOOTH_ROOT
         )
-    if geometry.cup is not None and abs(z - half) < near and radius < root + near:
-        return NOTCH_REGION
     if radius < root + near:
         return TOOTH_END if abs(z) > END * geometry.face_width and not mesh.plane else TOOTH_ROOT
     if radius > mesh.profile.r_tip_circle - near:
@@ -124,6 +128,19 @@ def _at_the_back(geometry: DriveGeometry, mesh: SectorMesh, radius: float, z: fl
         back - near < z < back + cup.back_fillet + near
         and wall - near < radius < mesh.profile.r_root_circle + near
     )
+
+
+def _on_the_corner(
+    geometry: DriveGeometry, mesh: SectorMesh, radius: float, z: float, on_flank: bool
+) -> bool:
+    """Whether a point (mm) on the back of the teeth lies below the root, or on a flank closer to
+    the corner between back and wall than elements of windows are long."""
+    near = NEAR * geometry.module
+    if mesh.body != "flexible_spline" or geometry.cup is None or mesh.plane:
+        return False
+    corner = geometry.inner_radius + (1.0 + AT_CORNER) * geometry.cup_thickness
+    height = corner if on_flank else mesh.profile.r_root_circle + near
+    return abs(z - 0.5 * geometry.face_width) < near and radius < height
 
 
 def _region_of_the_flank(

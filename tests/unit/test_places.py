@@ -15,7 +15,7 @@ from swgpar.largest_stress.local_problem import tooth_nodes
 from swgpar.largest_stress.places import APART, inside_teeth, root_nodes
 from swgpar.meshing import SectorMesh, load_recipe
 from swgpar.meshing.tooth_sector import build_sector
-from swgpar.model.regions import AVERAGE, BACK, region_of
+from swgpar.model.regions import AVERAGE, BACK, NOTCH, region_of, warning_of
 
 
 @pytest.fixture(scope="module")
@@ -59,6 +59,19 @@ def test_regions_of_a_tooth(cup: tuple[DriveDesign, SectorMesh]) -> None:
     on_back = np.abs(mesh.coords[:, 2] - grid.z[-1]) < 1e-9
     at_root = np.abs(np.hypot(*mesh.coords[:, :2].T) - mesh.profile.r_root_circle) < 1e-9
     assert "notch" in regions(cup, np.flatnonzero(on_back & at_root))
+
+
+@pytest.mark.parametrize(("thickness", "expected"), [(0.8, "tooth end"), (0.95, "notch")])
+def test_roots_that_end_at_the_corner_have_no_limit_there(thickness: float, expected: str) -> None:
+    """The corner between teeth and wall is where a wall as thick as the rim meets the roots."""
+    design = load_design(REFERENCE, [f"cup.thickness_coef={thickness}"])
+    mesh = build_sector(design.geometry, load_recipe("coarse"), "flexible_spline")
+    grid = mesh.flanks[0]
+    end, front = (regions((design, mesh), grid.nodes[-1:, k]) for k in (-1, 0))
+    assert end == {expected} and front == {"tooth end"}
+    region = region_of(design.geometry, mesh, int(grid.nodes[-1, -1]), False)
+    warning = warning_of(design.geometry, region, mesh.coords[grid.nodes[-1, -1]])
+    assert (warning == NOTCH) == (expected == "notch")
 
 
 def test_a_fillet_takes_the_place_of_the_notch() -> None:

@@ -104,7 +104,7 @@ def test_a_tooth_without_a_window_has_the_stress_in_proportion() -> None:
 def test_a_tooth_that_is_loaded_in_another_way_has_its_nodal_average() -> None:
     beyond = 1.01 * ALIKE * 70.0
     one = stress(readings({3: LEVELS}), nodal(t3=70.0, t9=beyond))
-    assert one.levels == () and one.place.value == beyond and one.place.tooth == 9
+    assert one.nodal and one.place.value == beyond and one.place.tooth == 9
     assert one.place.error == pytest.approx(beyond * (1.0 / CLOSE_IN_ROOT - 1.0))
 
 
