@@ -48,19 +48,26 @@ PARTS: dict[str, tuple[str, ...]] = {
         "largest.rg_s1",
         "largest.rg_vm_apart",
         "contact.pressure",
+        "contact.pressure_off_edges",
+        "sharing.largest_force",
+        "sharing.largest_force_share",
     ),
     "period": ("rotation.transmission_error", "rotation.torque_ripple", "mean.wg_torque_Nmm"),
-    "stiffness": ("stiffness.K1", "stiffness.K3", "stiffness.lost_motion"),
+    "stiffness": ("stiffness.K1", "stiffness.K2", "stiffness.K3", "stiffness.lost_motion"),
 }
-"""Answers of a run up to the load, over a period without windows, and of a stiffness loop at one
-angle of the wave generator."""
+"""Answers of a run up to the load, over a period, and of a stiffness loop at one angle of the wave
+generator."""
 
 DESIGNS: dict[str, dict[str, Any]] = {
     "loaded": {"steps.rotation": 0.0},
-    "period": {"output.root_stress": False},
+    "period": {},
     "stiffness": {"stiffness.positions": 1, "output.root_stress": False},
 }
 """Values of the design by part."""
+
+WITHOUT_WINDOWS = {"output.root_stress": False}
+"""Values of the reference of a part in which no stress is compared. The usual run has windows: its
+errors over the period come from the meshes that they need."""
 
 
 FINER_RINGS = WallCounts(6, 3), WallCounts(9, 4)
@@ -150,6 +157,8 @@ def solve(case: dict[str, Any]) -> dict[str, dict[str, Any]]:
         start_from(models[0])
     with_finer_windows(model)
     finer = replaced(reference_recipe(recipe, case["times"]), case["counts"])
+    if part != "loaded":
+        design = design.with_values(WITHOUT_WINDOWS)
     return {**done, "reference": run(design, finer)}
 
 

@@ -23,18 +23,26 @@ beside the contact (docs/verification/contact_pressure.md)."""
 LEAST_FORCE = 0.004
 """Least error of a force, as a share of it."""
 
+ALONE = 0.99
+"""Share in the force of a lobe from which a pair carries it alone. Its force follows from the
+torque then, on every mesh, until another pair touches; how near that is the meshes do not show."""
+
 Measure = Callable[[PairContact], float]
 """What is taken of a pair; nan where it has none."""
 
 
 def contact_errors(
-    coarser: Sequence[CoarserMesh], recipe: MeshRecipe, contacts: Sequence[PairContact]
+    coarser: Sequence[CoarserMesh],
+    recipe: MeshRecipe,
+    contacts: Sequence[PairContact],
+    lobes: int,
 ) -> ContactErrorShares:
     """Errors on the mesh of `recipe`, on which the loaded drive has these contacts; none of them is
     known without coarser meshes, or in a cup drive, whose pressures have errors that no mesh
     shows."""
     if not coarser or not contacts or recipe.face_width is not None:
         return UNKNOWN
+    alone = any(lobes * pair.force_share > ALONE for pair in contacts)
     meshes = [*((one.recipe, one.contacts) for one in coarser), (recipe, contacts)]
 
     def error(measure: Measure, least: float) -> float | None:
@@ -46,8 +54,8 @@ def contact_errors(
         pressure_off_edges=error(
             lambda pair: np.nan if pair.edge else pair.pressure_MPa, LEAST_PRESSURE
         ),
-        force=error(lambda pair: pair.force_N, LEAST_FORCE),
-        force_share=error(lambda pair: pair.force_share, LEAST_FORCE),
+        force=None if alone else error(lambda pair: pair.force_N, LEAST_FORCE),
+        force_share=None if alone else error(lambda pair: pair.force_share, LEAST_FORCE),
     )
 
 

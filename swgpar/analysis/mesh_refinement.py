@@ -136,7 +136,7 @@ class Refinement:
             100.0 * _bound(found.error) / found.s1,
             100.0 * _bound(error) / found.s1,
         )
-        errors = contact_errors(meshes, recipe, contacts)
+        errors = contact_errors(meshes, recipe, contacts, self.design.wave_generator.lobes)
         regions = region_errors(meshes, recipe, found, least)
         return Refined(compared, replace(found, drive_error=error, regions=regions), errors)
 

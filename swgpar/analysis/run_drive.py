@@ -312,7 +312,9 @@ class DriveRun:
         if len(known) < len(self.coarser):
             return found
         contacts = pair_contacts(self.model, state)
-        record.contact_errors = contact_errors(known, self.recipe, contacts)
+        record.contact_errors = contact_errors(
+            known, self.recipe, contacts, self.model.design.wave_generator.lobes
+        )
         least = least_error(self.model, contacts)
         error = drive_error(known, self.recipe, found, least)
         regions = region_errors(known, self.recipe, found, least)

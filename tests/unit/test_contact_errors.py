@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import pytest
 
@@ -47,7 +48,7 @@ def errors(*meshes: Sequence[PairContact]) -> ContactErrorShares:
         CoarserMesh(recipe, {}, pairs)
         for recipe, pairs in zip(coarser_recipes(FINE), coarse, strict=True)
     ]
-    return contact_errors(coarser, FINE, fine)
+    return contact_errors(coarser, FINE, fine, lobes=2)
 
 
 def test_changes_of_both_groups_are_added() -> None:
@@ -78,13 +79,20 @@ def test_pairs_on_edges_do_not_count_among_those_off_edges() -> None:
 
 
 def test_without_coarser_meshes_or_in_space_nothing_is_known() -> None:
-    assert contact_errors([], FINE, [pair(1, 600.0)]) == UNKNOWN
+    assert contact_errors([], FINE, [pair(1, 600.0)], 2) == UNKNOWN
     cup = load_recipe("forces")
     coarser = [CoarserMesh(one, {}, [pair(1, 580.0)]) for one in coarser_recipes(cup)]
-    assert coarser and contact_errors(coarser, cup, [pair(1, 600.0)]) == UNKNOWN
+    assert coarser and contact_errors(coarser, cup, [pair(1, 600.0)], 2) == UNKNOWN
     # a pressure that could not be computed
     unknown = [pair(1, math.nan)]
     assert errors(unknown, unknown, unknown).pressure is None
+
+
+def test_the_force_of_a_pair_that_carries_alone_has_no_estimate() -> None:
+    """It follows from the torque, until another pair touches."""
+    alone = [replace(pair(1, 600.0), force_share=0.5)]
+    found = errors(alone, alone, alone)
+    assert found.force is found.force_share is None and found.pressure == LEAST_PRESSURE
 
 
 def test_every_other_increment_shows_what_lies_between() -> None:

@@ -67,11 +67,13 @@ def test_a_run_states_them(kinematics: Kinematics) -> None:
         {"steps.rotation": rotation, "steps.increment": 1.0, "output.root_stress": True}
     )
     summary = swgpar.run(design, swgpar.load_mesh("plane_coarse"), progress=False).summary
-    names = ("rotation.torque_ripple", "rotation.transmission_error", "sharing.largest_force")
-    for name in (*names, "contact.pressure_off_edges"):
+    names = ("rotation.torque_ripple", "rotation.transmission_error", "contact.pressure_off_edges")
+    for name in names:
         found = summary[name]
         print(f"{name} {found.value:.4g} ± {found.error:.2g}")
         assert 0.0 < found.error
+    assert summary["sharing.largest_force_share"].value == 0.5  # one pair in a lobe
+    assert summary["sharing.largest_force"].error is None
     mean = summary["mean.wg_torque_Nmm"]
     expected = summary["rotation.expected_wg_torque"].value
     left = summary["residue.torque"].value
