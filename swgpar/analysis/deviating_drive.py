@@ -32,7 +32,7 @@ from swgpar.fem.partition import split
 from swgpar.geometry.rotation import rotated
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import MeshRecipe
-from swgpar.meshing.recipe_counts import coarser
+from swgpar.meshing.recipe_counts import coarsened, coarser
 from swgpar.model.drive_model import DriveModel
 from swgpar.model.torques import torques
 from swgpar.petsc import PETSc
@@ -56,10 +56,14 @@ take many."""
 
 
 def turn_mesh(recipe: MeshRecipe) -> MeshRecipe:
-    """The coarsest mesh that finds the contacts of the flanks: the output's angle needs no more."""
-    simpler = coarser(recipe)
-    while simpler != recipe and finds_contacts(simpler):
-        recipe, simpler = simpler, coarser(simpler)
+    """The coarsest mesh, by halves, that finds the contacts of the flanks: the output's angle needs
+    no more. In the plane also by two thirds; in a cup drive so few elements along the face width
+    change the forces of the teeth by a fifth."""
+    ways = (coarser, coarsened) if recipe.face_width is None else (coarser,)
+    for fewer in ways:
+        simpler = fewer(recipe)
+        while simpler != recipe and finds_contacts(simpler):
+            recipe, simpler = simpler, fewer(simpler)
     return recipe
 
 

@@ -122,7 +122,8 @@ def compared(*stresses: list[float], part: str = BETWEEN) -> list[CoarserMesh]:
 
 
 def test_ratios_are_those_of_the_counts() -> None:
-    """No count of the mesh of a plane run is rounded, but for the smallest ones."""
+    """Of the mesh of a plane run no ratio is below the one that is meant, and that of each group
+    is the one that is meant."""
     fine = load_recipe("plane_coarse")
     coarse, between = coarser_recipes(fine)
     assert body_ratio(coarse, fine) == body_ratio(between, fine) == RATIO
@@ -130,7 +131,7 @@ def test_ratios_are_those_of_the_counts() -> None:
     assert contact_ratio(between, fine) is body_ratio(coarse, between) is None
     for name in ("root", "under", "rim", "flank"):
         counts = [getattr(one.flexible_spline, name) for one in (fine, coarse)]
-        assert counts[0] == RATIO * counts[1], name
+        assert counts[0] >= RATIO * counts[1], name
 
 
 @pytest.mark.parametrize("name", ["coarse", "forces", "medium", "full", "plane", "plane_fine"])
