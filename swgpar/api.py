@@ -283,6 +283,7 @@ def export(
     *,
     mesh: MeshLike | None = None,
     ripple: str | Path | DriveResult | None = None,
+    idle: str | Path | DriveResult | None = None,
 ) -> list[Path]:
     """Write files of other programs and return them; collective, rank 0 writes.
 
@@ -302,6 +303,9 @@ def export(
     ripple : result of a drive, or the folder of one
         For "fmu": run with steps.samples or [deviations] of the same drive. Without it there is no
         kinematic error.
+    idle : result of a drive, or the folder of one
+        For "fmu" and "lookup": run of the same drive with [losses] and load.torque = 0. With it the
+        loss torque grows with the load; without it that of the run holds under any load.
 
     Raises
     ------
@@ -328,9 +332,11 @@ def export(
         drive = open_result(source)
     else:
         drive = source if isinstance(source, DriveResult) else load_design(source)
-    periodic = open_result(ripple) if isinstance(ripple, (str, Path)) else ripple
-    if not isinstance(drive, DriveDesign | DriveResult) or not isinstance(
-        periodic, DriveResult | None
+    others = [open_result(r) if isinstance(r, (str, Path)) else r for r in (ripple, idle)]
+    periodic, without_load = (other if isinstance(other, DriveResult) else None for other in others)
+    known = [other for other in others if other is not None]
+    if not isinstance(drive, DriveDesign | DriveResult) or not all(
+        isinstance(other, DriveResult) for other in known
     ):
         raise InputError(
             "export is available for drives: a gear train has no geometry and no fields"
@@ -339,7 +345,9 @@ def export(
     paths: list[Path] = []
     with agreed(MPI.COMM_WORLD, Path(out)):
         if MPI.COMM_WORLD.rank == 0:
-            paths = export_files(drive, Path(out), formats, recipe=recipe, ripple=periodic)
+            paths = export_files(
+                drive, Path(out), formats, recipe=recipe, ripple=periodic, idle=without_load
+            )
     return MPI.COMM_WORLD.bcast(paths)
 
 

@@ -248,6 +248,8 @@ def _add_export(commands: _Commands) -> None:
     export.add_argument("--format", nargs="+", required=True, choices=formats, help=FORMATS)
     text = "for fmu: results of the same drive with steps.samples or [deviations]"
     export.add_argument("--ripple", metavar="FOLDER", help=text)
+    text = "for fmu and lookup: results of the same drive with [losses] and load.torque = 0"
+    export.add_argument("--idle", metavar="FOLDER", help=text)
     export.add_argument("--mesh", help=f"of the format inp; {MESH_HELP}")
 
 

@@ -364,3 +364,26 @@ class Losses(Section):
         "bearing of the bore",
         gt=0.0,
     )
+    input_drag: float = quantity(
+        0.0, unit="N·m", text="torque of seals and grease at the input, at any speed", ge=0.0
+    )
+    input_viscous_drag: float = quantity(
+        0.0, unit="N·m·s/rad", text="torque of seals and grease at the input over its speed", ge=0.0
+    )
+    output_drag: float = quantity(
+        0.0, unit="N·m", text="torque of seals and grease at the output, at any speed", ge=0.0
+    )
+    output_viscous_drag: float = quantity(
+        0.0,
+        unit="N·m·s/rad",
+        text="torque of seals and grease at the output over its speed",
+        ge=0.0,
+    )
+
+    def drag_at_input(self, speed: float, ratio: float) -> float:
+        """Torque (N·m) at the input that seals and grease take on both sides.
+
+        speed : rad/s, of the input;  ratio : input over output
+        """
+        output = self.output_drag + self.output_viscous_drag * abs(speed / ratio)
+        return self.input_drag + self.input_viscous_drag * abs(speed) + output / abs(ratio)

@@ -1,5 +1,5 @@
 """Losses of the drive over a turn of the wave generator: friction of flanks and bearing, hysteresis
-of the material.
+of the material, seals and grease.
 
 The loss torque is the input torque that the losses take: their work per turn over 2 pi
 (docs/theory/losses.md).
@@ -41,6 +41,9 @@ class LossParts:
     hysteresis: float = answer("losses.hysteresis", "its part by hysteresis of the spline", "N·mm")
     bearing: float = answer(
         "losses.bearing", "its part by friction of the wave generator's bearing", "N·mm"
+    )
+    seals: float = answer(
+        "losses.seals", "its part by seals and grease at input and output", "N·mm", default=0.0
     )
 
 
@@ -112,6 +115,7 @@ def evaluate_losses(
         flank_friction=float(sliding.mean()),
         hysteresis=hysteresis,
         bearing=float(bearing.mean()),
+        seals=1000.0 * losses.drag_at_input(omega, design.kinematics.input_ratio),
     )
     if (missing := force_without_sliding(pairs, increments)) > SMALL_SHARE:
         logger.warning(

@@ -44,10 +44,12 @@ def export_files(
     *,
     recipe: MeshRecipe | None = None,
     ripple: DriveData | None = None,
+    idle: DriveData | None = None,
 ) -> list[Path]:
     """Write the files of the formats into a folder, which is made; call it on one rank.
 
     recipe : mesh of the formats that have one;  ripple : result over a period, for the format fmu
+    idle : result without a torque, for the losses in the formats fmu and lookup
 
     Raises InputError for a format that the source does not have, one whose package or mesh is
     missing, or a mesh that no format has.
@@ -69,11 +71,14 @@ def export_files(
         raise InputError(
             f"a mesh recipe is of no use without one of the formats {', '.join(ON_MESH)}"
         )
-    if ripple is not None:
-        if "fmu" not in formats:
+    given = {"ripple": ripple, "idle": idle}
+    for option, allowed in (("ripple", ("fmu",)), ("idle", ("fmu", "lookup"))):
+        if given[option] is not None and not set(formats) & set(allowed):
             raise InputError(
-                f"--ripple is not available for the format {', '.join(formats)}: allowed with fmu"
+                f"--{option} is not available for the format {', '.join(formats)}: allowed with "
+                f"{' and '.join(allowed)}"
             )
-        writers["fmu"] = partial(write_fmu, periodic=ripple)
+    writers["fmu"] = partial(write_fmu, periodic=ripple, idle=idle)
+    writers["lookup"] = partial(write_look_up, idle=idle)
     folder.mkdir(parents=True, exist_ok=True)
     return [path for name in formats for path in writers[name](source, folder)]

@@ -67,7 +67,11 @@ VARIABLES = (
             "speed of the wind-up at which 76 % of its friction act, above 0",
         ),
         ("loss_torque", "N.m", "friction against the speed of the wave generator"),
+        ("load_loss", "1", "the same by the torque in the spring"),
         ("loss_speed", "rad/s", "speed of the wave generator at which 76 % of it act, above 0"),
+        ("viscous_loss", "N.m.s/rad", "torque over the speed of the wave generator"),
+        ("output_drag", "N.m", "friction against the speed of the output"),
+        ("output_viscous_drag", "N.m.s/rad", "torque over the speed of the output"),
         ("damping", "N.m.s/rad", "viscous damping of the wind-up"),
         ("wave_generator_start_angle", "rad", "wave_generator_angle with the major axis on +y"),
         ("output_start_angle", "rad", "output_angle that belongs to it without torque and error"),
@@ -86,19 +90,25 @@ UNITS: dict[str, dict[str, str]] = {
     "rad": {"rad": "1"},
     "rad/s": {"rad": "1", "s": "-1"},
     "N.m": {"kg": "1", "m": "2", "s": "-2"},
+    "1": {},
     "N.m.s/rad": {"kg": "1", "m": "2", "s": "-1", "rad": "-1"},
 }
 """Exponents of SI units."""
 
 
-def write_fmu(result: DriveData, folder: Path, periodic: DriveData | None = None) -> list[Path]:
+def write_fmu(
+    result: DriveData,
+    folder: Path,
+    periodic: DriveData | None = None,
+    idle: DriveData | None = None,
+) -> list[Path]:
     """Write strain_wave_spring.fmu; call it on one rank.
 
-    result : with [stiffness];  periodic : see `spring_model`
+    result : with [stiffness];  periodic, idle : see `spring_model`
 
     Raises InputError as `spring_model`, OutputError where the C compiler fails.
     """
-    model = spring_model(result, periodic)
+    model = spring_model(result, periodic, idle)
     source = files("swgpar.exchange").joinpath(f"{NAME}.c").read_text(encoding="utf-8")
     starts, body = start_values(model), header(model)
     guid = "{" + hashlib.sha256((body + source).encode()).hexdigest()[:32] + "}"

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from swgpar.errors import InputError
+from swgpar.exchange.loaded_losses import LoadedLosses
 from swgpar.exchange.tables import ripple_table, spring_table
 
 if TYPE_CHECKING:
@@ -35,8 +36,11 @@ class SpringModel:
     derivative
     friction_torque : N·m against the speed of the wind-up
     friction_speed : rad/s of the wind-up, SHARE of the range of `spring` in a second
-    loss_torque : N·m against the speed of the wave generator
+    loss_torque, load_loss : N·m against the speed of the wave generator: without a torque on the
+    output, and by N·m of it
     loss_speed : rad/s of the wave generator, SHARE of load.input_speed
+    viscous_loss : N·m s/rad against that speed
+    output_drag, output_viscous_drag : N·m and N·m s/rad against the speed of the output
     """
 
     ratio: float
@@ -45,7 +49,11 @@ class SpringModel:
     friction_torque: float
     friction_speed: float
     loss_torque: float
+    load_loss: float
     loss_speed: float
+    viscous_loss: float
+    output_drag: float
+    output_viscous_drag: float
 
     @property
     def period(self) -> float:
@@ -53,11 +61,15 @@ class SpringModel:
         return float(self.ripple[-1, 0] - self.ripple[0, 0])
 
 
-def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
+def spring_model(
+    result: DriveData, periodic: DriveData | None, idle: DriveData | None = None
+) -> SpringModel:
     """The model from a run with [stiffness] and from one of the same drive over a period.
 
     periodic : with steps.samples or [deviations], for the kinematic error; with [losses] also for
         the loss torque; None for neither
+    idle : with [losses] and without a torque; None: the loss torque is that of `periodic` under
+        any load
 
     Raises InputError where a result has not what is needed, or both are of drives with different
     ratios.
@@ -88,7 +100,6 @@ def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
         )
     reach = float(np.ptp(windup))
     slopes = PchipInterpolator(windup, torque).derivative()(windup)
-    loss = 0.0
     ripple = np.array([[0.0, 0.0, 0.0], [2.0 * np.pi, 0.0, 0.0]])
     if periodic is not None:
         if not np.isclose(periodic.summary.ratio, ratio, rtol=1e-12):
@@ -97,15 +108,18 @@ def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
                 f"drive, {ratio:.9g}"
             )
         ripple = _ripple_knots(periodic)
-        if periodic.summary.losses:
-            loss = periodic.summary.losses.loss_torque_Nmm / 1000.0
+    losses = LoadedLosses.of(periodic, idle)
     return SpringModel(
         ratio=ratio,
         spring=np.column_stack([windup, torque, slopes]),
         ripple=ripple,
         friction_torque=max(0.0, summary.stiffness.loop_work) / (2000.0 * reach),
         friction_speed=SHARE * reach,
-        loss_torque=loss,
+        loss_torque=losses.idle,
+        load_loss=losses.by_load,
+        viscous_loss=losses.drag.input_viscous_drag,
+        output_drag=losses.drag.output_drag,
+        output_viscous_drag=losses.drag.output_viscous_drag,
         loss_speed=SHARE * summary.design.load.input_speed * np.pi / 30.0,
     )
 

@@ -56,7 +56,11 @@ enum {
   FRICTION_TORQUE,
   FRICTION_SPEED,
   LOSS_TORQUE,
+  LOAD_LOSS,
   LOSS_SPEED,
+  VISCOUS_LOSS,
+  OUTPUT_DRAG,
+  OUTPUT_VISCOUS_DRAG,
   DAMPING,
   WAVE_GENERATOR_START_ANGLE,
   OUTPUT_START_ANGLE,
@@ -107,9 +111,12 @@ static void evaluate(Spring* spring) {
                         v[FRICTION_TORQUE] * tanh(windup_speed / v[FRICTION_SPEED]);
   v[WINDUP] = windup;
   v[KINEMATIC_ERROR] = error;
-  v[OUTPUT_TORQUE] = -torque;
-  v[WAVE_GENERATOR_TORQUE] =
-      transmission * torque - v[LOSS_TORQUE] * tanh(v[WAVE_GENERATOR_SPEED] / v[LOSS_SPEED]);
+  const double loss = v[LOSS_TORQUE] + v[LOAD_LOSS] * fabs(torque);
+  v[OUTPUT_TORQUE] = -torque - v[OUTPUT_VISCOUS_DRAG] * v[OUTPUT_SPEED] -
+                     v[OUTPUT_DRAG] * tanh(v[OUTPUT_SPEED] * fabs(RATIO) / v[LOSS_SPEED]);
+  v[WAVE_GENERATOR_TORQUE] = transmission * torque -
+                             v[VISCOUS_LOSS] * v[WAVE_GENERATOR_SPEED] -
+                             loss * tanh(v[WAVE_GENERATOR_SPEED] / v[LOSS_SPEED]);
   spring->is_current = 1;
 }
 

@@ -11,7 +11,9 @@ import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.evaluation.stiffness import Loop, rows_by_position
+from swgpar.exchange.loaded_losses import LoadedLosses
 from swgpar.load.load_program import stiffness_program
+from swgpar.log import logger
 from swgpar.results.table import as_rows, format_columns
 
 if TYPE_CHECKING:
@@ -25,7 +27,7 @@ TABLES = (
 
 ARCSEC = np.pi / 648000.0
 
-SPRING, RIPPLE = "spring.csv", "ripple.csv"
+SPRING, RIPPLE, LOSSES = "spring.csv", "ripple.csv", "losses.csv"
 
 
 def write_parquet(result: DriveData, folder: Path) -> list[Path]:
@@ -47,13 +49,17 @@ def write_parquet(result: DriveData, folder: Path) -> list[Path]:
     return paths
 
 
-def write_look_up(result: DriveData, folder: Path) -> list[Path]:
-    """Write the drive as a torsional spring with ripple: what a multibody program interpolates in.
+def write_look_up(result: DriveData, folder: Path, idle: DriveData | None = None) -> list[Path]:
+    """Write the drive as a torsional spring with ripple and losses: what a multibody program
+    interpolates in.
 
     `spring.csv` has the torque (N·m) on the output and its wind-up (rad), from the stiffness loops:
     of the rising and of the falling branch, whose distance is friction, and their mean; means over
     all positions. `ripple.csv` has the kinematic error (rad) of the output over the angle of the
-    wave generator (rad); the table covers whole periods.
+    wave generator (rad); the table covers whole periods. `losses.csv` has the loss torque of a run
+    with [losses] over load, speed and direction (`LoadedLosses.table`).
+
+    idle : run of the same drive with [losses] and without a torque
 
     Raises InputError where the run has neither a stiffness loop nor a transmission error.
     """
@@ -62,6 +68,14 @@ def write_look_up(result: DriveData, folder: Path) -> list[Path]:
         tables[folder / SPRING] = spring_table(result)
     if result.transmission_error:
         tables[folder / RIPPLE] = ripple_table(result.transmission_error)
+    if result.summary.losses:
+        losses = LoadedLosses.of(result, idle)
+        tables[folder / LOSSES] = losses.table()
+        torque = losses.backdriving_torque()
+        if np.isfinite(torque):
+            logger.info("the output turns the input from %.4g N·m on", torque)
+        else:
+            logger.info("no torque on the output turns the input")
     for path, columns in tables.items():
         path.write_bytes(format_columns(columns))
     if not tables:

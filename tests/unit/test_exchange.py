@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import meshio
 import numpy as np
@@ -355,7 +356,7 @@ def test_tables_as_parquet(folder: Path, tmp_path: Path) -> None:
 def test_the_ripple_of_a_result(tmp_path: Path) -> None:
     class Sampled:
         program: dict[str, np.ndarray] = {}
-        stiffness = None
+        summary = SimpleNamespace(stiffness=None, losses=None)
         transmission_error = {
             "wg_angle_deg": np.array([0.0, 90.0, 180.0, 270.0]),
             "transmission_error_arcsec": np.array([1.0, 3.0, 1.0, -1.0]),

@@ -19,8 +19,10 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stepping import small
 from swgpar.errors import InputError, OutputError
+from swgpar.evaluation.losses import LossParts
 from swgpar.evaluation.stiffness import torsional_stiffness
 from swgpar.exchange.fmu import VARIABLES, write_fmu
+from swgpar.exchange.loaded_losses import LoadedLosses
 from swgpar.exchange.tables import ripple_table, spring_table
 from swgpar.load.load_program import program_points, stiffness_program
 
@@ -79,19 +81,33 @@ def windup(torque: np.ndarray) -> np.ndarray:
 
 
 class SampledRun:
-    """A sampled period with losses of 50 N·mm."""
+    """A sampled period with losses of 50 N·mm; with drag 5 of them are by seals."""
 
     program: dict[str, np.ndarray] = {}
 
-    def __init__(self, samples: int = 12, ratio: float = RATIO) -> None:
+    def __init__(
+        self,
+        samples: int = 12,
+        ratio: float = RATIO,
+        torque: float = 0.2,
+        loss: float = 50.0,
+        drag: tuple[str, ...] = (),
+    ) -> None:
         angle = PITCH * np.arange(samples) / samples + 2.0 * PITCH
         phase = 2.0 * np.pi * angle / PITCH
         self.transmission_error = {
             "wg_angle_deg": angle,
             "transmission_error_arcsec": 20.0 + 4.0 * np.cos(phase) + 1.5 * np.sin(2.0 * phase),
         }
+        parts = LossParts(
+            flank_friction=20.0, hysteresis=5.0, bearing=20.0, seals=5.0 if drag else 0.0
+        )
+        design = small("plane", f"load.torque={torque}", "losses.loss_factor=3e-4", *drag)
         self.summary = SimpleNamespace(
-            ratio=ratio, stiffness=None, losses=SimpleNamespace(loss_torque_Nmm=50.0)
+            ratio=ratio,
+            stiffness=None,
+            design=design,
+            losses=SimpleNamespace(loss_torque_Nmm=loss, parts_Nmm=parts),
         )
 
 
@@ -295,6 +311,63 @@ def test_losses_and_damping_act_against_the_motion(fmu: Path, tmp_path: Path) ->
         assert unit.get("output_torque")[0] == pytest.approx(-6.0, abs=1e-6)
 
 
+DRAG = (
+    "losses.input_drag=0.002",
+    "losses.input_viscous_drag=1e-5",
+    "losses.output_drag=0.02",
+    "losses.output_viscous_drag=0.5",
+)
+
+
+def test_losses_grow_with_the_load_and_the_speed(tmp_path: Path) -> None:
+    """Under 0.2 N·m 45 N·mm without the seals, without a load 25: 0.1 N·m by N·m."""
+    loaded, idle = SampledRun(drag=DRAG), SampledRun(torque=0.0, loss=30.0, drag=DRAG)
+    (path,) = write_fmu(StiffnessRun(), tmp_path, loaded, idle)
+    with instance(path, tmp_path / "unit") as unit:
+        names = ("loss_torque", "load_loss", "viscous_loss", "output_drag", "output_viscous_drag")
+        assert unit.get(*names) == pytest.approx([0.027, 0.1, 1e-5, 0.02, 0.5], rel=1e-12)
+        (error,) = unit.get("kinematic_error")
+        unit.set(friction_torque=0.0, output_angle=error + 3e-4, wave_generator_speed=500.0)
+        unit.set(output_speed=25.0)
+        shafts = ("wave_generator_torque", "output_torque")
+        found = unit.get(*shafts)
+        unit.set(**dict.fromkeys(names, 0.0))
+        ideal = unit.get(*shafts)
+    assert ideal[1] < -1.0
+    assert ideal[0] - found[0] == pytest.approx(0.027 + 0.1 * -ideal[1] + 500e-5, rel=1e-9)
+    assert ideal[1] - found[1] == pytest.approx(0.02 + 0.5 * 25.0, rel=1e-9)
+
+
+def test_the_table_of_losses_balances_the_power() -> None:
+    loaded, idle = SampledRun(drag=DRAG), SampledRun(torque=0.0, loss=30.0, drag=DRAG)
+    losses = LoadedLosses.of(loaded, idle)
+    table = losses.table()
+    torque, speed = table["output_torque_Nm"], table["input_speed_rad_s"]
+    assert (torque.min(), torque.max()) == pytest.approx((0.0, 0.3))
+    # the power of the losses is what the input gives less what the output takes, both ways
+    power = table["loss_torque_Nm"] * speed
+    useful = torque * speed / abs(RATIO)
+    assert table["driving_input_torque_Nm"] * speed - useful == pytest.approx(power)
+    assert useful - table["backdriving_input_torque_Nm"] * speed == pytest.approx(power)
+    moving = (torque > 0.0) & (speed > 0.0)
+    drives = useful[moving] / (useful[moving] + power[moving])
+    assert table["driving_efficiency"][moving] == pytest.approx(drives)
+    # at the speed of the run and its load: seals included
+    design = loaded.summary.design
+    omega = design.load.input_speed * np.pi / 30.0
+    seals = design.losses.drag_at_input(omega, RATIO)
+    assert losses.at_input(0.2, omega) == pytest.approx(0.045 + seals)
+
+
+def test_the_torque_that_backdrives_is_that_of_the_balance() -> None:
+    idle = SampledRun(torque=0.0, loss=10.0)
+    losses = LoadedLosses.of(SampledRun(torque=2.0), idle)
+    torque = losses.backdriving_torque()
+    assert torque / abs(RATIO) == pytest.approx(losses.at_input(torque, 0.0))
+    # 0.2 N·m by N·m are more than 1 / 20
+    assert LoadedLosses.of(SampledRun(), idle).backdriving_torque() == np.inf
+
+
 def test_start_angles_shift_the_inputs(fmu: Path, tmp_path: Path) -> None:
     with instance(fmu, tmp_path / "unit") as unit:
         unit.set(wave_generator_angle=0.011, output_angle=2e-4)
@@ -365,6 +438,10 @@ def test_what_the_results_must_have(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         write_fmu(StiffnessRun(), tmp_path, SampledRun(ratio=50.0))
     with pytest.raises(InputError, match="at 3 angles: allowed 4 and more"):
         write_fmu(StiffnessRun(), tmp_path, SampledRun(samples=3))
+    with pytest.raises(InputError, match=r"--idle needs a run with \[losses\] and load.torque = 0"):
+        write_fmu(StiffnessRun(), tmp_path, SampledRun(), SampledRun())
+    with pytest.raises(InputError, match="--idle has the ratio 50"):
+        write_fmu(StiffnessRun(), tmp_path, SampledRun(), SampledRun(ratio=50.0, torque=0.0))
     slack = StiffnessRun()
     slack.program["rotation_arcmin"] = np.minimum(slack.program["rotation_arcmin"], 1.0)
     with pytest.raises(InputError, match="the wind-up does not grow between"):

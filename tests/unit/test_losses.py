@@ -79,15 +79,16 @@ def test_hysteresis_of_a_ring_between_two_forces() -> None:
 def test_losses_of_a_run() -> None:
     """They add up, follow their coefficients, and need a sampled period."""
     sampled = [*PLANE, "steps.samples=2", "steps.rotation=9"]
-    one = swgpar.run(
-        swgpar.load_design(DESIGN, [*sampled, "losses.loss_factor=1e-3"]), RECIPE
-    ).summary.losses
+    less = ["losses.loss_factor=1e-3", "losses.input_drag=1e-3", "losses.output_drag=0.01"]
+    one = swgpar.run(swgpar.load_design(DESIGN, [*sampled, *less]), RECIPE).summary.losses
     more = ["losses.loss_factor=2e-3", "losses.bearing_friction=0.003", "losses.flank_friction=0.1"]
+    more += ["losses.input_drag=2e-3", "losses.output_drag=0.02"]
     other = swgpar.run(swgpar.load_design(DESIGN, [*sampled, *more]), RECIPE).summary.losses
     assert one.loss_torque_Nmm == pytest.approx(sum(asdict(one.parts_Nmm).values()))
     assert min(asdict(one.parts_Nmm).values()) > 0.0
     for name, value in asdict(one.parts_Nmm).items():
         assert getattr(other.parts_Nmm, name) == pytest.approx(2.0 * value, rel=1e-6), name
+    assert one.parts_Nmm.seals == pytest.approx(1.0 + 10.0 * 2.0 / 40.0)
     useful = 200.0 * 2.0 / 40.0
     assert one.efficiency == pytest.approx(useful / (useful + one.loss_torque_Nmm))
     assert one.no_load_torque_Nmm is None

@@ -1,0 +1,126 @@
+"""Losses over load, speed and direction, from a run under load and one without."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from swgpar.design.sections import Losses
+from swgpar.errors import InputError
+
+if TYPE_CHECKING:
+    from swgpar.drive_results.drive_data import DriveData
+
+LOADS = np.linspace(0.0, 1.5, 7)
+"""Torques of the table over that of the run under load."""
+
+SPEEDS = (0.0, 0.25, 0.5, 1.0, 1.5)
+"""Speeds of the table over `load.input_speed`; 0 is the breakaway."""
+
+
+@dataclass(frozen=True)
+class LoadedLosses:
+    """Loss torque at the input: idle + by_load |torque| + viscous, and that of the output's side.
+
+    idle : N·m, without a torque on the output, seals and grease of the input among it
+    by_load : N·m at the input by N·m on the output
+    drag : section [losses], of which the coefficients of seals and grease are taken
+    ratio : input over output
+    torque : N·m on the output under which `by_load` was found;  speed : rad/s of the input
+    """
+
+    idle: float
+    by_load: float
+    drag: Losses
+    ratio: float = 1.0
+    torque: float = 0.0
+    speed: float = 0.0
+
+    @classmethod
+    def of(cls, loaded: DriveData | None, idle: DriveData | None) -> LoadedLosses:
+        """From a run with [losses] and one of the same drive without a torque; None for none.
+
+        Without `idle` the loss torque of `loaded` holds under any load. Raises InputError where
+        `idle` has a torque or no losses, or a drive with another ratio.
+        """
+        if loaded is None or loaded.summary.losses is None:
+            if idle is not None:
+                raise InputError("--idle is of no use without a run with [losses] under load")
+            return cls(0.0, 0.0, Losses())
+        under_load, by_load = _without_seals(loaded), 0.0
+        design, section = loaded.summary.design, loaded.summary.design.losses
+        without = under_load
+        if idle is not None:
+            _check(loaded, idle)
+            without = _without_seals(idle)
+            by_load = (under_load - without) / design.load.torque
+        return cls(
+            without + section.input_drag,
+            by_load,
+            section,
+            ratio=loaded.summary.ratio,
+            torque=design.load.torque,
+            speed=design.load.input_speed * np.pi / 30.0,
+        )
+
+    def at_input(self, torque: float, speed: float) -> float:
+        """Loss torque (N·m) at the input.
+
+        torque : N·m on the output, without its sign;  speed : rad/s of the input, without its sign
+        """
+        side = self.drag.drag_at_input(speed, self.ratio) - self.drag.input_drag
+        return self.idle + self.by_load * torque + side
+
+    def backdriving_torque(self) -> float:
+        """Torque (N·m) on the output from which it turns the input; infinite where none does."""
+        ratio = abs(self.ratio)
+        left = 1.0 / ratio - self.by_load
+        return self.at_input(0.0, 0.0) / left if left > 0.0 else np.inf
+
+    def table(self) -> dict[str, np.ndarray]:
+        """Columns of losses.csv: both directions at torques and speeds.
+
+        Driving, the input's torque moves the output against its torque; backdriving, the output's
+        torque moves the input. A torque that is too small to backdrive has the efficiency 0.
+        """
+        torques = LOADS * self.torque if self.torque else np.zeros(1)
+        rows = []
+        for torque in torques:
+            for speed in self.speed * np.array(SPEEDS):
+                loss, useful = self.at_input(torque, speed), torque / abs(self.ratio)
+                driving = useful / (useful + loss) if useful else 0.0
+                backdriving = max(0.0, 1.0 - loss / useful) if useful else 0.0
+                rows.append(
+                    (torque, speed, loss, useful + loss, driving, useful - loss, backdriving)
+                )
+        names = (
+            "output_torque_Nm",
+            "input_speed_rad_s",
+            "loss_torque_Nm",
+            "driving_input_torque_Nm",
+            "driving_efficiency",
+            "backdriving_input_torque_Nm",
+            "backdriving_efficiency",
+        )
+        return dict(zip(names, np.array(rows).T, strict=True))
+
+
+def _without_seals(result: DriveData) -> float:
+    """Loss torque (N·m) of a run but for seals and grease."""
+    losses = result.summary.losses
+    return (losses.loss_torque_Nmm - losses.parts_Nmm.seals) / 1000.0
+
+
+def _check(loaded: DriveData, idle: DriveData) -> None:
+    """Refuse a run without a load that does not belong to the run under load."""
+    ratio, other = loaded.summary.ratio, idle.summary
+    if other.losses is None or other.design.load.torque != 0.0:
+        raise InputError("--idle needs a run with [losses] and load.torque = 0")
+    if not np.isclose(other.ratio, ratio, rtol=1e-12):
+        raise InputError(
+            f"--idle has the ratio {other.ratio:.9g}: allowed a run of the same drive, {ratio:.9g}"
+        )
+    if loaded.summary.design.load.torque <= 0.0:
+        raise InputError("--idle needs a run under load beside it: load.torque above 0")
