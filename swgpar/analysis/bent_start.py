@@ -43,7 +43,7 @@ class BentSpline:
             design.cam(), design.inner_radius, self.radius, design.wave_generator.lobes
         )
         self.order = float(design.wave_generator.lobes) * np.arange(len(self.amplitudes))
-        self.half = 0.5 * design.wave_generator.face_width
+        self.half = 0.5 * design.wave_generator.width
         self.end = design.cup_sizes.rest_plane if design.has_cup else 0.5 * design.drive.face_width
         self.surface = design.cam_surface()
 

@@ -41,6 +41,8 @@ def check_cam(design: DriveDesign) -> None:
     if isinstance(wave, FourRoller):
         allowed = f"above 0 to below {wave.pin_half_angle:g} deg (pin_half_angle)"
         require(wave.beta < wave.pin_half_angle, "wave_generator.beta", wave.beta, allowed)
+    if isinstance(wave, TwoRoller) and wave.distance:
+        _check_discs(design, wave)
     if isinstance(wave, Reduced):
         _check_minor_axis(design, wave)
     if wave.offset:
@@ -77,6 +79,24 @@ def _check_deflection(design: DriveDesign) -> None:
         allowed = f"above {lowest:.6g} to below {highest:.6g} mm (a deflection of half the bore's"
         allowed += " radius)"
         require(0.0 < deflection < 0.5 * bore, f"wave_generator.{given[0]}", value, allowed)
+
+
+def _check_discs(design: DriveDesign, wave: TwoRoller) -> None:
+    """Discs beside each other, in a cup drive, without a slope."""
+    key, given = "wave_generator.distance", f"wave_generator.distance = {wave.distance:g}"
+    model, slope = design.drive.model, design.micro_geometry.wg_slope
+    require_available(
+        model == "cup", given, f'drive.model = "{model}"', 'with "cup", or rollers of a distance 0'
+    )
+    require_available(slope == 0.0, f"micro_geometry.wg_slope = {slope:g}", given, "0")
+    most = design.drive.face_width - wave.face_width
+    allowed = (
+        f"{wave.face_width:g} (wave_generator.face_width, of a disc) to {most:g} mm (the rest of "
+        "drive.face_width)"
+    )
+    require(wave.face_width <= wave.distance <= most, key, wave.distance, allowed)
+    reach = design.major_semi_axis - wave.r_2
+    require(reach > 0.0, "wave_generator.r_2", wave.r_2, f"below {design.major_semi_axis:.6g} mm")
 
 
 def _require_points_fit(wave: Points, bore: float, deflection: float) -> None:

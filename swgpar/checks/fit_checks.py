@@ -41,7 +41,7 @@ def check_fit(design: DriveDesign) -> None:
     _check_steps(design)
     _check_torque(design)
     _check_fatigue(design)
-    width, cam_width = design.drive.face_width, design.wave_generator.face_width
+    width, cam_width = design.drive.face_width, design.wave_generator.width
     allowed = f"above 0 to {width:g} mm (drive.face_width)"
     require(cam_width <= width, "wave_generator.face_width", cam_width, allowed)
     _check_linear_solver(design)

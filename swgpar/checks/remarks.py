@@ -16,7 +16,7 @@ def remarks(design: DriveDesign) -> list[str]:
     """Sentences about what is allowed and may not be meant."""
     sentences = [clearance.remark for clearance in clearances(design) if clearance.overlaps]
     stretch = design.tooth_motion().line.stretch
-    if stretch > STRETCH:
+    if stretch > STRETCH and design.wave_generator.lobes_are_alike:
         hoop = stretch * design.materials["flexible_spline"].modulus
         sentences.append(
             f"the cam is longer than the bore: it stretches the neutral line by "

@@ -34,8 +34,8 @@ from swgpar.design.sections import (
 from swgpar.geometry.bearing import BearingSizes
 from swgpar.geometry.cams import Bearing, Cam, WaveGenerator, make_cam
 from swgpar.geometry.cams.semi_axes import minor_semi_axis, radial_deflection
+from swgpar.geometry.disc_surface import CamSurface, cam_surface
 from swgpar.geometry.drive_geometry import DriveGeometry, FlankCrowning, GearGeometry
-from swgpar.geometry.micro_geometry import WaveGeneratorSurface
 from swgpar.geometry.neutral_line import neutral_line
 from swgpar.geometry.profiles import (
     Conjugate,
@@ -160,6 +160,7 @@ class DriveDesign(Design):
             counts.append(self.cup.bolts)
         # modes of a part of the drive are not all modes
         symmetric = all(count % lobes == 0 for count in counts) and self.frequencies is None
+        symmetric = symmetric and self.wave_generator.lobes_are_alike
         return lobes if symmetric and self.solver.symmetry else 1
 
     @property
@@ -345,7 +346,7 @@ class DriveDesign(Design):
             gears={gear: self.gear_geometry(gear) for gear in self.gears},
             module=drive.module,
             face_width=drive.face_width,
-            cam_width=self.wave_generator.face_width,
+            cam_width=self.wave_generator.width,
             inner_radius=self.inner_radius,
             crowning=self.crowning,
             cup=self.cup_sizes.geometry if self.has_cup else None,
@@ -391,14 +392,8 @@ class DriveDesign(Design):
         closed curve."""
         return make_cam(self.wave_generator, self.major_semi_axis, self.minor_semi_axis)
 
-    def cam_surface(self) -> WaveGeneratorSurface:
+    def cam_surface(self) -> CamSurface:
         """Surface of the cam with crowning and slope."""
         micro = self.micro_geometry
-        return WaveGeneratorSurface(
-            self.cam(),
-            self.wave_generator.face_width,
-            micro.wg_crowning,
-            micro.wg_slope,
-            micro.crowning_shape,
-            self.wave_generator.lobes,
-        )
+        modified = micro.wg_crowning, micro.wg_slope, micro.crowning_shape
+        return cam_surface(self.wave_generator, self.cam(), *modified)

@@ -70,6 +70,8 @@ def _check(design: DriveDesign) -> None:
 
     if design.contact.friction:
         refuse(f"contact.friction = {design.contact.friction:g}", "0")
+    if not design.wave_generator.lobes_are_alike:
+        refuse("wave_generator.distance", "0")
     sections = {
         "[wave_generator.bearing]": design.bearing,
         "[ring_gear.housing]": design.ring_gear.housing,

@@ -24,6 +24,7 @@ from swgpar.design.sections import GearName
 from swgpar.exchange.outlines import Edge, gear_outline
 from swgpar.geometry.arrays import Floats
 from swgpar.geometry.cams import cam_outlines
+from swgpar.geometry.disc_surface import TwoDiscSurface
 from swgpar.meshing.gmsh_session import gmsh_model
 
 PIECES = 32
@@ -75,7 +76,13 @@ def _quiet() -> Iterator[None]:
 def _build(gmsh: ModuleType, design: DriveDesign, name: Solid) -> None:
     """The solid of a body in the present model."""
     if name == "wave_generator":
-        half = 0.5 * design.wave_generator.face_width
+        surface, half = design.cam_surface(), 0.5 * design.wave_generator.face_width
+        if isinstance(surface, TwoDiscSurface):
+            for side in (1.0, -1.0):
+                z, y = 0.5 * side * surface.distance - half, side * surface.cam.reach
+                circle = gmsh.model.occ.addCircle(0.0, y, z, surface.cam.radius)
+                _extrude(gmsh, [gmsh.model.occ.addCurveLoop([circle])], 2.0 * half)
+            return
         for points in cam_outlines(design.cam()):
             curves = closed_curve(gmsh, points, design.cam().evaluate(points)[1], -half)
             _extrude(gmsh, [gmsh.model.occ.addCurveLoop(curves)], 2.0 * half)

@@ -285,7 +285,7 @@ def rigid_contacts(design: DriveDesign) -> Callable[[BodyElements], WaveGenerato
         RigidContact,
         surface=design.cam_surface(),
         radius=design.inner_radius,
-        half_width=0.5 * design.wave_generator.face_width * EDGE,
+        half_width=0.5 * design.wave_generator.width * EDGE,
         n_quadrature=design.contact.wg_quadrature,
         penalty=design.wg_penalty,
         pin_half_angle=float(np.radians(design.wave_generator.pin_half_angle)),

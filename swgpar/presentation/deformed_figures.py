@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from swgpar.geometry.disc_surface import CamSurface
 from swgpar.geometry.drive_geometry import DriveGeometry
-from swgpar.geometry.micro_geometry import WaveGeneratorSurface
 from swgpar.geometry.rotation import rotated
 from swgpar.presentation.off_screen import off_screen_plotter, without_margin
 
@@ -88,7 +88,7 @@ def draw_deformed(
 def draw_loaded_teeth(
     grids: Sequence[pyvista.UnstructuredGrid],
     geometry: DriveGeometry,
-    cam: WaveGeneratorSurface | None,
+    cam: CamSurface | None,
     wg_angle: float,
     angle: float,
     z: float,
@@ -205,7 +205,7 @@ def _draw_cut(axes: Axes, cut: pyvista.PolyData, at: np.ndarray, limit: float, b
     axes.add_collection(LineCollection(list(lines), colors="#222", linewidths=0.5))
 
 
-def _draw_cam(axes: Axes, cam: WaveGeneratorSurface, turn: float, z: float, box: Box) -> None:
+def _draw_cam(axes: Axes, cam: CamSurface, turn: float, z: float, box: Box) -> None:
     """Fill the cam at z (mm) where it is in the box. turn : rad, of its major axis from the middle
     of the figure"""
     x, y = np.meshgrid(np.linspace(*box[:2], CAM_GRID), np.linspace(*box[2:], CAM_GRID))

@@ -247,7 +247,7 @@ def _meridian(design: DriveDesign) -> Sheet:
     tooth = [[tip, back], [tip, -back], [bore, -back]]
     boxes = {
         "ring_gear": (ring.r_tip_circle, ring_outer, back),
-        "wave_generator": (0.0, bore, 0.5 * design.wave_generator.face_width),
+        "wave_generator": (0.0, bore, 0.5 * design.wave_generator.width),
     }
     if design.housing:
         boxes = {"housing": (ring_outer, outer, back)} | boxes

@@ -74,11 +74,12 @@ def make_cam(
         within = None if b is None else b - keys.offset
         return OffsetCam(make_cam(curve, a - keys.offset, within, name), keys.offset)
     if isinstance(keys, FourRoller | TwoRoller):
-        beta, key = 0.0, "r_2"
+        beta, key, beside = 0.0, "r_2", isinstance(keys, TwoRoller) and keys.distance > 0.0
         if isinstance(keys, FourRoller):
             beta, key = float(np.radians(keys.beta)), "r_4"
         radius, centred = roller_radius(keys), keys.centre_radius is not None
-        return rollers(a - radius, beta, radius, f"{name}.{key}", centred=centred)
+        name = f"{name}.{key}"
+        return rollers(a - radius, beta, radius, name, centred=centred, beside=beside)
     if isinstance(keys, Elliptical):
         return EllipticalCam(a, b)
     if isinstance(keys, Harmonic):

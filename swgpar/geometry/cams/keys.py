@@ -42,6 +42,16 @@ class _WaveGenerator(Section):
         """Whether both sides of a lobe are mirror images."""
         return True
 
+    @property
+    def width(self) -> float:
+        """Width (mm) of all that presses on the spline."""
+        return self.face_width
+
+    @property
+    def lobes_are_alike(self) -> bool:
+        """Whether a rotation by one lobe leaves the wave generator as it is."""
+        return True
+
 
 class Reduced(_WaveGenerator):
     """Cams with a minor semi-axis b = C (r_fs - w0) (eq. 3.4), or with both axes given."""
@@ -213,6 +223,23 @@ class TwoRoller(_Rollers):
 
     type: Literal["two_roller"] = quantity("two_roller", text="kind of cam")
     r_2: float = quantity(unit="mm", text="radius of the rollers", gt=0.0)
+    distance: float = quantity(
+        0.0,
+        unit="mm",
+        text="distance of the rollers along the axis, the one on +y towards the closed end; beside "
+        "each other they are discs as large as they fit",
+        ge=0.0,
+    )
+
+    @property
+    def width(self) -> float:
+        """Width (mm) of both rollers."""
+        return self.face_width + self.distance
+
+    @property
+    def lobes_are_alike(self) -> bool:
+        """Whether a rotation by one lobe leaves the wave generator as it is."""
+        return self.distance == 0.0
 
 
 WaveGenerator = Annotated[

@@ -50,14 +50,23 @@ class RollerCam:
 
 
 def rollers(
-    reach: float, beta: float, radius: float, name: str, *, centred: bool = True
+    reach: float,
+    beta: float,
+    radius: float,
+    name: str,
+    *,
+    centred: bool = True,
+    beside: bool = False,
 ) -> RollerCam:
     """Rollers that keep clear of each other (section 5.5.1).
 
     reach : mm, of their centres from the axis;  beta : rad, 0 for two rollers;  radius : mm
     name : of the radius's key, for messages
     centred : whether the circle of the centres is given, or that of the outermost points
+    beside : whether they lie beside each other along the axis, where they cannot touch
     """
+    if beside:
+        return RollerCam(reach, beta, radius)
     # neighbours lie at +-beta, opposite rollers on a diameter
     sine = np.sin(min(beta, 0.5 * np.pi - beta)) if beta else 1.0
     limit = reach * sine if centred else (reach + radius) * sine / (1.0 + sine)
