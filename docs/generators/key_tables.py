@@ -42,6 +42,23 @@ FILES: dict[str, tuple[type[Section], dict[str, str]]] = {
 }
 """Input files with sections: model, and sections whose rows are those of another one."""
 
+DRAWINGS: dict[str, tuple[str, ...]] = {
+    "drive": ("drive_teeth",),
+    "flexible_spline": (
+        "profile_quadruple_arc",
+        "profile_double_arc",
+        "profile_common_tangent",
+        "profile_trapezoid",
+        "profile_involute",
+    ),
+    "dynamic_spline": ("drive_pancake",),
+    "wave_generator": ("cams",),
+    "cup": ("drive_section", "cup_shapes"),
+    "micro_geometry": ("crowning", "slope"),
+    "steps": ("load_stages",),
+}
+"""Drawings of `docs/drawings` beside the sections of a drive: they show what the keys measure."""
+
 
 def choices(field: FieldInfo) -> list[type[Section]]:
     """The sections a field may hold; none for a plain value."""
@@ -107,6 +124,11 @@ def table(lines: list[Row]) -> str:
     """A Markdown table."""
     head = "| key | meaning | unit | default | allowed |\n|---|---|---|---|---|\n"
     return head + "".join(f"| `{key}` | {' | '.join(cells)} |\n" for key, *cells in lines)
+
+
+def figure(drawing: str) -> str:
+    """A drawing, from pages one folder below the root of the documents."""
+    return f"```{{image}} ../_generated/{drawing}.png\n:width: 90%\n:alt: {drawing}\n```\n"
 
 
 def plain_rows(
@@ -182,6 +204,8 @@ def file_tables(design: type[Section], alike: dict[str, str]) -> str:
     parts = []
     for name, field in design.model_fields.items():
         parts.append(f"## `[{name}]`\n")
+        if design is DriveDesign:
+            parts += [figure(drawing) for drawing in DRAWINGS.get(name, ())]
         if not choices(field):
             parts.append(f"{str(field.description).capitalize()}.\n")
             continue

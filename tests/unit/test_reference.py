@@ -57,6 +57,19 @@ def test_the_tables_list_every_key_with_its_meaning(name: str) -> None:
     assert all(meaning and "None" not in meaning for _, meaning in rows)
 
 
+def test_drawings_of_the_keys_are_made() -> None:
+    """Sections exist, and the scripts of the drawings name each file."""
+    scripts = "".join(
+        path.read_text(encoding="utf-8") for path in (DOCS / "drawings").glob("[!_]*.py")
+    )
+    design, alike = KEY_TABLES.FILES["drive"]
+    assert set(KEY_TABLES.DRAWINGS) <= set(design.model_fields)
+    table = KEY_TABLES.file_tables(design, alike)
+    for drawing in [name for names in KEY_TABLES.DRAWINGS.values() for name in names]:
+        assert f'"{drawing}": ' in scripts
+        assert f"../_generated/{drawing}.png" in table
+
+
 def test_history_columns() -> None:
     """The page includes the generated tables of all columns."""
     page = (DOCS / "reference" / "history.md").read_text(encoding="utf-8")
