@@ -172,7 +172,8 @@ def _columns(mesh: SectorMesh, grid: FlankGrid) -> np.ndarray:
     body, relative to the facet's nodes.
 
     They have the depths of the element column under the facet and the slant of the first of these
-    elements. Where the tooth is thinner than the patch is deep the last one is repeated.
+    elements. Where the tooth is thinner than the patch is deep, or a column no longer runs inwards,
+    the last one is repeated.
     """
     nodes, x = grid.nodes[:, 0], mesh.coords[:, :2]
     at_edge: dict[frozenset[int], list[int]] = {}
@@ -196,6 +197,9 @@ def _columns(mesh: SectorMesh, grid: FlankGrid) -> np.ndarray:
         into = depths[0] - along * (along @ depths[0])
         into /= np.linalg.norm(into)
         depth = np.array([d @ into for d in depths])
+        # below a facet that is turned to the tip a column may run up again
+        rises = np.append(np.diff(depth) > 0.0, False)
+        depth = depth[: int(rises.argmin()) + 1]
         missing = PATCH - len(depth)
         last = np.diff(depth, prepend=0.0)[-1]
         depth = np.concatenate([depth, depth[-1] + last * np.arange(1, missing + 1)])

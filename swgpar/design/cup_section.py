@@ -38,7 +38,7 @@ class Cup(Section):
         0.8,
         text="thickness of the wall at the back of the teeth over rim thickness",
         ge=0.1,
-        le=0.95,
+        le=1.0,
     )
     contour: list[ContourPoint] = quantity(
         [],

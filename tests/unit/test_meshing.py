@@ -84,6 +84,7 @@ CASES += [
     pytest.param(RECIPE, SMALL, id="tiny"),
     pytest.param(RECIPE, (), id="tiny-reference"),
     pytest.param("medium", ("cup.thickness_coef=0.95",), id="thick-cup"),
+    pytest.param("medium", ("cup.thickness_coef=1.0",), id="cup-as-rim"),
     pytest.param("medium", ("cup.thickness_coef=0.2",), id="thin-cup"),
     pytest.param("full", ("wave_generator.face_width=6.0",), id="narrow-cam"),
     pytest.param("coarse", DOUBLE_ARC, id="double-arc"),
@@ -322,7 +323,7 @@ def test_section_area_converges_quadratically(gear: str) -> None:
     assert errors[-1] < errors[0] / 50.0, errors
 
 
-@pytest.mark.parametrize("thickness_coef", [0.8, 0.95])
+@pytest.mark.parametrize("thickness_coef", [0.8, 0.95, 1.0])
 def test_volumes_match_closed_forms(thickness_coef: float) -> None:
     overrides = (f"cup.thickness_coef={thickness_coef}", "micro_geometry.fs_crowning=0.0")
     case = design(*overrides)

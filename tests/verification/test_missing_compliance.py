@@ -13,8 +13,12 @@ from scipy.sparse.linalg import spsolve
 from support.contact_blocks import Block, Surface, arc_block
 from support.element_mesh import ElementMesh
 from support.hertz import SIZE, STEEL, WIDTH, flank_line, graded
+from support.paths import DRIVERS
+from swgpar.checks.design_file import load_design
 from swgpar.contact.missing_compliance import PATCH, MissingCompliance
 from swgpar.fem.body import Body
+from swgpar.meshing import build_sector_meshes, load_recipe
+from swgpar.model.layouts import build_gear
 
 STRIP = 0.1
 """mm, width of the loaded strip."""
@@ -133,3 +137,16 @@ def test_uniform_pressure_lacks_little() -> None:
     of_element = (line[1] - line[0]) * (1.0 - STEEL.poisson**2) / STEEL.modulus
     print(lacks.min() / of_element, lacks.max() / of_element)
     assert 0.0 < lacks.min() and lacks.max() < 0.1 * of_element
+
+
+@pytest.mark.parametrize("recipe", ["coarse", "forces"])
+def test_columns_below_a_turned_tip_run_inwards(recipe: str) -> None:
+    """A tip arc of 0.1 modules is turned away from its tooth: the elements below one of its facets
+    lie beside it."""
+    design = load_design(DRIVERS / "wave_generators" / "twin_deflection.toml")
+    mesh = build_sector_meshes(design.geometry, load_recipe(recipe))["flexible_spline"]
+    body = build_gear(mesh, design.materials, design.drive.face_width)
+    for grid in mesh.flanks:
+        missing = MissingCompliance(mesh, grid, body.in_plane_elasticity)
+        assert np.isfinite(missing.green).all()
+        assert np.linalg.eigvalsh(missing.green).max() > 0.0
