@@ -44,7 +44,11 @@ designs = {
 # The outlines. The dashed circle is the inner surface of the undeformed spline. The distance of
 # the cams from it is drawn 5 times as large; the rollers are true to scale.
 
-figure, axes = plt.subplots(1, len(designs), figsize=(12.0, 3.0), sharey=True, layout="constrained")
+columns = (len(designs) + 1) // 2
+figure, rows = plt.subplots(2, columns, figsize=(12.0, 5.4), sharey=True, layout="constrained")
+axes = rows.ravel()
+for panel in axes[len(designs) :]:
+    panel.set_axis_off()
 angle = np.linspace(0.0, 2.0 * np.pi, 721)
 for panel, (name, design) in zip(axes, designs.items()):
     outline = design.cam().outline(3600)
@@ -58,7 +62,8 @@ for panel, (name, design) in zip(axes, designs.items()):
     panel.plot(*circle, "--", color="0.6", linewidth=0.8)
     panel.set(aspect="equal", xlabel="x (mm)")
     panel.set_title(name, fontsize=9)
-axes[0].set_ylabel("y (mm)")
+for panel in rows[:, 0]:
+    panel.set_ylabel("y (mm)")
 
 # %%
 # The radial distance of the cams from that circle, over the angle from the major axis.
