@@ -90,8 +90,8 @@ VIEW_EXAMPLES = """example:
   swgpar view results/coarse
 """
 
-EXPORT = """Write files of other programs: the geometry of a design (step, dxf), a job up to its loaded state (inp), or
-fields and tables of a finished run (vtkhdf, xdmf, parquet, lookup, fmu)."""
+EXPORT = """Write files of other programs: the geometry of a design (step, dxf, csv), a job up to its loaded state (inp),
+or fields and tables of a finished run (vtkhdf, xdmf, parquet, lookup, fmu)."""
 
 EXPORT_EXAMPLES = """examples:
   swgpar export drivers/cup_45deg.toml --format step dxf --out results/cad
@@ -113,8 +113,8 @@ under load is at most A (0.02: 2 %%; 0.001 to 0.2). Without other values in the 
 PLAIN = """compute all that the design asks for: without this, a drive without friction leaves out the assembly step by
 step and further periods, where the design does not set their keys"""
 
-FORMATS = """step: solids of gears and cam; dxf: their outlines; inp: job of CalculiX; vtkhdf, xdmf: fields with all
-teeth; parquet: tables; lookup: torsional spring and ripple for multibody programs; fmu: the same as an FMU (FMI 2.0)"""
+FORMATS = """step: solids of gears and cam; dxf: their outlines; csv: points of the cam; inp: job of CalculiX; vtkhdf, xdmf:
+fields with all teeth; parquet: tables; lookup: torsional spring and ripple for multibody programs; fmu: the same as an FMU (FMI 2.0)"""
 
 MODELS = "cup drive, toothed section in plane stress, two ring gears"
 SHAPES = "flexible spline: a cup, one of half the length, a silk hat"
@@ -244,7 +244,7 @@ def _add_export(commands: _Commands) -> None:
     export = _add_command(commands, "export", EXPORT, EXPORT_EXAMPLES)
     _add_design(export, "source", "design file (TOML), or results folder")
     export.add_argument("--out", required=True, help="folder for the files")
-    formats = ["step", "dxf", "inp", "vtkhdf", "xdmf", "parquet", "lookup", "fmu"]
+    formats = ["step", "dxf", "csv", "inp", "vtkhdf", "xdmf", "parquet", "lookup", "fmu"]
     export.add_argument("--format", nargs="+", required=True, choices=formats, help=FORMATS)
     text = "for fmu: results of the same drive with steps.samples or [deviations]"
     export.add_argument("--ripple", metavar="FOLDER", help=text)

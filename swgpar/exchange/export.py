@@ -12,6 +12,7 @@ from swgpar.errors import InputError
 from swgpar.exchange.calculix import write_calculix
 from swgpar.exchange.dxf import write_dxf
 from swgpar.exchange.fmu import write_fmu
+from swgpar.exchange.points import write_points
 from swgpar.exchange.step import write_step
 from swgpar.exchange.tables import write_look_up, write_parquet
 from swgpar.exchange.vtkhdf import write_vtkhdf
@@ -21,6 +22,7 @@ from swgpar.meshing import MeshRecipe
 OF_DESIGN: Mapping[str, Callable[[DriveDesign, Path], list[Path]]] = {
     "step": write_step,
     "dxf": write_dxf,
+    "csv": write_points,
 }
 """Formats of a design: its geometry."""
 

@@ -171,10 +171,13 @@ def test_a_file_is_found_beside_the_design(tmp_path: Path) -> None:
     assert again == design and again.with_values({"load.torque": 1.0}).cam().deviation < 0.002
 
 
-def test_an_exported_cam_comes_back(tmp_path: Path) -> None:
-    """DXF: the same distances within 0.1 micrometres, and the same stress of a run within 1e-4."""
-    (file,) = swgpar.export(DESIGN, tmp_path, formats=["dxf"])
-    keys = {"type": "points", "face_width": 4.0, "file": str(file), "layer": "wave_generator"}
+@pytest.mark.parametrize("kind", ["dxf", "csv"])
+def test_an_exported_cam_comes_back(kind: str, tmp_path: Path) -> None:
+    """The same distances within 0.1 micrometres, and the same stress of a run within 1e-4."""
+    (file,) = swgpar.export(DESIGN, tmp_path, formats=[kind])
+    keys = {"type": "points", "face_width": 4.0, "file": str(file)}
+    if kind == "dxf":
+        keys["layer"] = "wave_generator"
     keys["pin_half_angle"] = 15.0  # the default of an ellipse
     given = swgpar.load_design(DESIGN, [*SMALL_PLANE, *SHORT])
     again = given.with_values({"wave_generator": {**keys, "tolerance": 1e-6}})

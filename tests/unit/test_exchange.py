@@ -376,7 +376,7 @@ def test_formats_that_a_source_does_not_have(folder: Path, tmp_path: Path) -> No
     ):
         swgpar.export(folder, tmp_path, ["step"])
     with pytest.raises(
-        InputError, match='format = "vtkhdf" is not available for a design: allowed step, dxf'
+        InputError, match='format = "vtkhdf" is not available for a design: allowed step, dxf, csv'
     ):
         swgpar.export(DESIGN, tmp_path, ["vtkhdf"])
     with pytest.raises(InputError, match="lookup needs a run with"):

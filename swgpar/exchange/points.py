@@ -1,0 +1,27 @@
+"""CSV files of the points of the cam, which a design can read again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.cams import cam_outlines
+
+CAM_POINTS = 1440
+"""Points of a cam's outline, four to a degree."""
+
+
+def write_points(design: DriveDesign, folder: Path) -> list[Path]:
+    """Write wave_generator.csv, or a file for each roller: points around the curve, x and y in mm.
+
+    Call it on one rank. `wave_generator.file` reads the file of a cam.
+    """
+    outlines = cam_outlines(design.cam(), CAM_POINTS)
+    paths = []
+    for number, points in enumerate(outlines, 1):
+        name = "wave_generator" if len(outlines) == 1 else f"wave_generator_roller_{number}"
+        path = folder / f"{name}.csv"
+        lines = [f"{x:.9f}, {y:.9f}\n" for x, y in points]
+        path.write_text("x (mm), y (mm)\n" + "".join(lines), encoding="ascii")
+        paths.append(path)
+    return paths
