@@ -114,7 +114,8 @@ PLAIN = """compute all that the design asks for: without this, a drive without f
 step and further periods, where the design does not set their keys"""
 
 FORMATS = """step: solids of gears and cam; dxf: their outlines; csv: points of the cam; inp: job of CalculiX; vtkhdf, xdmf:
-fields with all teeth; parquet: tables; lookup: torsional spring and ripple for multibody programs; fmu: the same as an FMU (FMI 2.0)"""
+fields with all teeth; parquet: tables; lookup: torsional spring and ripple for multibody programs; fmu: the same as
+an FMU (FMI 2.0)"""
 
 MODELS = "cup drive, toothed section in plane stress, two ring gears"
 SHAPES = "flexible spline: a cup, one of half the length, a silk hat"
