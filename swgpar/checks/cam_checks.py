@@ -4,10 +4,10 @@ value and what is allowed."""
 from __future__ import annotations
 
 import numpy as np
-import scipy
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
+from swgpar.geometry.bracketed_root import root_between
 from swgpar.geometry.cams import FourRoller, OffsetCam, TwoRoller
 from swgpar.geometry.cams.keys import Harmonic, Points, Polar, Reduced, Simplified
 from swgpar.input.require import require, require_available
@@ -149,7 +149,7 @@ def _check_concave(design: DriveDesign, wave: Harmonic) -> None:
         return 1.0 + (b - 0.5 * order * (a - b)) / b**2 * (bore - b) - UNIQUE
 
     if b < bore and room(b) < 0.0:  # the curvature there is the least one of the cam
-        root = scipy.optimize.brentq(room, b, bore)
+        root = root_between(room, b, bore)
         reason = "(a concave cam near the spline) to"
         if wave.minor_axis is not None:
             allowed = f"{2.0 * root:.6g} {reason} below {2.0 * a:.6g} mm"

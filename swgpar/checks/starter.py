@@ -14,12 +14,12 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-import scipy
 
 from swgpar.checks.design_file import make_drive
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
+from swgpar.geometry.bracketed_root import root_between
 from swgpar.geometry.cams import make_cam, taut_length
 from swgpar.geometry.cams.keys import Harmonic, Parabolic, Simplified
 from swgpar.geometry.profiles.keys import DoubleArc, ProfileKeys, QuadrupleArc, RackInvolute
@@ -341,11 +341,11 @@ def _cam_keys(cam: CamType, table: dict[str, Any]) -> dict[str, float]:
         return taut_length(make_cam(keys, major, C * minor), 720) / (2.0 * np.pi * inner) - 1.0
 
     def fitting(
-        keys: Callable[[float], Simplified | Harmonic | Parabolic], *bounds: float
+        keys: Callable[[float], Simplified | Harmonic | Parabolic], low: float, high: float
     ) -> float:
         """The value of a key with which the band around the cam is as long as the spline's inner
         circumference."""
-        return float(scipy.optimize.brentq(lambda value: excess(keys(value)), *bounds, xtol=1e-8))
+        return root_between(lambda value: excess(keys(value)), low, high, xtol=1e-8)
 
     if cam == "simplified":
         return {"C": _rounded(fitting(lambda C: Simplified(C=C, face_width=1.0), 0.5, 1.0))}

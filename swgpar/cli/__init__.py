@@ -46,6 +46,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
     # all of them map files of one folder: a file that another run has mapped is left alone
     os.environ.setdefault("OMPI_MCA_sharedfp", "^sm")
+    # looking for plug-ins of Pydantic takes 20 ms; designs need none
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     with watch.armed():
         return _main(arguments)
 

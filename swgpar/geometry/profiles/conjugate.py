@@ -10,10 +10,10 @@ from functools import lru_cache
 from typing import NoReturn
 
 import numpy as np
-import scipy
 
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats
+from swgpar.geometry.bracketed_root import root_between
 from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints
 from swgpar.geometry.profiles.envelope import STATIONS, Envelope
 from swgpar.geometry.profiles.flank import Segment, ToothProfile
@@ -72,7 +72,7 @@ class _Maker:
 
         if beyond(low) * beyond(high) > 0.0:
             self.undercut()
-        return float(scipy.optimize.brentq(beyond, low, high, xtol=1e-13))
+        return root_between(beyond, low, high, xtol=1e-13)
 
     def build(self, low: float, high: float) -> list[Segment | CurvedSegment]:
         """Segments from tip to root; `low`, `high` : arc lengths of the given flank that may
@@ -113,7 +113,7 @@ class _Maker:
         if missing(low) < 0.0:
             if missing(top) < 0.0:
                 self._refuse_root()
-            bottom = float(scipy.optimize.brentq(missing, low, top, xtol=1e-13))
+            bottom = root_between(missing, low, top, xtol=1e-13)
         middle, angle = center(bottom)
         line = _vector(angle)
         if bottom == low:
@@ -154,7 +154,7 @@ class _Maker:
                 continue
             if short(0.0) < 0.0:
                 break
-            cut = float(scipy.optimize.brentq(short, 0.0, segment.length, xtol=1e-13))
+            cut = root_between(short, 0.0, segment.length, xtol=1e-13)
             point, angle = _tangent(segment, cut)
             center = point - radius * self.normal(angle)
             begin = float(np.angle(self.sign * center / abs(center) / (self.sign * 1j)))

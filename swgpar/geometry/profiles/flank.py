@@ -7,11 +7,11 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats
+from swgpar.geometry.bracketed_root import root_between
 
 
 class FlankSegment(Protocol):
@@ -231,7 +231,7 @@ class ToothProfile:
 
         if abs(beyond(0.0)) < 1e-12 * radius:  # an addendum of 0
             return self.top_land
-        s = scipy.optimize.brentq(beyond, 0.0, self.length, xtol=1e-14 * radius)
+        s = root_between(beyond, 0.0, self.length, xtol=1e-14 * radius)
         return 2.0 * radius * float(self.polar_angle(s)[0])
 
     @property

@@ -21,10 +21,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import scipy
 
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats
+from swgpar.geometry.bracketed_root import root_between
 from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints
 from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.geometry.profiles.teeth import Teeth
@@ -128,7 +128,7 @@ def _shaper_tip(cut: Cutter, name: str) -> tuple[float, float, Center]:
 
     limit = cut.depth
     if margin(limit) < 0.0 < margin(0.0):
-        limit = float(scipy.optimize.brentq(margin, 0.0, limit, xtol=1e-12 * cut.module))
+        limit = root_between(margin, 0.0, limit, xtol=1e-12 * cut.module)
     _check_tip(cut, limit if margin(0.0) > 0.0 else 0.0, name)
     offset = np.pi / cut.cutter_teeth - margin(rho)
 

@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import scipy
 
 from swgpar.errors import InputError
+from swgpar.geometry.bracketed_root import root_between
 from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 
@@ -29,11 +29,7 @@ def closing_angle(radius: Callable[[float], float], target: float, refusal: str)
     if len(crossed) == 0:
         raise InputError(refusal)
     low, high = angles[crossed[0] : crossed[0] + 2]
-    return float(
-        scipy.optimize.brentq(
-            lambda angle: radius(angle) - target, low, high, xtol=1e-15, rtol=1e-15
-        )
-    )
+    return float(root_between(lambda angle: radius(angle) - target, low, high, xtol=1e-15))
 
 
 def quadruple_arc(

@@ -14,10 +14,10 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-import scipy
 
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats
+from swgpar.geometry.bracketed_root import root_between
 from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints
 from swgpar.geometry.profiles.flank import FlankSegment, ToothProfile, check_flank
 from swgpar.input.require import require
@@ -79,7 +79,7 @@ def relieved(profile: ToothProfile, relief: float, height: float, gear: str) -> 
     above_fillet = outwards * (profile.r_tip_circle - _radius(profile, profile.root_start))
     allowed = f"above 0 to below {above_fillet:.4g} mm (above the root), here {height:.4g} mm"
     require(height < above_fillet, f"{gear}.tip_relief_height", height, allowed)
-    end = scipy.optimize.brentq(
+    end = root_between(
         lambda s: outwards * (_radius(profile, s) - base), 0.0, profile.root_start, xtol=1e-13
     )
     turn = relief / profile.r_tip_circle / height**2
