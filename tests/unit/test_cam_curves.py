@@ -127,6 +127,15 @@ def test_points_of_an_ellipse(part: int, coordinates: str) -> None:
     assert values["radial deflection at the major axis (mm)"] == pytest.approx(1.0, abs=0.002)
 
 
+def test_polar_points_across_the_full_turn() -> None:
+    """Angles from 300 over 360 to 295 degrees, clockwise in the file."""
+    angle = np.arange(0.0, 360.0, 5.0) + 300.0
+    radius = 0.5 * (A + B) + 0.5 * (A - B) * np.cos(2.0 * np.radians(angle))
+    points = np.column_stack([angle % 360.0, radius])[::-1].tolist()
+    cam = on("points", points=points, coordinates="polar", tolerance=0.0).cam()
+    assert_same(cam, HarmonicCam(A, B, 2), 1e-6)
+
+
 def test_points_of_a_curve_whose_curvature_jumps() -> None:
     cam = on("points", points=simplified(A, B).outline(1440).tolist()).cam()
     assert cam.deviation < 0.0025
@@ -340,6 +349,10 @@ COSINES = [[-r * np.sin(t), r * np.cos(t)] for r, t in zip(WAVE, AROUND, strict=
         (
             {"points": COSINES, "rotation": 80.0},
             "rotation = 80 leaves .* 80 .* example 0",
+        ),
+        (
+            {"points": [*COSINES[:40], *COSINES[30:]][::-1]},
+            "points.43 and its neighbour.*go back",
         ),
         ({"points": COSINES, "deflection": 1.0}, "deflection = 1 is given beside points"),
         ({"points": [[0.9 * x, 0.9 * y] for x, y in COSINES]}, "53.28.* mm at the major axis"),

@@ -49,8 +49,8 @@ def points_cam(keys: Points, name: str = "wave_generator") -> PolarCam:
     Raises InputError where the points give no curve around the axis, with the place.
     """
     key, lobe = f"{name}.points", 2.0 * np.pi / keys.lobes
-    theta, radius = _polar(keys, key)
-    covered = _covered(theta, key)
+    theta, radius, numbers = _polar(keys, key)
+    covered = _covered(theta, numbers, key)
     whole, half = abs(covered - 2.0 * np.pi) < 1e-6, 0.5 * lobe
     if not whole and covered < (half if keys.symmetric else lobe) - 1e-6:
         raise InputError(
@@ -70,7 +70,7 @@ def points_cam(keys: Points, name: str = "wave_generator") -> PolarCam:
     if scattered or cam.deviation > FARTHEST * keys.tolerance + 1e-9 * radius[worst]:
         alike = "equal lobes and sides" if keys.symmetric else "equal lobes"
         raise InputError(
-            f"{key} scatter about a smooth curve with {alike}: {key}.{worst + 1}, "
+            f"{key} scatter about a smooth curve with {alike}: {key}.{numbers[worst]}, "
             f"{np.degrees(theta[worst]):.4g} degrees from the major axis, lies {cam.deviation:.3g} "
             f"mm off one that is smooth to {name}.tolerance = {keys.tolerance:g} mm; allowed are "
             f"smoother points, a larger tolerance"
@@ -99,9 +99,9 @@ def _require_upright(theta: Floats, radius: Floats, keys: Points, name: str) -> 
         )
 
 
-def _polar(keys: Points, key: str) -> tuple[Floats, Floats]:
+def _polar(keys: Points, key: str) -> tuple[Floats, Floats, np.ndarray]:
     """Angles (n,) rad from +y, counter-clockwise and growing by less than half a turn from point
-    to point, and radii (n,) mm."""
+    to point, radii (n,) mm, and the numbers (n,) of the points, from 1."""
     if len(keys.points) < FEWEST:
         raise InputError(f"{key} has {len(keys.points)} points: allowed {FEWEST} and more")
     for number, point in enumerate(keys.points, 1):
@@ -110,18 +110,19 @@ def _polar(keys: Points, key: str) -> tuple[Floats, Floats]:
     first, second = np.array(keys.points).T
     turn = np.radians(keys.rotation)
     if keys.coordinates == "polar":
-        theta, radius = np.radians(first) + turn, second
+        theta, radius = np.radians(first), second
     else:
-        theta, radius = np.unwrap(np.arctan2(-first, second)) + turn, np.hypot(first, second)
+        theta, radius = np.arctan2(-first, second), np.hypot(first, second)
+    theta, numbers = np.unwrap(theta) + turn, np.arange(1, len(theta) + 1)
     if not (radius > 0.0).all():
         at = int(np.argmin(radius > 0.0))
         raise InputError(f"{key}.{at + 1} has the radius {radius[at]:g} mm: allowed above 0")
     if theta[-1] < theta[0]:
-        theta, radius = theta[::-1], radius[::-1]
-    return theta, radius
+        theta, radius, numbers = theta[::-1], radius[::-1], numbers[::-1]
+    return theta, radius, numbers
 
 
-def _covered(theta: Floats, key: str) -> float:
+def _covered(theta: Floats, numbers: np.ndarray, key: str) -> float:
     """Angle that the points cover, rad; two pi for a closed curve.
 
     Refuses angles that do not grow from point to point: the radius is then no function of the
@@ -131,8 +132,8 @@ def _covered(theta: Floats, key: str) -> float:
     if step.min() <= 0.0:
         at = int(step.argmin())
         raise InputError(
-            f"{key}.{at + 1} and its neighbour, {np.degrees(theta[at]):.4g} degrees from the major "
-            "axis, go back around the axis: allowed are points in their order around it, each at "
+            f"{key}.{numbers[at]} and its neighbour, {np.degrees(theta[at]):.4g} degrees from the "
+            "major axis, go back around the axis: allowed are points in their order around it, each at "
             "another angle"
         )
     covered = float(theta[-1] - theta[0])
@@ -145,8 +146,8 @@ def _covered(theta: Floats, key: str) -> float:
     if step.max() > WIDEST_GAP:
         at = int(step.argmax())
         raise InputError(
-            f"{key}.{at + 1} and its neighbour are {np.degrees(step.max()):.3g} degrees apart: "
-            f"allowed up to {np.degrees(WIDEST_GAP):.3g}"
+            f"{key}.{numbers[at]} and its neighbour are {np.degrees(step.max()):.3g} degrees "
+            f"apart: allowed up to {np.degrees(WIDEST_GAP):.3g}"
         )
     return covered
 
