@@ -133,8 +133,8 @@ def _covered(theta: Floats, numbers: np.ndarray, key: str) -> float:
         at = int(step.argmin())
         raise InputError(
             f"{key}.{numbers[at]} and its neighbour, {np.degrees(theta[at]):.4g} degrees from the "
-            "major axis, go back around the axis: allowed are points in their order around it, each at "
-            "another angle"
+            "major axis, go back around the axis: allowed are points in their order around it, "
+            "each at another angle"
         )
     covered = float(theta[-1] - theta[0])
     if covered > 2.0 * np.pi + 1e-6:
