@@ -34,7 +34,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.drive_data import DriveData
 from swgpar.errors import ConvergenceError, SwgparError
 from swgpar.input.toml_file import validate
-from swgpar.largest_stress import root_stress, wall_stress
+from swgpar.largest_stress import wall_stress, window_recipes
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import refined, resized
 from swgpar.meshing.wall_sector import WallCounts
@@ -51,6 +51,7 @@ PARTS: dict[str, tuple[str, ...]] = {
         "contact.pressure_off_edges",
         "sharing.largest_force",
         "sharing.largest_force_share",
+        "step3.wg_torque_Nmm",
     ),
     "period": ("rotation.transmission_error", "rotation.torque_ripple", "mean.wg_torque_Nmm"),
     "stiffness": ("stiffness.K1", "stiffness.K2", "stiffness.K3", "stiffness.lost_motion"),
@@ -96,7 +97,8 @@ def reference_recipe(recipe: MeshRecipe, times: float) -> MeshRecipe:
 
 def with_finer_windows(model: str) -> None:
     """Resolve stresses with one window more."""
-    root_stress.LEVELS[model] += 1
+    window_recipes.LEVELS[model] += 1
+    window_recipes.RING_LEVELS[model] += 1
     wall_stress.RINGS = FINER_RINGS
     wall_stress.SLICES = (*wall_stress.SLICES, FINER_SLICE)
 
