@@ -27,7 +27,7 @@ def error_of(levels: Sequence[float], ratio: float) -> float:
     before = levels[-2] - levels[-3]
     # a last change that is small by chance is no convergence
     change = max(abs(last), abs(before) / ratio**HIGHEST_ORDER)
-    if before * last <= 0.0:
-        return change  # the limit lies between the last two
-    order = float(np.clip(np.log(before / last) / np.log(ratio), LOWEST_ORDER, HIGHEST_ORDER))
+    order = LOWEST_ORDER  # changes of different signs show none
+    if before * last > 0.0:
+        order = float(np.clip(np.log(before / last) / np.log(ratio), LOWEST_ORDER, HIGHEST_ORDER))
     return change / (ratio**order - 1.0)
