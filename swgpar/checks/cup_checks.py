@@ -22,6 +22,10 @@ SMALLEST_FILLET = 1.05
 """Radius of the fillet over the thicknesses beside it, at least: its other side is an arc of the
 difference."""
 
+SMALLEST_INSIDE = 0.2
+"""Radius of the fillet inside over the thinner of wall and end, at least: stresses grow without a
+limit with a sharper one."""
+
 NARROWEST = 0.1
 """Width of the attached area over the thickness of closed end or flange, at least: points on it are
 counted."""
@@ -46,10 +50,12 @@ def check_cup(design: DriveDesign) -> None:
     require(not condensed, "solver.condensed_sectors", condensed, allowed)
     if cup is None:
         raise InputError('cup is missing: allowed only with drive.model = "plane"')
-    allowed = f"above {cup.fillet_radius:g} mm (cup.fillet_radius)"
-    require(cup.length > cup.fillet_radius, "cup.length", cup.length, allowed)
-    _check_shape(cup)
     sizes, rim = design.cup_sizes, design.flexible_spline.rim
+    reach = cup.length - sizes.wall_length
+    by = "cup.fillet_radius" if reach == cup.fillet_radius else "end_thickness and inside_radius"
+    allowed = f"above {reach:g} mm ({by})"
+    require(cup.length > reach, "cup.length", cup.length, allowed)
+    _check_shape(cup)
     _check_contour(sizes, rim)
     _check_end(sizes, rim)
     # narrower splines leave the ring gear's width (docs/verification/stability.md)
@@ -79,7 +85,7 @@ def _check_shape(cup: Cup) -> None:
 def _check_contour(sizes: CupSizes, rim: float) -> None:
     """Every point lies behind the one before, and no surface is steeper than 45 degrees."""
     cup, wall, points = sizes.section, sizes.wall, sizes.points
-    length, least = cup.length - cup.fillet_radius, THINNEST * rim
+    length, least = sizes.wall_length, THINNEST * rim
     for k, (point, before) in enumerate(zip(cup.contour, points, strict=False), 1):
         key, (start, inner, thickness, _) = f"cup.contour.{k}", before
         first, at = start + least, point.distance
@@ -106,13 +112,17 @@ def _check_end(sizes: CupSizes, rim: float) -> None:
     """Fillet and closed end or flange."""
     cup, wall = sizes.section, sizes.wall
     fillet, end, (begin, _) = cup.fillet_radius, wall.end_thickness, wall.center
-    smallest = SMALLEST_FILLET * wall.thickness
-    allowed = f"{smallest:g} ({SMALLEST_FILLET:g} times the cup's thickness) to inf mm"
-    require(fillet * ROUND_OFF >= smallest, "cup.fillet_radius", fillet, allowed)
-    least, most = THINNEST * rim, fillet / SMALLEST_FILLET
-    allowed = f"{least:g} ({THINNEST:g} rims) to {most:g} mm (cup.fillet_radius over "
-    fits = least <= end <= most * ROUND_OFF
-    require(fits, "cup.end_thickness", end, f"{allowed}{SMALLEST_FILLET:g})")
+    least = THINNEST * rim
+    if cup.inside_radius is None:
+        smallest = SMALLEST_FILLET * wall.thickness
+        allowed = f"{smallest:g} ({SMALLEST_FILLET:g} times the cup's thickness) to inf mm"
+        require(fillet * ROUND_OFF >= smallest, "cup.fillet_radius", fillet, allowed)
+        most = fillet / SMALLEST_FILLET
+        allowed = f"{least:g} ({THINNEST:g} rims) to {most:g} mm (cup.fillet_radius over "
+        fits = least <= end <= most * ROUND_OFF
+        require(fits, "cup.end_thickness", end, f"{allowed}{SMALLEST_FILLET:g})")
+    else:
+        _check_corner(sizes, least)
     if wall.outwards:
         allowed = f"above {begin:g} mm (the flange outside cup.fillet_radius)"
         require(cup.flange_radius > begin, "cup.flange_radius", cup.flange_radius, allowed)
@@ -121,12 +131,25 @@ def _check_end(sizes: CupSizes, rim: float) -> None:
         require(cup.inner_radius < begin, "cup.inner_radius", cup.inner_radius, allowed)
 
 
+def _check_corner(sizes: CupSizes, least: float) -> None:
+    """Radii on both sides of the turn into closed end or flange. least : mm, thickness"""
+    cup, end = sizes.section, sizes.end_thickness
+    thinner = min(sizes.wall.thickness, end)
+    require(end >= least, "cup.end_thickness", end, f"{least:g} ({THINNEST:g} rims) to inf mm")
+    inside, smallest = cup.inside_radius, SMALLEST_INSIDE * thinner
+    allowed = f"{smallest:g} ({SMALLEST_INSIDE:g} times the thinner of wall and end) to inf mm"
+    require(inside * ROUND_OFF >= smallest, "cup.inside_radius", inside, allowed)
+    most = inside + thinner
+    allowed = f"0 to {most:g} mm (cup.inside_radius and the thinner of wall and end)"
+    require(cup.fillet_radius <= most * ROUND_OFF, "cup.fillet_radius", cup.fillet_radius, allowed)
+
+
 def _check_back(sizes: CupSizes, rim: float) -> None:
     """Fillet at the back of the teeth."""
     cup, wall = sizes.section, sizes.wall
     key, fillet = "cup.back_fillet", cup.back_fillet
     step = rim - sizes.thickness if cup.thickness_coef <= THICK_CUP else 0.0
-    most = min(step, 0.5 * (cup.length - cup.fillet_radius))
+    most = min(step, 0.5 * sizes.wall_length)
     thick = f"only 0 with cup.thickness_coef above {THICK_CUP:g}"
     require(fillet <= most * ROUND_OFF, key, fillet, f"0 to {most:.4g} mm (rim less wall; {thick})")
     most = min(wall.inner.straight, wall.outer.straight)

@@ -50,7 +50,15 @@ class Cup(Section):
     )
     fillet_radius: float = quantity(
         unit="mm",
-        text="fillet radius of a closed end on its outer side, of a flange on its inner side",
+        text="radius between wall and closed end on the outer side, between wall and flange on the "
+        "inner side; 0 is a sharp corner, with inside_radius",
+        ge=0.0,
+    )
+    inside_radius: float | None = quantity(
+        None,
+        unit="mm",
+        text="fillet radius in the corner on the other side; default a quarter of an ellipse "
+        "around the centre of fillet_radius",
         gt=0.0,
     )
     inner_radius: float | None = quantity(

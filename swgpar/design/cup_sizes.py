@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from swgpar.design.cup_section import Cup
-from swgpar.geometry.cup_wall import CupWall, rounded_lines
+from swgpar.geometry.cup_wall import CupWall, end_reach, rounded_lines
 from swgpar.geometry.drive_geometry import CupGeometry
 
 
@@ -37,13 +37,21 @@ class CupSizes:
             (p.distance, p.radius or self.inner_radius, p.thickness, p.rounding)
             for p in cup.contour
         ]
-        (last, radius, thickness, _), length = points[-1], cup.length - cup.fillet_radius
+        (last, radius, thickness, _), length = points[-1], self.wall_length
         return points if last >= length else [*points, (length, radius, thickness, 0.0)]
 
     @property
     def end_thickness(self) -> float:
         """Thickness of the closed end or flange, mm."""
-        return self.section.end_thickness or self.points[-1][2]
+        cup = self.section
+        last = cup.contour[-1].thickness if cup.contour else self.thickness
+        return cup.end_thickness or last
+
+    @property
+    def wall_length(self) -> float:
+        """Distance (mm) from the back of the teeth as far as which the wall goes along the axis."""
+        cup = self.section
+        return cup.length - end_reach(cup.fillet_radius, cup.inside_radius, self.end_thickness)
 
     @property
     def rest_plane(self) -> float:
@@ -61,6 +69,7 @@ class CupSizes:
             back=self.back,
             end=self.back + cup.length,
             fillet=cup.fillet_radius,
+            inside=cup.inside_radius,
             end_thickness=self.end_thickness,
             edge=cup.edge,
             outwards=cup.shape == "hat",

@@ -184,9 +184,21 @@ def _wall_section(design: DriveDesign) -> list[Edge]:
     if fillet:
         path.append(((first, back + fillet), (first + fillet, back + fillet)))
     path += [_from_back(back, end, middle) for _, end, middle in wall.outer.pieces()]
-    path.append(((center[0], wall.faces[1]), center))
+    side = -1.0 if wall.outwards else 1.0
+
+    def placed(point: tuple[float, float]) -> tuple[float, float]:
+        return center[0] + side * point[0], center[1] + point[1]
+
+    inner, outer = (
+        [(placed(end), middle and placed(middle)) for end, middle in turn.steps()]
+        for turn in wall.turns
+    )
+    path += outer
     path += [((wall.edge, z), None) for z in wall.faces[::-1]]
-    path += [((center[0], wall.faces[0]), None), ((wall.inner.points[-1, 1], center[1]), center)]
+    # the inner line is followed back to the wall
+    ends = [(float(wall.inner.points[-1, 1]), center[1]), *(end for end, _ in inner)]
+    path.append((ends[-1], None))
+    path += [(end, middle) for end, (_, middle) in zip(ends[-2::-1], inner[::-1], strict=True)]
     path += [_from_back(back, end, middle) for end, _, middle in wall.inner.pieces()[:0:-1]]
     edges, place = [], start
     for end, middle in [*path, (start, None)]:

@@ -17,6 +17,9 @@ from swgpar.geometry.arrays import Floats
 SAME = 1e-7
 """mm, length up to which pieces are left out."""
 
+SHARP = 0.25
+"""Radius over the thickness up to which a corner outside has a station of its own."""
+
 STRAIGHT = 1e-9
 """rad, by which a line turns at most at a point where it counts as straight."""
 
@@ -106,12 +109,48 @@ class RoundedLine:
 
 
 @dataclass(frozen=True)
+class Turn:
+    """A quarter turn of a line around a pivot, from the direction of r to that of z.
+
+    width, height : mm, distances of its straight ends from the pivot, along r and z
+    radius : mm, that rounds its corner; None: the turn is a quarter of an ellipse
+    """
+
+    width: float
+    height: float
+    radius: float | None
+
+    def distance(self, angle: Floats) -> Floats:
+        """Distances (n,) mm from the pivot at angles (n,) rad from the direction of r."""
+        cosine, sine = np.cos(angle), np.sin(angle)
+        if self.radius is None:
+            return 1.0 / np.hypot(cosine / self.width, sine / self.height)
+        x, y = self.width - self.radius, self.height - self.radius
+        with np.errstate(divide="ignore"):
+            straight = np.minimum(self.width / cosine, self.height / sine)
+        along, across = x * cosine + y * sine, x * sine - y * cosine
+        on_arc = along + np.sqrt(np.maximum(self.radius**2 - across**2, 0.0))
+        beside = (straight * sine <= y) | (straight * cosine <= x)
+        return np.where(beside, straight, on_arc)
+
+    def steps(self) -> list[tuple[tuple[float, float], tuple[float, float] | None]]:
+        """Ends (along r and z, mm) of its edges with the centres of arcs, from r to z."""
+        if self.radius is None:
+            return [((0.0, self.height), (0.0, 0.0))]
+        x, y = self.width - self.radius, self.height - self.radius
+        arc = [((x, self.height), (x, y))] if self.radius else []
+        return [((self.width, y), None), *arc, ((0.0, self.height), None)]
+
+
+@dataclass(frozen=True)
 class CupWall:
     """The section of the wall.
 
     inner, outer : lines over the distance from the back of the teeth, as far as the fillet
     back, end : mm, z of the back of the teeth and of the far face of the closed end or flange
-    fillet : mm, radius of the fillet, on its outer side (closed end) or its inner side (flange)
+    fillet : mm, radius between wall and end on the outer side (closed end) or inner side (flange)
+    inside : mm, radius of the fillet in the corner on the other side; None: a quarter of an ellipse
+    around the centre of `fillet`
     end_thickness : mm, of the closed end or flange;  edge : mm, radius of its bore or rim
     outwards : whether the wall ends in a flange
     """
@@ -121,6 +160,7 @@ class CupWall:
     back: float
     end: float
     fillet: float
+    inside: float | None
     end_thickness: float
     edge: float
     outwards: bool
@@ -137,17 +177,46 @@ class CupWall:
 
     @property
     def center(self) -> tuple[float, float]:
-        """Radius and z (mm) of the centre of the fillet's curves."""
+        """Radius and z (mm) of the pivot of the turn from the wall into closed end or flange: there
+        both lines have begun to turn."""
         inner, outer = self.inner.points[-1, 1], self.outer.points[-1, 1]
-        r = inner + self.fillet if self.outwards else outer - self.fillet
-        return float(r), self.end - self.fillet
+        if self.inside is None:
+            r = inner + self.fillet if self.outwards else outer - self.fillet
+            return float(r), self.end - self.fillet
+        if self.outwards:
+            r = max(outer + self.inside, inner + self.fillet)
+        else:
+            r = min(inner - self.inside, outer - self.fillet)
+        return float(r), self.end - end_reach(self.fillet, self.inside, self.end_thickness)
 
     @property
-    def sizes(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Semi-axes (along r and z, mm) of the fillet's curves on the inner and the outer line."""
-        long = self.fillet, self.fillet
-        short = self.fillet - self.thickness, self.fillet - self.end_thickness
-        return (long, short) if self.outwards else (short, long)
+    def turns(self) -> tuple[Turn, Turn]:
+        """The turns of the inner and of the outer line around the pivot."""
+        (r, z), lines = self.center, (self.inner, self.outer)
+        radii = (self.fillet, self.inside) if self.outwards else (self.inside, self.fillet)
+        inner, outer = (
+            Turn(abs(float(line.points[-1, 1]) - r), face - z, radius)
+            for line, face, radius in zip(lines, self.faces, radii, strict=True)
+        )
+        return inner, outer
+
+    def turn_angles(self, number: int) -> Floats:
+        """Angles (n,) rad of stations of the turn, `number` or one more: a corner has one."""
+        angle = np.linspace(0.0, 0.5 * np.pi, number + 1)
+        convex = self.turns[0 if self.outwards else 1]
+        if self.inside is None or self.fillet > SHARP * min(self.thickness, self.end_thickness):
+            return angle
+        corner = np.arctan2(convex.height, convex.width)
+        if number == 1:
+            return np.insert(angle, 1, corner)
+        angle[1 + int(np.abs(angle[1:-1] - corner).argmin())] = corner
+        return angle
+
+    @property
+    def arm(self) -> float:
+        """Mean distance (mm) of the middle of the turn from the pivot."""
+        half = 0.5 * min(self.thickness, self.end_thickness)
+        return self.fillet - half if self.inside is None else self.inside + half
 
     @property
     def faces(self) -> tuple[float, float]:
@@ -171,6 +240,11 @@ class CupWall:
         for at in ends:
             stations = with_station(stations, at, keep)
         return stations
+
+
+def end_reach(fillet: float, inside: float | None, end_thickness: float) -> float:
+    """Distance (mm) from the far face of closed end or flange at which the turn begins."""
+    return fillet if inside is None else max(fillet, end_thickness + inside)
 
 
 def with_station(stations: Floats, at: float, keep: Floats, room: float = 0.25) -> Floats:

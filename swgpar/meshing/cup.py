@@ -74,7 +74,7 @@ def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
     s = wall.stations(
         cylinder_stations(wall.length, recipe, back_fillet, layers), back_fillet * (1.0 + 1e-9)
     )
-    angle = np.linspace(0.0, 0.5 * np.pi, recipe.fillet + 1)[1:]
+    angle = wall.turn_angles(recipe.fillet)[1:]
     share = symmetric_steps(recipe.closed_end, recipe.end_ratio)
     if cup.clamping_radius is not None:  # a clamped ring is not bent: one element
         free = (cup.clamping_radius - r_center) / (wall.edge - r_center)
@@ -91,16 +91,15 @@ def section_lines(cup: CupGeometry, s: Floats, angle: Floats, r: Floats) -> Meri
     wall, back_fillet = cup.wall, cup.back_fillet
     side = -1.0 if wall.outwards else 1.0
     lines = []
-    for line, (along_r, along_z), face in zip(
-        (wall.inner, wall.outer), wall.sizes, wall.faces, strict=True
-    ):
+    for line, turn, face in zip((wall.inner, wall.outer), wall.turns, wall.faces, strict=True):
         radius = line.radius(s)
         cylinder = np.stack((radius, wall.back + s), axis=-1)
         if line is wall.outer and back_fillet:
             on = s <= back_fillet * (1.0 + 1e-9)
             up, along = fillet_points(-s[on] / back_fillet, back_fillet)
             cylinder[on] = np.stack((radius[on] + up, wall.back + along), axis=-1)
-        arms = np.stack((side * along_r * np.cos(angle), along_z * np.sin(angle)), axis=-1)
+        arms = np.stack((side * np.cos(angle), np.sin(angle)), axis=-1)
+        arms *= turn.distance(angle)[:, None]
         lines.append(
             np.concatenate(
                 (cylinder, wall.center + arms, np.stack((r, np.full_like(r, face)), axis=-1))

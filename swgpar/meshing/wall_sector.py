@@ -37,10 +37,6 @@ AROUND = 100
 hat by 0.15 % (docs/verification/largest_stress.md)."""
 
 
-BISECTIONS, SMALL = 50, 1e-9
-"""Halvings of the depth in the fillet; least semi-axis of its curves there, mm."""
-
-
 @dataclass(frozen=True)
 class WallCounts:
     """Elements of the wall.
@@ -95,11 +91,10 @@ def graded_section(geometry: DriveGeometry, counts: WallCounts, start: float) ->
     start : mm, distance from the back of the teeth at which it begins
     """
     wall: CupWall = geometry.cup.wall
-    middle = wall.fillet - 0.5 * min(wall.thickness, wall.end_thickness)
-    arc = 0.5 * np.pi * middle / counts.fillet
+    arc = 0.5 * np.pi * wall.arm / counts.fillet
     longest = counts.limit(geometry.inner_radius, wall.thickness)
     usual = wall.length - graded_line(wall.length - start, arc, longest, longest)[::-1]
-    angle = np.linspace(0.0, 0.5 * np.pi, counts.fillet + 1)[1:]
+    angle = wall.turn_angles(counts.fillet)[1:]
     return section_lines(
         geometry.cup, wall.stations(usual, start), angle, flat_radii(geometry.cup, counts, arc)
     )
@@ -120,24 +115,12 @@ def section_parameters(cup: CupGeometry, points: Floats) -> tuple[Floats, Floats
     beyond = (r >= r_center) == wall.outwards
     flat = beyond & (z > z_center)
     depth[flat] = (z[flat] - near) / (far - near)
-    turn = np.flatnonzero((z > z_center) & ~beyond)
-    begin, end = np.array(wall.sizes)
-    outwards = end.sum() > begin.sum()
-
-    def arms(at: Floats) -> Floats:
-        """Components (2, n) of the arms of points of the fillet at depths (n,), over its axes."""
-        axes = np.maximum(begin[:, None] + at * (end - begin)[:, None], SMALL)
-        return np.array([x[turn], y[turn]]) / axes
-
-    low, high = np.full(len(turn), -0.5), np.full(len(turn), 1.5)
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        up = (np.hypot(*arms(middle)) > 1.0) == outwards
-        low, high = np.where(up, middle, low), np.where(up, high, middle)
-    depth[turn] = 0.5 * (low + high)
-    arm = wall.fillet - 0.5 * min(wall.thickness, wall.end_thickness)
-    along[turn] = wall.length + arm * np.arctan2(*arms(depth[turn])[::-1])
-    along[flat] = wall.length + 0.5 * np.pi * arm + x[flat]
+    turn = (z > z_center) & ~beyond
+    angle = np.arctan2(y[turn], x[turn])
+    begin, end = (line.distance(angle) for line in wall.turns)
+    depth[turn] = (np.hypot(x[turn], y[turn]) - begin) / (end - begin)
+    along[turn] = wall.length + wall.arm * angle
+    along[flat] = wall.length + 0.5 * np.pi * wall.arm + x[flat]
     return along, depth
 
 

@@ -265,7 +265,8 @@ def _meridian(design: DriveDesign) -> Sheet:
         _draw_attachment(sheet, design)
     lowest = min(radius for _, radius, _, _ in design.cup_sizes.points)
     x, y = sheet.at(back + 0.5 * cup.length, lowest)
-    wall_text = f"wall {_thicknesses(design)}, fillet r {cup.fillet_radius:g}"
+    inside = "" if cup.inside_radius is None else f", inside r {cup.inside_radius:g}"
+    wall_text = f"wall {_thicknesses(design)}, fillet r {cup.fillet_radius:g}{inside}"
     sheet.texts.append(Text(x, y + 18.0, wall_text))
     sheet.height = sheet.at(0.0, 0.0)[1] + 20.0
     micro = design.micro_geometry

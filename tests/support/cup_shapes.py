@@ -31,6 +31,9 @@ SHAPES: dict[str, Changes] = {
     "hat": HAT,
     "short": SHORT,
     "hat, contour": HAT | CONTOUR,
+    "thick end": {"fillet_radius": 0.0, "inside_radius": 0.6, "end_thickness": 2.0},
+    "rounded end": {"fillet_radius": 0.7, "inside_radius": 0.4, "end_thickness": 1.0},
+    "sharp hat": HAT | {"fillet_radius": 0.0, "inside_radius": 0.5, "end_thickness": 1.2},
 }
 
 
@@ -57,6 +60,8 @@ def wall_volume(design: DriveDesign, n: int = 20001) -> float:
     section."""
     wall, cup = design.cup_sizes.wall, design.cup
     share, angle = np.linspace(0.0, 1.0, n), np.linspace(0.0, 0.5 * np.pi, n)
+    if cup.inside_radius is not None:
+        return revolved(np.concatenate(_lines_with_two_radii(design, share, angle)))
     lines = []
     for line, thickness in ((wall.inner, 0.0), (wall.outer, wall.thickness)):
         s = share * (cup.length - cup.fillet_radius)
@@ -81,6 +86,31 @@ def wall_volume(design: DriveDesign, n: int = 20001) -> float:
             np.concatenate([np.column_stack([line.radius(s), s]), fillet, [[cup.edge, face]]])
         )
     return revolved(np.concatenate([lines[0], lines[1][::-1]]))
+
+
+def _lines_with_two_radii(
+    design: DriveDesign, share: np.ndarray, angle: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points (n, 2) of r and distance from the teeth of the inner line, and of the outer one
+    backwards. share, angle : (n,) along the wall and the arcs"""
+    wall, cup = design.cup_sizes.wall, design.cup
+    side, near = -1.0 if wall.outwards else 1.0, cup.length - wall.end_thickness
+    concave, convex = (cup.inside_radius, near), (cup.fillet_radius, cup.length)
+    lines = []
+    for line, (radius, face) in (
+        (wall.inner, convex if wall.outwards else concave),
+        (wall.outer, concave if wall.outwards else convex),
+    ):
+        s, r_end = share * (face - radius), line.points[-1, 1]
+        straight = np.column_stack([line.radius(np.minimum(s, wall.length)), s])
+        arc = np.column_stack(
+            [
+                r_end - side * radius * (1.0 - np.cos(angle)),
+                face - radius * (1.0 - np.sin(angle)),
+            ]
+        )
+        lines.append(np.concatenate([straight, arc, [[cup.edge, face]]]))
+    return lines[0], lines[1][::-1]
 
 
 CLAMPED: Changes = {"attachment": "clamped", "clamping_radius": 9.0}

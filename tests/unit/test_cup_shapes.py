@@ -210,6 +210,22 @@ REFUSED = [
     ),
     ({"inner_radius": None}, "cup.inner_radius is missing", 'needed with cup.shape = "cup"'),
     (HAT | {"flange_radius": 20.0}, "cup.flange_radius = 20 ", "above 20.6 mm"),
+    (
+        {"fillet_radius": 0.0, "inside_radius": 0.05},
+        "cup.inside_radius = 0.05 ",
+        "0.096 (0.2 times the thinner of wall and end) to inf mm",
+    ),
+    (
+        {"fillet_radius": 1.0, "inside_radius": 0.4},
+        "cup.fillet_radius = 1 ",
+        "0 to 0.88 mm (cup.inside_radius and the thinner of wall and end)",
+    ),
+    ({"fillet_radius": 0.0}, "cup.fillet_radius = 0 ", "0.504 (1.05 times the cup's thickness)"),
+    (
+        {"fillet_radius": 0.0, "inside_radius": 1.0, "end_thickness": 11.5},
+        "cup.length = 12 ",
+        "above 12.5 mm (end_thickness and inside_radius)",
+    ),
 ]
 
 
