@@ -46,6 +46,9 @@ MOST_MODELLED = {"plane": None, "cup": 30}
 """Most teeth of the flexible spline that are modelled, by symmetry a half or a third of all. The
 references of other cup drives would cost too much."""
 
+ROUND_OFF = 1e-9
+"""Relative difference below which two values are the same."""
+
 WORDS = {"plane": "Plane drives", "cup": "Cup drives"}
 
 REFERENCE_DRIVES = {"plane": "plane_half_turn", "cup": "cup_45deg"}
@@ -139,6 +142,7 @@ def rows_of(
         if own is None or true is None:
             continue
         error = abs(own["value"] - true["value"])
+        error = error if error > ROUND_OFF * abs(true["value"]) else 0.0
         rows.append(
             {
                 "drive": drive.name,
