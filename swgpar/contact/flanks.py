@@ -48,8 +48,7 @@ class FlankContact:
     ring_motion : rotation of the ring gear as a whole
     lines_on_layer : lines of contact on a layer of elements along the face width
     crowning : of the flexible spline's flanks
-    stick_stiffness : MPa / mm, tangential;  max_gap : mm, largest |gap| at which a foot point is
-    looked for
+    max_gap : mm, largest |gap| at which a foot point is looked for
     pressure_limit : MPa, bound of the pressure in the tangent's geometric term
     friction_coefficient : 0 without friction
 
@@ -69,14 +68,12 @@ class FlankContact:
         *,
         lines_on_layer: int,
         crowning: FlankCrowning,
-        stick_stiffness: float,
         max_gap: float,
         pressure_limit: float,
         friction_coefficient: float,
     ) -> None:
         self.partition, self.spline, self.ring = partition, spline, ring
         self.ring_motion = ring_motion
-        self.stick_stiffness = stick_stiffness
         self.friction_coefficient = friction_coefficient
         mesh = spline.layout.mesh
         self.slaves = {
@@ -259,7 +256,6 @@ class FlankContact:
         active = self.cells.pressed(u, clearance)
         acts, law = active.carries, active.friction
         if law is not None:
-            law.stiffness = friction.STIFFNESS * self.cells.share * self.stick_stiffness
             law.current[:] = 0.0
             if law.lagged is not None:
                 acts |= (law.lagged > 0.0).any(axis=1)

@@ -16,9 +16,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from mpi4py import MPI
 
-STIFFNESS = 1.0
-"""Tangential stiffness over `contact.penalty_coef` E / module."""
-
 PairKey = tuple[int, int, int]
 """Sector of the flexible spline, side of its tooth, number of the ring gear's tooth."""
 
@@ -28,7 +25,7 @@ class Friction:
     """Law and history at the quadrature points of the present cells; see
     `swgpar.kernel.contact_flanks`.
 
-    coefficient : of friction;  stiffness : MPa / mm
+    coefficient : of friction;  stiffness : (n_face, n_q) MPa / mm, tangential
     foot_point (n_face, n_q, 2) mm, gap (n_face, n_q) mm : of the last converged state, nan and inf
     without a foot traction (n_face, n_q, 2) MPa : of the last converged state
     current (n_face, n_q, 2) MPa : set by the kernel
@@ -36,7 +33,7 @@ class Friction:
     """
 
     coefficient: float
-    stiffness: float
+    stiffness: np.ndarray
     foot_point: np.ndarray
     gap: np.ndarray
     traction: np.ndarray
@@ -48,6 +45,7 @@ class Friction:
         lagged = None if self.lagged is None else np.ascontiguousarray(self.lagged[rows])
         return replace(
             self,
+            stiffness=np.ascontiguousarray(self.stiffness[rows]),
             foot_point=np.ascontiguousarray(self.foot_point[rows]),
             gap=np.ascontiguousarray(self.gap[rows]),
             traction=np.ascontiguousarray(self.traction[rows]),
@@ -57,10 +55,14 @@ class Friction:
 
 
 def begin(
-    coefficient: float, foot_point: np.ndarray, gap: np.ndarray, traction: np.ndarray
+    coefficient: float,
+    stiffness: np.ndarray,
+    foot_point: np.ndarray,
+    gap: np.ndarray,
+    traction: np.ndarray,
 ) -> Friction:
     """Friction at points whose last converged state is given; see `Friction`."""
-    return Friction(coefficient, 0.0, foot_point, gap, traction, np.zeros_like(traction))
+    return Friction(coefficient, stiffness, foot_point, gap, traction, np.zeros_like(traction))
 
 
 @dataclass(frozen=True)

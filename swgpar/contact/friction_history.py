@@ -9,10 +9,7 @@ import numpy as np
 
 from swgpar.contact import friction
 from swgpar.contact.active_cells import ActiveCells
-from swgpar.contact.cell_placement import PlacedCells
-from swgpar.contact.contact_lines import Strips
 from swgpar.contact.flank_kernel import FlankKernel
-from swgpar.contact.flank_pairs import FlankPairs
 from swgpar.contact.friction import CellTractions, Friction, PairKey
 
 
@@ -56,25 +53,26 @@ class FrictionHistory:
         self._start = None
 
     def on_cells(
-        self, pairs: FlankPairs, placed: PlacedCells, slave: Strips, kernel: FlankKernel
+        self, active: ActiveCells, stiffness: np.ndarray, kernel: FlankKernel
     ) -> Friction | None:
         """The law with the last accepted state at the points of cells; None without friction.
 
-        slave : ends of the cells on the slave;  kernel : gives gaps
+        stiffness : (n,) MPa / mm, tangential, of the cells;  kernel : gives gaps
         """
         start = self._start
         if start is None:
             return None
-        faces = placed.faces
+        faces, slave = active.faces, active.slave
         gap, foot_point = kernel.gaps(faces, start.displacement, None, 0.0, start.ring_rotation)
         traction = np.zeros((*faces.weight.shape, 2))
-        of_flank = placed.line % self._lines_of_flank
-        for k, pair in enumerate(pairs.pairs):
+        of_flank = active.placed.line % self._lines_of_flank
+        for k, pair in enumerate(active.flank_pairs.pairs):
             stored, mine = start.tractions.get(pair.key), faces.patch == k
             if stored is not None and mine.any():
                 means = stored.means(of_flank[mine], slave.low[mine], slave.high[mine])
                 traction[mine] = means[:, None]
-        return friction.begin(self.coefficient, foot_point, gap, traction)
+        of_points = np.repeat(stiffness[:, None], faces.weight.shape[1], axis=1)
+        return friction.begin(self.coefficient, of_points, foot_point, gap, traction)
 
     def accept(self, active: ActiveCells | None) -> None:
         """Keep the tractions of the last evaluation of cells, of a converged state."""

@@ -14,6 +14,7 @@ from swgpar.contact.cells import Stations
 from swgpar.contact.flank_kernel import FlankKernel
 from swgpar.contact.friction_history import FrictionHistory
 from swgpar.contact.pressed_lines import PressedLine
+from swgpar.contact.tangential_stiffness import tangential_stiffness
 
 SLIDING = 0.5
 """Facets by which frozen cells may slide past the ends of the master's flank: their forces then
@@ -91,7 +92,10 @@ class LineCells:
         gap, foot = self.kernel.gaps(placed.faces, u, SLIDING, clearance)
         active = self.law.measured(pairs, placed, foot)
         self.law.press(active, gap, self.share)
-        active.friction = self.history.on_cells(pairs, placed, active.slave, self.kernel)
+        slave = self.law.missing[0]
+        facet = float(np.diff(slave.s).mean())
+        stiffness = tangential_stiffness(active, slave.modulus, facet)
+        active.friction = self.history.on_cells(active, stiffness, self.kernel)
         return active
 
     def _gaps(self, clearance: float) -> Gaps:

@@ -303,7 +303,8 @@ class DriveDesign(Design):
         return min(self.materials[body].modulus for body in bodies)
 
     def penalty(self, *bodies: DesignBody) -> float:
-        """Penalty of the contact of flanks of two bodies, or of the support of one, MPa / mm."""
+        """Stiffness of the support of a body, or penalty of the flanks of two in exported jobs,
+        MPa / mm."""
         return self.contact.penalty_coef * self.modulus_of(*bodies) / self.drive.module
 
     @property

@@ -186,8 +186,8 @@ class Contact(Section):
     )
     penalty_coef: float = quantity(
         50.0,
-        text="over E / module, E of the softer gear: tangential stiffness of flanks that stick, "
-        "stiffness of clamped and bolted ends and of the guide, penalty of flanks in exported jobs",
+        text="over E / module, E of the softer gear: stiffness of clamped and bolted ends and of "
+        "the guide, penalty of flanks in exported jobs",
         gt=0.0,
     )
     wg_penalty_coef: float = quantity(

@@ -41,7 +41,8 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
         int64_t n_own
         bint symmetric
     struct Friction:
-        double coefficient, stiffness
+        double coefficient
+        const double* stiffness
         const double* foot_point
         const double* gap
         const double* traction
@@ -99,9 +100,10 @@ cdef Friction friction_of(str function, law, int64_t n_face, int64_t n_q) except
     cdef const double[:, :, ::1] foot_point = checked(function, "friction.foot_point", law.foot_point, DOUBLE, vectors)
     cdef const double[:, :, ::1] traction = checked(function, "friction.traction", law.traction, DOUBLE, vectors)
     cdef const double[:, ::1] gap = checked(function, "friction.gap", law.gap, DOUBLE, scalars)
+    cdef const double[:, ::1] stiffness = checked(function, "friction.stiffness", law.stiffness, DOUBLE, scalars)
     cdef double[:, :, ::1] current = checked(function, "friction.current", law.current, DOUBLE, vectors, True)
     cdef Friction made = Friction(
-        law.coefficient, law.stiffness, &foot_point[0, 0, 0], &gap[0, 0], &traction[0, 0, 0], &current[0, 0, 0], NULL
+        law.coefficient, &stiffness[0, 0], &foot_point[0, 0, 0], &gap[0, 0], &traction[0, 0, 0], &current[0, 0, 0], NULL
     )
     cdef const double[:, ::1] lagged
     if law.lagged is not None:
@@ -184,7 +186,7 @@ def contact_flanks(patches, faces, u, multiplier, double penalty, double opening
     cdef BlockRows r = BlockRows(NULL, NULL, NULL, NULL, 0, True)
     if rows is not None:
         r = rows_of(name, rows, n_local)
-    cdef Friction law = Friction(0.0, 0.0, NULL, NULL, NULL, NULL, NULL)
+    cdef Friction law = Friction(0.0, NULL, NULL, NULL, NULL, NULL, NULL)
     if friction is not None:
         law = friction_of(name, friction, n_face, n_q)
     cdef GapGradients g = GapGradients(NULL, NULL, NULL, NULL)

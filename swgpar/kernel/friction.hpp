@@ -6,12 +6,13 @@
 // both bodies changes nothing. The traction is T = t^s a_s + t^z a_z. With xi the foot point now
 // and xi_n, T_n those of the same slave point in the last converged state,
 //
-//   T_trial = (t_n + eps phi (xi - xi_n))^a a_a,    T = T_trial min(1, mu p / |T_trial|).
+//   T_trial = (t_n + eps phi (xi - xi_n))^a a_a,    T = T_trial min(1, mu p / |T_trial|),
 //
-// phi is the part of the increment in which the point touches: 1 where it did before, else the gap
-// closes in proportion to the increment and phi = d / (g_n + d), d = p / eps the depth that carries
-// p. Virtual work T . a_a dxi^a: forces and moments of both bodies balance, and the work is that of
-// T along the path of the foot point also where the quadrature point lies below the exact surface.
+// with the tangential stiffness eps, MPa / mm. phi is the part of the increment in which the point
+// touches: 1 where it did before, else the gap closes in proportion to the increment and phi = d /
+// (g_n + d), d = p / eps the depth that carries p. Virtual work T . a_a dxi^a: forces and moments
+// of both bodies balance, and the work is that of T along the path of the foot point also where the
+// quadrature point lies below the exact surface.
 #pragma once
 
 #include "contact.hpp"
@@ -19,7 +20,8 @@
 namespace swgpar {
 
 struct Friction {  // of all quadrature points; coefficient 0: off
-  double coefficient = 0.0, stiffness = 0.0;
+  double coefficient = 0.0;
+  const double* stiffness = nullptr;   // (n_face, n_q) eps
   const double* foot_point = nullptr;  // (n_face, n_q, 2) xi_n, nan where there was none
   const double* gap = nullptr;         // (n_face, n_q) g_n
   const double* traction = nullptr;    // (n_face, n_q, 2) t_n
@@ -39,7 +41,7 @@ struct Traction {
   Vec3 value = Vec3::Zero(), trial = Vec3::Zero();
   Vec2 slip = Vec2::Zero();         // xi - xi_n
   Vec2 coefficient = Vec2::Zero();  // T_trial = coefficient_a x_a
-  double phi = 0.0, phi_p = 0.0;
+  double stiffness = 0.0, phi = 0.0, phi_p = 0.0;
   bool acts = false, slips = false;  // a point without xi_n carries none in this increment
 };
 
@@ -49,12 +51,13 @@ inline Traction traction(const FootPoint& f, const Vec2& length, const Vec2& xi,
   const Vec2 before(law.foot_point[2 * kq], law.foot_point[2 * kq + 1]);
   if (!(before[0] == before[0])) return t;
   t.acts = true;
-  const double gap = std::max(0.0, law.gap[kq]), depth = pressure / law.stiffness;
+  t.stiffness = law.stiffness[kq];
+  const double gap = std::max(0.0, law.gap[kq]), depth = pressure / t.stiffness;
   t.phi = depth / (gap + depth);
-  t.phi_p = gap / ((gap + depth) * (gap + depth) * law.stiffness);
+  t.phi_p = gap / ((gap + depth) * (gap + depth) * t.stiffness);
   t.slip = (xi - before).cwiseQuotient(length);
   const Vec2 old(law.traction[2 * kq], law.traction[2 * kq + 1]);
-  t.coefficient = old.cwiseQuotient(length) + law.stiffness * t.phi * t.slip;
+  t.coefficient = old.cwiseQuotient(length) + t.stiffness * t.phi * t.slip;
   t.trial = t.coefficient[0] * f.x_eta + t.coefficient[1] * f.x_zeta;
   const double size = t.trial.norm(), limit = law.coefficient * pressure;
   t.slips = size > limit;
@@ -108,7 +111,7 @@ struct Motion {
 
 // Derivative of the traction by the pressure that bounds it.
 inline Vec3 by_pressure(const Traction& t, const Motion& v, const Friction& law) {
-  const Vec3 trial = law.stiffness * t.phi_p * (v.x * t.slip);
+  const Vec3 trial = t.stiffness * t.phi_p * (v.x * t.slip);
   if (!t.slips) return trial;
   const double size = t.trial.norm();
   const Vec3 along = t.trial / size;
@@ -130,7 +133,7 @@ inline int add_friction_tangent(const FootPoint& f, const Traction& t, const Mot
   const Row dp = law.lagged == nullptr ? Row(-penalty * dg) : Row::Zero();
   const Mat3x24 d_eta = v.u_eta + f.x_etaeta * v.foot.row(0) + f.x_etazeta * v.foot.row(1);
   const Mat3x24 d_zeta = v.u_zeta + f.x_etazeta * v.foot.row(0);
-  Mat3x24 dt = law.stiffness * (t.phi * v.x * v.foot + t.phi_p * (v.x * t.slip).eval() * dp);
+  Mat3x24 dt = t.stiffness * (t.phi * v.x * v.foot + t.phi_p * (v.x * t.slip).eval() * dp);
   dt += t.coefficient[0] * d_eta + t.coefficient[1] * d_zeta;
   if (t.slips) {
     const double size = t.trial.norm();

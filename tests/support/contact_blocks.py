@@ -293,7 +293,7 @@ class Blocks:
     fixed (n, 3) : components with a given displacement
     coefficient : of friction, on the way from the displacement of the last `press`, at first
     `before`
-    stick_stiffness : MPa / mm, tangential;  incompatible : elements with incompatible modes
+    incompatible : elements with incompatible modes
     """
 
     def __init__(
@@ -303,7 +303,6 @@ class Blocks:
         fixed: np.ndarray,
         *,
         coefficient: float = 0.0,
-        stick_stiffness: float = 0.0,
         before: np.ndarray | None = None,
         incompatible: bool = True,
         reach: float = 0.2,
@@ -325,7 +324,6 @@ class Blocks:
             _elements(lower),
             FixedRing(),
             crowning=FlankCrowning(0.0, 1.0, "parabolic"),
-            stick_stiffness=stick_stiffness,
             max_gap=reach,
             pressure_limit=np.inf,
             friction_coefficient=coefficient,

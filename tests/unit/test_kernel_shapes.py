@@ -87,7 +87,7 @@ def flank() -> Values:
     u[:4, 1] = -0.01
     friction = SimpleNamespace(
         coefficient=0.1,
-        stiffness=1e3,
+        stiffness=np.full((1, 2), 1e3),
         foot_point=np.zeros((1, 2, 2)),
         gap=np.zeros((1, 2)),
         traction=np.zeros((1, 2, 2)),
