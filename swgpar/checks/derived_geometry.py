@@ -7,6 +7,8 @@ import numpy as np
 from swgpar.checks.clearance import WORDS, Clearance, clearances
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.cams import Cam, OffsetCam, PolarCam, pin_travel, taut_length
+from swgpar.geometry.profiles import Points
+from swgpar.geometry.profiles.from_points import fitted_flank
 from swgpar.geometry.profiles.rigid_teeth import RigidMesh
 
 
@@ -53,6 +55,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         "gamma, rotation that closes it (deg)": float(np.degrees(design.backlash_angle)),
         "outer diameter (mm)": 2.0 * design.geometry.largest_radius,
         **_cup(design),
+        **_points(design),
         "tooth height, flexible spline (mm)": spline.r_tip_circle - spline.r_root_circle,
         "tooth height, ring gear (mm)": ring.r_root_circle - ring.r_tip_circle,
         "top land, flexible spline (mm)": spline.top_land,
@@ -93,6 +96,19 @@ def _rigid_contact(rigid: RigidMesh) -> dict[str, float]:
         "transmission error of rigid teeth (arcsec)": rigid.transmission_error,
         "share of rigid teeth within 1 µm of contact": rigid.teeth_share,
     }
+
+
+def _points(design: DriveDesign) -> dict[str, float]:
+    """How far flanks are from the points they are made of, and may be between them."""
+    values = {}
+    for gear in design.gears:
+        profile, name = getattr(design, gear).profile, gear.replace("_", " ")
+        if isinstance(profile, Points):
+            fitted = fitted_flank(profile, design.teeth(gear), f"{gear}.profile")
+            values[f"largest deviation of the {name} from its points (mm)"] = fitted.deviation
+            values[f"deviation between its points, estimated, {name} (mm)"] = fitted.between
+            values[f"corners of a flank, {name}"] = float(len(fitted.corners))
+    return values
 
 
 def _cup(design: DriveDesign) -> dict[str, float]:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import GearName
+from swgpar.design.sections import ExternalGear, GearName, InternalGear
 from swgpar.errors import InputError
+from swgpar.geometry.profiles import Points
 from swgpar.input.require import require
 
 LARGEST_DEDENDUM = 2.0
@@ -22,9 +23,14 @@ def check_heights(design: DriveDesign) -> None:
     """Raise InputError where tips lie beyond the root circle of the other gear at the major
     axis."""
     module = design.drive.module
+    for gear in design.gears:
+        _check_heights_of_points(getattr(design, gear), gear)
     for gear, faced in _faced(design):
-        own = getattr(design, faced).dedendum_coef is not None
+        section = getattr(design, faced)
+        own = section.dedendum_coef is not None
         key = f"{faced if own else 'drive'}.dedendum_coef"
+        if isinstance(section.profile, Points):
+            key = f"the dedendum of {faced}.profile.points"
         value = design.teeth(faced).dedendum / module
         least = value - _room(design, gear, faced) / module
         if least > LARGEST_DEDENDUM:
@@ -36,6 +42,15 @@ def check_heights(design: DriveDesign) -> None:
             )
         allowed = f"{least:.6g} to {LARGEST_DEDENDUM:g} modules (tips of {gear} at the major axis)"
         require(value >= least - ROUND_OFF, key, value, allowed)
+
+
+def _check_heights_of_points(section: ExternalGear | InternalGear, gear: GearName) -> None:
+    """Points have their own heights."""
+    if isinstance(section.profile, Points):
+        for key in ("addendum_coef", "dedendum_coef"):
+            value = getattr(section, key)
+            allowed = f"only without it, for {gear}.profile.points set the height"
+            require(value is None, f"{gear}.{key}", value, allowed)
 
 
 def _faced(design: DriveDesign) -> list[tuple[GearName, GearName]]:

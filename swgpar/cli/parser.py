@@ -245,7 +245,7 @@ def _add_export(commands: _Commands) -> None:
     export = _add_command(commands, "export", EXPORT, EXPORT_EXAMPLES)
     _add_design(export, "source", "design file (TOML), or results folder")
     export.add_argument("--out", required=True, help="folder for the files")
-    formats = ["step", "dxf", "csv", "inp", "vtkhdf", "xdmf", "parquet", "lookup", "fmu"]
+    formats = ["step", "dxf", "csv", "teeth", "inp", "vtkhdf", "xdmf", "parquet", "lookup", "fmu"]
     export.add_argument("--format", nargs="+", required=True, choices=formats, help=FORMATS)
     text = "for fmu: results of the same drive with steps.samples or [deviations]"
     export.add_argument("--ripple", metavar="FOLDER", help=text)

@@ -8,7 +8,8 @@ import numpy as np
 
 from swgpar.design.linear_solvers import LINEAR_SOLVERS, LinearSolverName
 from swgpar.design.program_sections import ProgramStage
-from swgpar.geometry.profiles import ExternalProfile, InternalProfile, Teeth
+from swgpar.geometry.profiles import ExternalProfile, InternalProfile, Points, Teeth
+from swgpar.geometry.profiles.flank_points import heights
 from swgpar.input.quantities import Section, quantity
 from swgpar.materials import OptionalMaterial
 
@@ -56,23 +57,25 @@ class Drive(Section):
         """Diametral deflection (mm) with which the pitch circles meet at a lobe."""
         return self.module * (self.teeth_rg - self.teeth_fs)
 
-    def teeth(self, gear: GearName, section: Gear) -> Teeth:
+    def teeth(self, gear: GearName, section: ExternalGear | InternalGear) -> Teeth:
         """Number and sizes of the teeth of a gear, whose section may have its own heights.
 
         The dynamic spline has the teeth of the flexible spline on the pitch circle of the ring
         gear, where these mesh at the major axis: its module is larger.
         """
         external = gear == "flexible_spline"
-        addendum, dedendum = section.addendum_coef, section.dedendum_coef
         wider = self.teeth_rg / self.teeth_fs if gear == "dynamic_spline" else 1.0
-        return Teeth(
-            n_teeth=self.teeth_rg if gear == "ring_gear" else self.teeth_fs,
-            module=self.module * wider,
-            pressure_angle=float(np.radians(self.pressure_angle)),
-            addendum=(self.addendum_coef if addendum is None else addendum) * self.module,
-            dedendum=(self.dedendum_coef if dedendum is None else dedendum) * self.module,
-            external=external,
-        )
+        n_teeth = self.teeth_rg if gear == "ring_gear" else self.teeth_fs
+        module = self.module * wider
+        if isinstance(section.profile, Points):  # they have heights of their own
+            of_points = n_teeth, external, module, f"{gear}.profile"
+            addendum, dedendum = heights(section.profile, *of_points)
+        else:
+            tip, root = section.addendum_coef, section.dedendum_coef
+            addendum = self.module * (self.addendum_coef if tip is None else tip)
+            dedendum = self.module * (self.dedendum_coef if root is None else root)
+        angle = float(np.radians(self.pressure_angle))
+        return Teeth(n_teeth, module, angle, addendum, dedendum, external)
 
 
 class Gear(Section):

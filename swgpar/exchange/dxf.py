@@ -23,17 +23,11 @@ def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
 
     Raises InputError without the package ezdxf.
     """
-    try:
-        from ezdxf.filemanagement import new
-    except ImportError:
-        raise InputError(
-            "the format dxf needs the package ezdxf: pip install 'swgpar[exchange]'"
-        ) from None
-    document = new("R2010", units=4)  # mm
+    document = new_document()
     space = document.modelspace()
     for gear in design.gears:
         document.layers.add(gear)
-        _draw(space, gear_outline(design, gear), gear)
+        draw(space, gear_outline(design, gear), gear)
         outer = design.geometry.gears[gear].outer_radius
         rim = design.inner_radius if gear == "flexible_spline" else outer
         space.add_circle((0.0, 0.0), rim, dxfattribs={"layer": gear})
@@ -48,7 +42,18 @@ def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
     return [path]
 
 
-def _draw(space: Any, edges: Iterable[Edge], layer: str) -> None:
+def new_document() -> Any:
+    """An empty DXF document in mm; raises InputError without the package ezdxf."""
+    try:
+        from ezdxf.filemanagement import new
+    except ImportError:
+        raise InputError(
+            "DXF files need the package ezdxf: pip install 'swgpar[exchange]'"
+        ) from None
+    return new("R2010", units=4)  # mm
+
+
+def draw(space: Any, edges: Iterable[Edge], layer: str) -> None:
     """Lines, arcs and splines of an outline."""
     attributes = {"layer": layer}
     for edge in edges:

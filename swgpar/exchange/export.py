@@ -11,6 +11,7 @@ from swgpar.drive_results.drive_data import DriveData
 from swgpar.errors import InputError
 from swgpar.exchange.calculix import write_calculix
 from swgpar.exchange.dxf import write_dxf
+from swgpar.exchange.flank_points import write_flank_points
 from swgpar.exchange.fmu import write_fmu
 from swgpar.exchange.points import write_points
 from swgpar.exchange.step import write_step
@@ -23,6 +24,7 @@ OF_DESIGN: Mapping[str, Callable[[DriveDesign, Path], list[Path]]] = {
     "step": write_step,
     "dxf": write_dxf,
     "csv": write_points,
+    "teeth": write_flank_points,
 }
 """Formats of a design: its geometry."""
 

@@ -34,18 +34,19 @@ DIVISIONS = 2000
 KINDS = ("LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "LWPOLYLINE", "POLYLINE")
 
 
-def read_curve(path: str | Path, layer: str | None = None) -> np.ndarray:
+def read_curve(path: str | Path, layer: str | None = None, *, divided: bool = True) -> np.ndarray:
     """Points (n, 2) of a curve in their order; a closed curve does not repeat the first one.
 
     Numbers of a CSV file are as they stand there; those of a DXF file are mm.
 
     layer : of a DXF file; without it everything in the model space
+    divided : whether straight lines of a DXF file get points between their ends
 
     Raises InputError for what cannot be read, with the line or the place.
     """
     path = Path(path)
     if path.suffix.lower() == ".dxf":
-        points = _of_dxf(path, layer)
+        points = _of_dxf(path, layer, divided)
     elif path.suffix.lower() in (".csv", ".txt", ".dat"):
         if layer is not None:
             raise InputError(f"layer = {show(layer)} has no meaning with {path}: allowed for DXF")
@@ -92,7 +93,7 @@ def _bad_line(path: Path, number: int, line: str) -> InputError:
     return InputError(f"{path}, line {number}: {show(line)} is no point: allowed are two numbers")
 
 
-def _of_dxf(path: Path, layer: str | None) -> np.ndarray:
+def _of_dxf(path: Path, layer: str | None, divided: bool) -> np.ndarray:
     try:
         from ezdxf.enums import InsertUnits
         from ezdxf.filemanagement import readfile
@@ -124,7 +125,7 @@ def _of_dxf(path: Path, layer: str | None) -> np.ndarray:
         )
     curve = _joined([scale * _points_of(entity, SAGITTA / scale) for entity in entities], path)
     corners_only = all(getattr(entity, "has_arc", True) is False for entity in entities)
-    return curve if corners_only else _divided(curve)
+    return _divided(curve) if divided and not corners_only else curve
 
 
 def _points_of(entity: Any, sagitta: float) -> np.ndarray:

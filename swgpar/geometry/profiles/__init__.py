@@ -16,6 +16,7 @@ from swgpar.geometry.profiles.common_tangent import common_tangent
 from swgpar.geometry.profiles.conjugate import conjugate
 from swgpar.geometry.profiles.double_arc import double_arc
 from swgpar.geometry.profiles.flank import ToothProfile, check_flank
+from swgpar.geometry.profiles.from_points import fitted_flank
 from swgpar.geometry.profiles.involute import Cutter, involute
 from swgpar.geometry.profiles.keys import (
     CommonTangent,
@@ -23,6 +24,7 @@ from swgpar.geometry.profiles.keys import (
     DoubleArc,
     ExternalProfile,
     InternalProfile,
+    Points,
     QuadrupleArc,
     RackInvolute,
     ShaperInvolute,
@@ -138,12 +140,14 @@ def _build(
     elif isinstance(keys, CommonTangent):
         frame = PitchPointFrame(**asdict(teeth), c_P=1.0)
         profile = thinned(common_tangent(keys, frame, name), c_P)
+    elif isinstance(keys, Points):
+        profile = thinned(fitted_flank(keys, teeth, name).profile, c_P)
     elif isinstance(keys, Conjugate):
         profile = conjugate(keys, teeth, *partner, name)
     else:
         profile = involute(_cutter(keys, teeth, c_P), name)
     try:
-        check_flank(profile)
+        check_flank(profile, from_points=isinstance(keys, Points))
     except InputError as error:
         given = [f"{key} = {show(value)}" for key, value in keys if isinstance(value, float)]
         values = f" with {', '.join(given)}" if given else ""
@@ -192,6 +196,7 @@ __all__ = [
     "Conjugate",
     "ExternalProfile",
     "InternalProfile",
+    "Points",
     "RackInvolute",
     "Teeth",
     "ToothMotion",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field
@@ -25,6 +26,10 @@ class ProfileKeys(Section):
 
     def __hash__(self) -> int:
         # profiles are kept by their keys, which may be lists
+        return self._digest
+
+    @cached_property
+    def _digest(self) -> int:
         return hash(self.model_dump_json())
 
 
@@ -100,6 +105,45 @@ class CommonTangent(ProfileKeys):
     r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
 
 
+class Points(ProfileKeys):
+    """A smooth curve through points of one flank, of a space or of a tooth."""
+
+    divides_straight = False
+
+    type: Literal["points"] = quantity("points", text="kind of profile")
+    points: list[list[float]] = quantity(
+        [],
+        text="pairs x, y with the axis of the gear at 0, 0: of one flank of a tooth on +y, of a "
+        "space or of a tooth; a file takes their place",
+    )
+    file: str | None = quantity(
+        None, text="CSV or DXF file of the points, relative to the design file"
+    )
+    layer: str | None = quantity(None, text="layer of a DXF file; without it the model space")
+    scale: float = quantity(1.0, text="mm over the unit of the points", gt=0.0, le=1e6)
+    tolerance: float = quantity(
+        0.0,
+        unit="mm",
+        text="mean distance of the points from the curve; 0: the curve passes through all",
+        ge=0.0,
+    )
+    corner: float = quantity(
+        20.0,
+        unit="deg",
+        text="least angle between the chords beside a point that is a corner",
+        gt=0.0,
+        le=90.0,
+    )
+    joints: list[float] = quantity(
+        [],
+        text="radii (mm) from the axis where smooth parts of the flank join, the one where the "
+        "root begins among them; without it the root begins where the curve turns sharply",
+    )
+    rounded_tip: bool = quantity(
+        False, text="whether the first part, up to a joint or corner, is a rounded tip edge"
+    )
+
+
 class _Involute(ProfileKeys):
     """Section 3.3.1. The typical radius is the bottom clearance."""
 
@@ -141,12 +185,12 @@ class Conjugate(ProfileKeys):
 
 
 ExternalProfile = Annotated[
-    QuadrupleArc | DoubleArc | CommonTangent | Trapezoid | RackInvolute | Conjugate,
+    QuadrupleArc | DoubleArc | CommonTangent | Trapezoid | Points | RackInvolute | Conjugate,
     Field(discriminator="type"),
     BeforeValidator(default_type("quadruple_arc")),
 ]
 InternalProfile = Annotated[
-    QuadrupleArc | DoubleArc | CommonTangent | Trapezoid | ShaperInvolute | Conjugate,
+    QuadrupleArc | DoubleArc | CommonTangent | Trapezoid | Points | ShaperInvolute | Conjugate,
     Field(discriminator="type"),
     BeforeValidator(default_type("quadruple_arc")),
 ]
