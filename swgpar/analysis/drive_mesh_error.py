@@ -75,12 +75,17 @@ def with_finer_flanks(coarse: MeshRecipe, recipe: MeshRecipe) -> list[MeshRecipe
     return [coarse, between] if plane and between not in (coarse, recipe) else [coarse]
 
 
-def coarser_mesh(model: DriveModel, recipe: MeshRecipe, state: LoadState) -> CoarserMesh:
+def coarser_mesh(
+    model: DriveModel, recipe: MeshRecipe, state: LoadState, *, coarsest: bool
+) -> CoarserMesh:
     """What the loaded model on a coarser mesh gives in windows and contacts; collective.
+
+    coarsest : whether it is the coarsest one. There the ring gear has windows too: of it one change
+    shows both errors.
 
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
-    found = resolve_root_stress(model, state, COMPARED_LEVELS, COMPARED_LEVELS - 1)
+    found = resolve_root_stress(model, state, COMPARED_LEVELS, COMPARED_LEVELS - 1, ring=coarsest)
     return CoarserMesh(recipe, found.by_part, pair_contacts(model, state), found.regions)
 
 
@@ -140,11 +145,11 @@ def _region_error(
     if fine.nodal:  # its error is far larger
         return least * fine.place.value
     known = [(one, stress) for one, stress in coarser if stress is not None]
-    if not known or len(known) < len(coarser):
+    if not known or coarser[0][1] is None:
         return None
     known.append((recipe, fine))
-    shared = min(len(stress.levels) for _, stress in known) - 1
-    meshes = [(one, stress.levels[shared]) for one, stress in known]
+    shared = min(len(stress.tops) for _, stress in known) - 1
+    meshes = [(one, stress.tops[shared]) for one, stress in known]
     if not all(value > 0.0 for _, value in meshes):
         return None
     change = shown_error(meshes) * fine.place.value / meshes[-1][1]

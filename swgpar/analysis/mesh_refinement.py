@@ -119,10 +119,10 @@ class Refinement:
         before : error (MPa) of the present mesh by the mesh of the drive, if it is known
         """
         compared = coarse_wall(self.model, self.loaded, coarser[0], recipe)
-        meshes = [coarser_mesh(self.model, coarser[0], self.loaded)]
+        meshes = [coarser_mesh(self.model, coarser[0], self.loaded, coarsest=True)]
         for between in coarser[1:]:
             self._replace(between)
-            meshes.append(coarser_mesh(self.model, between, self.loaded))
+            meshes.append(coarser_mesh(self.model, between, self.loaded, coarsest=False))
         self._replace(recipe)
         found = resolve_root_stress(self.model, self.loaded, self.levels)
         contacts = pair_contacts(self.model, self.loaded)

@@ -225,7 +225,7 @@ class DriveRun:
         found = None
         if model.design.resolves_root_stress:
             try:
-                found = coarser_mesh(model, recipe, loaded)
+                found = coarser_mesh(model, recipe, loaded, coarsest=not self.coarser)
             except (ConvergenceError, InputError) as error:
                 logger.info("the error by the mesh of the drive is not known: %s", error)
         if not self.coarser and ratio is not None:

@@ -297,7 +297,10 @@ class LocalProblem:
         first, end = self.partition.owned_sectors(self.gear)
         sectors = np.arange(first, end)
         inside = (sectors >= MARGIN) & (sectors < self.layout.count - MARGIN)
-        s1, s3, mises = principal(self.body.nodal_stress(self.problem.displacement())[inside])
+        stress, mesh = self.body.nodal_stress(self.problem.displacement())[inside], self.layout.mesh
+        both = np.arange(len(mesh.coords)) if mesh.lower_nodes is None else mesh.lower_nodes
+        nodes, index = np.unique(both, return_inverse=True)  # both layers of the plane are alike
+        s1, s3, mises = (values[:, index] for values in principal(stress[:, nodes]))
         prefix = STRESS_PREFIXES[self.gear][0]
         named = {f"{prefix}_s1": s1, f"{prefix}_s3": -s3, f"{prefix}_vm": mises}
         return named, sectors[inside]

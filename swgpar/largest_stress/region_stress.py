@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import zip_longest
 
 import numpy as np
 
@@ -28,7 +29,7 @@ from swgpar.largest_stress.places import (
 )
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
-from swgpar.model.regions import BACK, FLANK, TIP, TOOTH_END, TOOTH_ROOT
+from swgpar.model.regions import BACK, FLANK, RIM_INSIDE, TIP, TOOTH_END, TOOTH_ROOT
 
 UNREFINED = {"plane": (), "cup": (FLANK, TIP)}
 """Regions of the flexible spline whose elements are the same in all windows: no error follows from
@@ -50,7 +51,7 @@ CLOSE_IN_ROOT = 0.7
 up to a quarter in roots, and little inside of the rim."""
 
 IN_TEETH = (TOOTH_ROOT, TOOTH_END, BACK)
-"""Regions in which nodal averages lose as much as in roots."""
+"""Regions in which nodal averages lose as much as in roots. Beside them so they do on flanks."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,7 @@ class RegionStress:
     """Largest stress of a region.
 
     levels : MPa, in the windows around one tooth, coarse to fine, not numbers where left out
+    tops : MPa, the largest of all windows of each level
     spread : largest stress of the region over that in these windows, at least 1
     place : with the error by the windows
     nodal : whether it is a nodal average at a tooth that is loaded in another way
@@ -65,6 +67,7 @@ class RegionStress:
     """
 
     levels: tuple[float, ...]
+    tops: tuple[float, ...]
     spread: float
     place: Place
     nodal: bool = False
@@ -99,6 +102,17 @@ class WindowReadings:
             self.last.setdefault(tooth, {})[name] = stress
         self.count[tooth] = before + 1
 
+    def tooth_with_largest(self, stress: str) -> int:
+        """Tooth around which the finest windows give the largest of a stress in teeth and rim."""
+        finest = max(self.count.values())
+        names = [f"{stress}{OF_REGION}{region}" for region in (*IN_TEETH, RIM_INSIDE)]
+        found = {
+            tooth: max(by[name].value for name in names if name in by)
+            for tooth, by in self.last.items()
+            if self.count[tooth] == finest
+        }
+        return max(found, key=lambda tooth: found[tooth])
+
     def stresses(
         self, model: DriveModel, gear: str, nodal: Mapping[str, np.ndarray], ratio: float
     ) -> dict[str, RegionStress]:
@@ -122,6 +136,7 @@ class WindowReadings:
         spread = shares[other]
         if spread > ALIKE:
             main, spread = other, 1.0
+        tops = tuple(np.fmax.reduce(level) for level in zip_longest(*known.values(), fillvalue=0.0))
         levels, tooth, read = known[main], self.last[other][name].tooth, 0.0
         region = name.partition(OF_REGION)[2]
         unrefined = gear == FLEXIBLE_SPLINE and region in UNREFINED[model.geometry.model]
@@ -130,15 +145,16 @@ class WindowReadings:
             read, elsewhere = _read_and_elsewhere(nodal, main, known, gear)
             beyond = float(nodal[elsewhere]) / read if read > 0.0 else 1.0
             if nodal[elsewhere] > ALIKE * spread * read:
-                lost = 1.0 / (CLOSE_IN_ROOT if region in IN_TEETH else CLOSE) - 1.0
+                lost = 1.0 / (CLOSE_IN_ROOT if region in (*IN_TEETH, FLANK) else CLOSE) - 1.0
                 error = math.inf if unrefined else lost * float(nodal[elsewhere])
                 average = place(elsewhere, float(nodal[elsewhere]), error)
-                return RegionStress(tuple(levels), 1.0, average, nodal=True)
+                return RegionStress(tuple(levels), tops, 1.0, average, nodal=True)
             if beyond > spread:
                 spread, tooth = beyond, elsewhere
         error = math.inf if unrefined else error_of(levels, ratio)
         error = spread * error + (spread - 1.0) * abs(levels[-1] - read)
-        return RegionStress(tuple(levels), spread, place(tooth, spread * levels[-1], error))
+        value = place(tooth, spread * levels[-1], error)
+        return RegionStress(tuple(levels), tops, spread, value)
 
 
 def _read_and_elsewhere(
@@ -180,15 +196,25 @@ def _place(
     )
 
 
-def nodal_by_sector(model: DriveModel, state: LoadState, gear: str) -> dict[str, np.ndarray]:
-    """Largest nodal averages (n_modelled,) MPa of the drive's mesh apart from the contact of
-    flanks, by sector and by names with `OF_REGION`; collective.
-
-    Of the ring gear any flank may be touched.
-    """
+def nodal_averages(model: DriveModel, gear: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """s1, s3 and von Mises stress (n_owned, n_node) MPa on the drive's mesh; collective."""
     body = model.elements.bodies[gear]
-    mesh, regions = body.layout.mesh, model.regions[gear][False]
-    s1, s3, mises = principal(body.nodal_stress(model.problem.displacement()))
+    return principal(body.nodal_stress(model.problem.displacement()))
+
+
+def nodal_by_sector(
+    model: DriveModel,
+    state: LoadState,
+    gear: str,
+    averages: tuple[np.ndarray, np.ndarray, np.ndarray],
+) -> dict[str, np.ndarray]:
+    """Largest nodal averages (n_modelled,) MPa apart from the contact of flanks, by sector and by
+    names with `OF_REGION`; collective.
+
+    Of the ring gear any flank may be touched. averages : `nodal_averages` of the gear
+    """
+    mesh, regions = model.elements.bodies[gear].layout.mesh, model.regions[gear][False]
+    s1, s3, mises = averages
     distance = APART_DISTANCE * model.geometry.module
     if gear == FLEXIBLE_SPLINE:
         near = near_contact(mesh, pressed_nodes(model, state), distance)

@@ -28,12 +28,16 @@ from swgpar.answers.answer import (
 )
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
-from swgpar.fem.stress import principal
 from swgpar.largest_stress.candidate_teeth import candidates, followed
 from swgpar.largest_stress.convergence import error_of
 from swgpar.largest_stress.local_problem import LocalProblem, WindowStress, tooth_nodes
 from swgpar.largest_stress.places import OF_REGION, root_nodes
-from swgpar.largest_stress.region_stress import RegionStress, WindowReadings, nodal_by_sector
+from swgpar.largest_stress.region_stress import (
+    RegionStress,
+    WindowReadings,
+    nodal_averages,
+    nodal_by_sector,
+)
 from swgpar.largest_stress.window_recipes import (
     LEVELS,
     PERIOD_LEVEL,
@@ -172,13 +176,19 @@ class RootStress(AnswerGroup):
 
 
 def resolve_root_stress(
-    model: DriveModel, state: LoadState, levels: int | None = None, skipped: int = 0
+    model: DriveModel,
+    state: LoadState,
+    levels: int | None = None,
+    skipped: int = 0,
+    *,
+    ring: bool = True,
 ) -> RootStress:
     """Resolve the largest tensile stress at the teeth in the model's equilibrium under `state`, and
     read the other stresses of both gears; collective.
 
     levels : windows, each finer than the one before; None for those of `LEVELS`
     skipped : coarsest of these windows that are left out; their stresses are not numbers
+    ring : whether the ring gear has windows
 
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
@@ -186,23 +196,27 @@ def resolve_root_stress(
     parts = (
         (False,) if kind == "plane" else (False, True)
     )  # between the ends of the teeth, and at them
-    on_mesh = [_largest_by_tooth(model, ends) for ends in parts]
-    in_root = _largest_nodal(
-        model, root_nodes(model.geometry, model.partition.layouts[FLEXIBLE_SPLINE].mesh)
-    )
-    nodal = nodal_by_sector(model, state, FLEXIBLE_SPLINE)
+    averages = nodal_averages(model, FLEXIBLE_SPLINE)
+    on_mesh = [_largest_by_tooth(model, averages[0], ends) for ends in parts]
+    mesh = model.partition.layouts[FLEXIBLE_SPLINE].mesh
+    in_root = _largest_nodal(model, averages[0], root_nodes(model.geometry, mesh))
+    nodal = nodal_by_sector(model, state, FLEXIBLE_SPLINE, averages)
     parts_of_teeth = [f"fs_vm{OF_REGION}{part}" for part in (TOOTH_ROOT, TOOTH_END, RIM_INSIDE)]
     mises = np.max([nodal[name] for name in parts_of_teeth if name in nodal], axis=0)
     teeth = candidates(*on_mesh, in_root=in_root, mises=mises)
     places = [(tooth, ends) for tooth in teeth for ends in parts]
     values: dict[tuple[int, bool], list[float]] = {place: [math.nan] * skipped for place in places}
     readings = WindowReadings(skipped)
-    for level in range(skipped, levels or LEVELS[kind]):
+    count = levels or LEVELS[kind]
+    for level in range(skipped, count):
         found = _solve(model, state, places, window_recipe(kind, level), readings)
         for place, stress in found.items():
             values[place].append(stress.value)
         best = max(places, key=lambda place: found[place].value)
         places = followed(found, level)
+        further = readings.tooth_with_largest("fs_vm")
+        if level + 2 < count and all(tooth != further for tooth, _ in places):
+            places.append((further, False))  # as far as the last window but one
     stresses = ", ".join(f"{value:.1f}" for value in values[best][skipped:])
     logger.info(
         "windows around tooth %d, drive of %d elements: s1 %s MPa",
@@ -221,7 +235,8 @@ def resolve_root_stress(
         )
     known = _place(model, found[best], PARTS[best[1]], by_part, error, float(np.max(on_mesh)))
     regions = readings.stresses(model, FLEXIBLE_SPLINE, nodal, RATIO[kind])
-    regions |= _ring_stresses(model, state, levels or LEVELS[kind], skipped)
+    if ring:
+        regions |= _ring_stresses(model, state, count, skipped)
     return replace(known, regions=regions)
 
 
@@ -230,7 +245,8 @@ def _ring_stresses(
 ) -> dict[str, RegionStress]:
     """Largest stresses of the ring gear by windows around the tooth with the largest tension in
     its root; collective."""
-    kind, nodal = model.geometry.model, nodal_by_sector(model, state, RING_GEAR)
+    kind, averages = model.geometry.model, nodal_averages(model, RING_GEAR)
+    nodal = nodal_by_sector(model, state, RING_GEAR, averages)
     tooth = int(nodal[f"rg_s1{OF_REGION}{TOOTH_ROOT}"].argmax())
     readings = WindowReadings(skipped)
     first = model.partition.layouts[RING_GEAR].first_tooth
@@ -259,7 +275,8 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
     kind = model.geometry.model
     level = PERIOD_LEVEL[kind]
     ends = known.part == ENDS
-    tooth = int(_largest_by_tooth(model, ends).argmax())
+    s1, _, _ = nodal_averages(model, FLEXIBLE_SPLINE)
+    tooth = int(_largest_by_tooth(model, s1, ends).argmax())
     found = _solve(model, state, [(tooth, ends)], window_recipe(kind, level))[tooth, ends]
     value = found.value * known.s1 / known.levels[level]
     period = known.period or ((0.0, known.s1),)
@@ -279,20 +296,17 @@ def error_at_ends(by_part: Mapping[str, Sequence[float]], ratio: float) -> float
     return error
 
 
-def _largest_by_tooth(model: DriveModel, ends: bool) -> np.ndarray:
+def _largest_by_tooth(model: DriveModel, s1: np.ndarray, ends: bool) -> np.ndarray:
     """Largest s1 (n_modelled,) MPa of the teeth of all modelled sectors, at their ends or between
-    them; collective."""
-    return _largest_nodal(
-        model, tooth_nodes(model.partition.layouts[FLEXIBLE_SPLINE].mesh, model.geometry, ends)
-    )
+    them; collective. s1 : (n_owned, n_node) MPa, nodal averages"""
+    mesh = model.partition.layouts[FLEXIBLE_SPLINE].mesh
+    return _largest_nodal(model, s1, tooth_nodes(mesh, model.geometry, ends))
 
 
-def _largest_nodal(model: DriveModel, nodes: np.ndarray) -> np.ndarray:
+def _largest_nodal(model: DriveModel, s1: np.ndarray, nodes: np.ndarray) -> np.ndarray:
     """Largest s1 (n_modelled,) MPa at these nodes (n,) of all modelled sectors of the flexible
-    spline; collective."""
-    body = model.elements.bodies[FLEXIBLE_SPLINE]
-    stress = body.nodal_stress(model.problem.displacement())
-    mine = principal(stress[:, nodes])[0].max(axis=1) if len(stress) else np.zeros(0)
+    spline; collective. s1 : (n_owned, n_node) MPa, nodal averages"""
+    mine = s1[:, nodes].max(axis=1) if len(s1) else np.zeros(0)
     return np.concatenate(model.comm.allgather(mine))
 
 

@@ -23,8 +23,8 @@ FLANK, TIP, INSIDE = "flank", "tip", "inside the tooth"
 """Regions of the flanks that do not touch, of the tips, and of what lies on no surface."""
 
 RIM_INSIDE, RIM, NOTCH_REGION = "rim inside", "rim", "notch"
-"""Regions of the inner half of the flexible spline's rim, of the ring gear's rim, and of the corner
-without a fillet behind the teeth."""
+"""Regions of the inner half of the flexible spline's rim, of the outer half of the ring gear's rim,
+and of the corner without a fillet behind the teeth."""
 
 CUP_WALL = "cup wall"
 """Region of the wall between the back of the teeth and its fillet."""
@@ -106,7 +106,7 @@ def region_of(geometry: DriveGeometry, mesh: SectorMesh, node: int, touched: boo
             "outer surface"
             if radius > outer - near
             else RIM
-            if radius > root + near
+            if radius > root + 0.5 * geometry.gears["ring_gear"].rim
             else TOOTH_ROOT
         )
     if radius < root + near:

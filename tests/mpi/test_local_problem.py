@@ -20,7 +20,7 @@ from swgpar.largest_stress import local_problem
 from swgpar.largest_stress.convergence import HIGHEST_ORDER, error_of
 from swgpar.largest_stress.local_problem import MARGIN, SECTORS, LocalProblem, sectors_of
 from swgpar.largest_stress.places import OF_REGION
-from swgpar.largest_stress.region_stress import nodal_by_sector
+from swgpar.largest_stress.region_stress import nodal_averages, nodal_by_sector
 from swgpar.largest_stress.root_stress import resolve_root_stress
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.model.regions import END, TOOTH_ROOT
@@ -112,7 +112,7 @@ def roots(stepper: LoadStepper, gear: str) -> tuple[dict[str, float], dict[str, 
     """Largest stresses (MPa) in the roots of a gear in a window with the drive's mesh, and in the
     same sectors of the drive, by name; collective."""
     model = stepper.model
-    nodal = nodal_by_sector(model, stepper.load_state, gear)
+    nodal = nodal_by_sector(model, stepper.load_state, gear, nodal_averages(model, gear))
     names = [name for name in nodal if name.endswith(f"{OF_REGION}{TOOTH_ROOT}")]
     tooth = int(nodal[names[0]].argmax())
     window = LocalProblem(model, stepper.load_state, tooth, load_recipe(RECIPE), gear)

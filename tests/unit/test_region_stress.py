@@ -93,6 +93,14 @@ def test_a_window_that_was_not_followed_counts_in_proportion() -> None:
 def test_a_window_that_is_loaded_in_another_way_stands_for_itself() -> None:
     one = stress(readings({3: LEVELS, 9: [150.0, 160.0]}), nodal(t3=70.0, t9=140.0))
     assert one.levels == (150.0, 160.0) and one.place.tooth == 9 and one.spread == 1.0
+    assert one.tops == (150.0, 160.0, 94.0)
+
+
+def test_the_tooth_with_the_largest_stress_is_one_of_the_finest_windows() -> None:
+    found = readings({3: LEVELS[:2], 9: [150.0]})
+    assert found.tooth_with_largest("fs_vm") == 3
+    found.add(9, {ROOT: WindowStress(91.0, 9, np.zeros(3), "", "", 1)})
+    assert found.tooth_with_largest("fs_vm") == 9
 
 
 def test_a_tooth_without_a_window_has_the_stress_in_proportion() -> None:

@@ -61,7 +61,7 @@ def root(s1: float, regions: Mapping[str, Place] | None = None) -> RootStress:
         elements=1,
         drive_error=4.0,
         regions={
-            name: RegionStress((one.value,), 1.0, one, drive_error=0.0)
+            name: RegionStress((one.value,), (one.value,), 1.0, one, drive_error=0.0)
             for name, one in (regions or {}).items()
         },
     )
