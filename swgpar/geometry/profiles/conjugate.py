@@ -58,10 +58,18 @@ class _Maker:
         return self.sign * 1j * _vector(angle)
 
     def undercut(self) -> NoReturn:
+        s = self.envelope.branch[0]
+        if s.size:
+            ends = sorted(abs(self.envelope.point(float(at))[0]) for at in (s[0], s[-1]))
+            spans = f"it spans radii from {ends[0]:.5g} to {ends[1]:.5g} mm"
+        else:
+            spans = "the middle of that flank never touches"
+        low, high = sorted((self.tip, self.root))
         raise InputError(
             f"{self.name}: the envelope of the other gear's flank ends in an undercut before it "
-            "reaches from the tip to the root: allowed are larger pressure angles and other "
-            "profiles of the other gear, whose whole flank comes into contact"
+            f"reaches from the tip to the root ({low:.5g} to {high:.5g} mm), {spans}: allowed are "
+            "larger pressure angles, lower teeth and other profiles of the other gear, whose whole "
+            "flank comes into contact"
         )
 
     def crossing(self, radius: float, low: float, high: float) -> float:
