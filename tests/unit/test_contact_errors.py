@@ -22,7 +22,7 @@ from swgpar.flank_pressure.pair_contact import PairContact
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe_counts import RATIO
 
-FINE = load_recipe("plane_coarse")
+FINE = load_recipe("plane_fine")
 FACTOR = SAFETY / (RATIO**ORDER - 1.0)
 """Error over a change between two meshes."""
 
