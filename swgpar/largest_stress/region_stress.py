@@ -8,7 +8,7 @@ loaded in another way: nodal averages stand for it, with what they may lose.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import zip_longest
@@ -151,10 +151,17 @@ class WindowReadings:
                 return RegionStress(tuple(levels), tops, 1.0, average, nodal=True)
             if beyond > spread:
                 spread, tooth = beyond, elsewhere
-        error = math.inf if unrefined else error_of(levels, ratio)
+        error = math.inf if unrefined else _window_error(levels, ratio)
         error = spread * error + (spread - 1.0) * abs(levels[-1] - read)
         value = place(tooth, spread * levels[-1], error)
         return RegionStress(tuple(levels), tops, spread, value)
+
+
+def _window_error(levels: Sequence[float], ratio: float) -> float:
+    """Error (MPa) of the last level. Two are taken to be of first order, as slices are."""
+    if len(levels) == 2:
+        return abs(levels[1] - levels[0]) / (ratio - 1.0)
+    return error_of(levels, ratio)
 
 
 def _read_and_elsewhere(

@@ -82,6 +82,11 @@ def test_the_stress_is_that_of_the_finest_window() -> None:
     assert one.place.error == pytest.approx(error_of(LEVELS, RATIO))
 
 
+def test_two_windows_are_taken_to_be_of_first_order() -> None:
+    one = stress(readings({3: LEVELS[:2]}), nodal(t3=70.0))
+    assert one.place.error == pytest.approx((90.0 - 80.0) / (RATIO - 1.0))
+
+
 def test_a_window_that_was_not_followed_counts_in_proportion() -> None:
     one = stress(readings({3: LEVELS, 9: [84.0]}), nodal(t3=70.0, t9=72.0))
     assert one.spread == pytest.approx(84.0 / 80.0) and one.place.tooth == 9
