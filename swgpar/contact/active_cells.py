@@ -8,7 +8,7 @@ import numpy as np
 
 from swgpar.contact.cell_placement import PlacedCells
 from swgpar.contact.contact import FacePressure
-from swgpar.contact.contact_lines import LineForces, Strips
+from swgpar.contact.contact_lines import CellLoads, Strips
 from swgpar.contact.flank_pairs import Faces, FlankPairs
 from swgpar.contact.friction import Friction
 
@@ -39,7 +39,7 @@ class ActiveCells:
     length: np.ndarray
     friction: Friction | None
     gap: np.ndarray
-    forces: LineForces
+    forces: CellLoads
     pressure: np.ndarray
 
     @property

@@ -8,8 +8,10 @@ import numpy as np
 from swgpar.contact import contact_lines
 from swgpar.contact.active_cells import ActiveCells
 from swgpar.contact.cell_placement import PlacedCells
-from swgpar.contact.contact_lines import LineForces, Strips
+from swgpar.contact.cells import Stations
+from swgpar.contact.contact_lines import CellLoads, FlankCompliance, Strips
 from swgpar.contact.flank_pairs import FlankPairs, GapGradients
+from swgpar.contact.line_coupling import LineCoupling
 from swgpar.contact.missing_compliance import MissingCompliance
 from swgpar.contact.pressed_lines import PressedLine
 from swgpar.fem.elements import BodyElements
@@ -26,18 +28,31 @@ class CellForces:
     """What acts on cells of a pair of bodies.
 
     slave, master : elements of the flexible spline and of the ring gear
+    stations : lines on a layer
 
     Attributes
     ----------
     missing : what the elements under the flanks of both lack in compliance
+    n_line : lines of a flank
     n_face, n_layer : faces and layers of a slave flank;  z : (n_layer + 1,) mm, ends of the layers
     """
 
-    def __init__(self, slave: BodyElements, master: BodyElements) -> None:
+    def __init__(self, slave: BodyElements, master: BodyElements, stations: Stations) -> None:
         self.missing = _missing(slave), _missing(master)
         self.z = slave.layout.mesh.flanks[0].z
         self._grid = self.missing[1].s, master.layout.mesh.flanks[0].z
         self.n_layer = len(self.z) - 1
+        self.n_line = self.n_layer * len(stations.place)
+        thickness = np.diff(self.z)[:, None]
+        z = (self.z[:-1, None] + thickness * stations.place).ravel()
+        length = (thickness * stations.share).ravel()
+        lower, upper = (
+            FlankCompliance(
+                missing, None if self.n_line == 1 else LineCoupling(missing, nodes, z, length)
+            )
+            for missing, nodes in zip(self.missing, (self.z, self._grid[1]))
+        )
+        self._bodies = lower, upper
         self.n_face = (len(self.missing[0].s) - 1) * self.n_layer
 
     def measured(self, pairs: FlankPairs, placed: PlacedCells, foot: np.ndarray) -> ActiveCells:
@@ -62,7 +77,7 @@ class CellForces:
             length=size[:, 1] * cells.share,
             friction=None,
             gap=np.full(n, np.inf),
-            forces=LineForces(np.zeros(n), []),
+            forces=CellLoads(np.zeros(n), []),
             pressure=np.zeros_like(placed.faces.weight),
         )
 
@@ -90,11 +105,14 @@ class CellForces:
         gap : (n, n_q) mm, at their points;  share : of the stiffness that acts
         """
         active.gap = np.where(active.has_foot, gap.mean(axis=1), np.inf)
+        flank, line = np.divmod(active.placed.line, self.n_line)
         active.forces = contact_lines.forces(
-            active.placed.line,
+            flank,
+            line,
             active.gap,
+            active.length,
             (active.slave, active.master),
-            self.missing,
+            self._bodies,
             active.softness,
             share,
         )
@@ -126,15 +144,15 @@ class CellForces:
 def add_line_tangents(
     active: ActiveCells, chosen: np.ndarray, gradients: GapGradients, rows: BlockRows
 ) -> int:
-    """Add the tangents of the lines that carry; returns the number of missing blocks.
+    """Add the tangents of the flanks that carry; returns the number of missing blocks.
 
     chosen : (n,) cells, ascending, whose gradients these are
     """
-    lines = active.forces.lines
-    if not lines:
+    flanks = active.forces.flanks
+    if not flanks:
         return 0
-    start = np.cumsum([0, *(len(cells) for cells, _ in lines)])
-    at = np.searchsorted(chosen, np.concatenate([cells for cells, _ in lines]))
+    start = np.cumsum([0, *(len(cells) for cells, _ in flanks)])
+    at = np.searchsorted(chosen, np.concatenate([cells for cells, _ in flanks]))
     gap = 0.5 * gradients.vector[at].reshape(len(at), -1, 3)
     force = gap - 0.5 * gradients.friction[at].reshape(len(at), -1, 3)
     length = active.length[chosen[at]]
@@ -144,7 +162,7 @@ def add_line_tangents(
         np.ascontiguousarray(gradients.sixths[at].reshape(len(at), -1)),
         np.ascontiguousarray(length[:, None, None] * force),
         gap,
-        np.concatenate([stiffness.ravel() for _, stiffness in lines]),
+        np.concatenate([stiffness.ravel() for _, stiffness in flanks]),
         rows,
     )
 

@@ -91,7 +91,7 @@ class CellPlacement:
         n_layer: int,
         stations: Stations,
     ) -> None:
-        self._pairs = flank_pairs
+        self._pairs, self._lines_of_flank = flank_pairs, n_layer * len(stations.place)
         at, n_line = stations.place, len(stations.place)
         face, number = np.repeat(near, n_line), np.tile(np.arange(n_line), len(near))
         pair, on_flank = np.divmod(face, n_face)
@@ -135,17 +135,24 @@ class CellPlacement:
 
     def _parts(self, coarse: _CoarseCells, across: int) -> np.ndarray:
         """Cells (n_row, PIECES) of the pieces: as many as an overlap of their line asks for, where
-        the flanks are near. Lines that do not touch have cells too, which meet while the cells are
-        frozen."""
+        the flanks are near. A line beside the deepest one of its flank is taken to lie deeper by
+        the gap that forces there may close. Lines that do not touch have cells too, which meet
+        while the cells are frozen."""
         size, closest, gap = self._size[coarse.row], coarse.closest[coarse.row], coarse.gap
         numbers, of_row = np.unique(self._line[coarse.row], return_inverse=True)
         mean, of_cell = gap.mean(axis=2), np.repeat(of_row, PIECES)
         overlap = np.zeros(len(numbers))
-        lengths = _negative_parts(of_cell, coarse.middle.ravel(), mean.ravel())
+        least, nearest = np.full((2, len(numbers)), np.inf)
+        np.minimum.at(least, of_row, np.minimum(closest, mean.min(axis=1)))
+        _, of_line = np.unique(numbers // self._lines_of_flank, return_inverse=True)
+        deepest = np.zeros(len(numbers))
+        np.maximum.at(deepest, of_line, -least)
+        depth = deepest[of_line]
+        deeper = np.clip(least + depth, 0.0, CLOSED * depth)[of_row]
+        lengths = _negative_parts(of_cell, coarse.middle.ravel(), (mean - deeper[:, None]).ravel())
         np.add.at(overlap, of_cell[:-1], lengths)
-        depth, nearest = np.zeros(len(numbers)), np.full(len(numbers), np.inf)
-        np.maximum.at(depth, of_row, -np.minimum(closest, mean.min(axis=1)))
-        np.minimum.at(nearest, of_row, np.minimum(closest, gap.min(axis=(1, 2))) / size)
+        closing = np.minimum(closest, gap.min(axis=(1, 2))) - deeper
+        np.minimum.at(nearest, of_row, closing / size)
         wanted = np.minimum(across / np.maximum(PIECES * overlap, 1e-3), FINEST * across)
         fine = PARTS[np.searchsorted(PARTS, wanted)]
         fine[nearest >= TOUCHES] = 1

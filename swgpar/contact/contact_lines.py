@@ -1,9 +1,9 @@
-"""Forces on the cells of lines of contact: a complementarity of gaps and forces, line by line.
+"""Forces on the cells of lines of contact: a complementarity of gaps and forces, flank by flank.
 
 A line runs along the profile at one station of the face width. Its cells are narrower than an
 element. With g the gap of the finite elements' surfaces averaged over a cell, f the force on it per
-length of the line (N/mm), and D what both bodies' elements lack in compliance
-(`swgpar.contact.missing_compliance`):
+length of the line (N/mm), and D what both bodies' elements lack in compliance on a line
+(`swgpar.contact.missing_compliance`) and between lines (`swgpar.contact.line_coupling`):
 
     0 <= f,   0 <= g + D f,   f (g + D f) = 0.
 
@@ -18,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from swgpar.contact.line_coupling import LineCoupling
 from swgpar.contact.missing_compliance import MissingCompliance
 
 TOGETHER, MAX_CHANGES = 20, 1000
@@ -25,7 +26,7 @@ TOGETHER, MAX_CHANGES = 20, 1000
 the other (K. G. Murty, Linear Complementarity, 1988, chapter 4)."""
 
 CLOSED = 2.0
-"""Gap, over the deepest overlap of its line, that forces may close."""
+"""Gap, over the deepest overlap of its flank, that forces may close."""
 
 ROUND_OFF = 1e-14
 """Overlap (mm) that is round-off of positions."""
@@ -40,15 +41,40 @@ class Strips:
 
 
 @dataclass
-class LineForces:
+class CellLoads:
     """Forces on cells and the stiffness of those that carry.
 
     force : (n,) N/mm
-    lines : of each line that carries, its cells (m,) and their stiffness (m, m) N/mm²
+    flanks : of each flank that carries, its cells (m,) and their stiffness (m, m) N/mm²
     """
 
     force: np.ndarray
-    lines: list[tuple[np.ndarray, np.ndarray]]
+    flanks: list[tuple[np.ndarray, np.ndarray]]
+
+
+@dataclass(frozen=True)
+class FlankCompliance:
+    """What the elements under the flanks of a body lack: on each line, and between the lines; None
+    where there is one."""
+
+    missing: MissingCompliance
+    coupling: LineCoupling | None
+
+    def add(self, line: np.ndarray, low: np.ndarray, high: np.ndarray, out: np.ndarray) -> None:
+        """Add the compliance among cells of a flank.
+
+        line : (n,) number of each cell's line, ascending;  low, high : (n,) mm, ends of the cells,
+        each within a facet;  out : (n, n) mm / (N/mm)
+        """
+        start = line_starts(line)
+        count = np.diff(start)
+        values = np.zeros(int((count**2).sum()))
+        self.missing.add(start, low, high, values)
+        parts = np.split(values, np.cumsum(count**2)[:-1])
+        for first, n, part in zip(start, count, parts):
+            out[first : first + n, first : first + n] += part.reshape(n, n)
+        if self.coupling is not None:
+            self.coupling.add(start, line[start[:-1]], low, high, out)
 
 
 def line_starts(line: np.ndarray) -> np.ndarray:
@@ -57,41 +83,44 @@ def line_starts(line: np.ndarray) -> np.ndarray:
 
 
 def forces(
+    flank: np.ndarray,
     line: np.ndarray,
     gap: np.ndarray,
+    length: np.ndarray,
     strips: tuple[Strips, Strips],
-    missing: tuple[MissingCompliance, MissingCompliance],
+    bodies: tuple[FlankCompliance, FlankCompliance],
     softness: np.ndarray,
     share: float,
-) -> LineForces:
+) -> CellLoads:
     """Forces on the cells of lines.
 
-    line : (n,) number of the line of each cell, ascending;  gap : (n,) mm, infinite where a cell
-    has no foot point;  strips, missing : of both bodies
+    flank, line : (n,) number of the flank of each cell, ascending, and of its line on it, ascending
+    on a flank
+    gap : (n,) mm, infinite where a cell has no foot point;  length : (n,) mm, share of its line in
+    the face width
+    strips, bodies : cells and compliance of both bodies
     softness : (n,) mm / (N/mm), further compliance of each cell by itself
     share : of the stiffness that acts, above 0, at most 1
     """
-    force = np.zeros(len(gap))
-    deepest = np.full(int(line.max(initial=-1)) + 1, np.inf)
-    np.minimum.at(deepest, line, gap)
-    # forces close no gap that is much wider than the deepest overlap of their line
-    near = np.flatnonzero(gap < -CLOSED * deepest[line])
-    start = line_starts(line[near])
-    count = np.diff(start)
-    values = np.zeros(int((count**2).sum()))
-    for body, ends in zip(missing, strips):
-        body.add(start, ends.low[near], ends.high[near], values)
-    carrying, first = [], 0
-    for k, n in enumerate(count):
-        cells = near[start[k] : start[k + 1]]
-        flexibility = values[first : first + n**2].reshape(n, n) + np.diag(softness[cells])
+    force, carrying = np.zeros(len(gap)), []
+    for cells in np.split(np.arange(len(gap)), line_starts(flank)[1:-1]):
+        # forces close no gap that is much wider than the deepest overlap
+        near = cells[gap[cells] < -CLOSED * min(gap[cells].min(), 0.0)]
+        if not len(near):
+            continue
+        flexibility = np.diag(softness[near])
+        for body, ends in zip(bodies, strips):
+            body.add(line[near], ends.low[near], ends.high[near], flexibility)
         flexibility /= share
-        first += n**2
-        force[cells], acts = complementary_forces(flexibility, gap[cells])
+        # loads and gaps times the roots of the lengths make it symmetric
+        root = np.sqrt(length[near])
+        found, acts = complementary_forces(flexibility, gap[near] * root)
+        force[near] = found / root
         if acts.any():
             stiffness = np.linalg.inv(flexibility[np.ix_(acts, acts)])
-            carrying.append((cells[acts], stiffness))
-    return LineForces(force, carrying)
+            stiffness *= root[acts] / root[acts][:, None]
+            carrying.append((near[acts], stiffness))
+    return CellLoads(force, carrying)
 
 
 def complementary_forces(flexibility: np.ndarray, gap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -81,11 +81,10 @@ class FlankContact:
             for g in mesh.flanks
         }
         self.masters = {g.side: g for g in ring.layout.mesh.flanks}
-        self.law = CellForces(spline, ring)
-        self.n_face, self.n_layer = self.law.n_face, self.law.n_layer
         stations = Stations.of(lines_on_layer, mesh.plane)
-        lines_of_flank = self.n_layer * len(stations.place)
-        self.history = FrictionHistory(friction_coefficient, lines_of_flank)
+        self.law = CellForces(spline, ring, stations)
+        self.n_face = self.law.n_face
+        self.history = FrictionHistory(friction_coefficient, self.law.n_line)
         self.kernel = FlankKernel(max_gap, pressure_limit)
         self.cells = LineCells(self.kernel, self.law, stations, self.history)
         self.deviations: FlankDeviations | None = None
@@ -168,13 +167,8 @@ class FlankContact:
         self._near_pairs = np.unique(flank_pairs.faces.patch[near])
         touching = np.flatnonzero(gap < distances.touch)
         return flank_pairs.block_keys(
-            touching, foot_point[touching], self._layer(touching), self.symmetric
+            touching, foot_point[touching], touching // self.n_face, self.symmetric
         )
-
-    def _layer(self, face: np.ndarray) -> np.ndarray:
-        """Numbers (n,) of the layers of faces (n,), of all pairs."""
-        pair, face = np.divmod(face, self.n_face)
-        return pair * self.n_layer + face % self.n_layer
 
     def reset(self) -> None:
         """Forget the cells with their gaps and pressures."""
@@ -285,8 +279,8 @@ class FlankContact:
         if not missing:
             return moment, NO_KEYS
         nodes = gradients.conn.reshape(len(chosen), -1)
-        layer = self._layer(active.parent[chosen])
-        return moment, self.flank_pairs.line_keys(nodes, layer, self.symmetric)
+        pair = active.parent[chosen] // self.n_face
+        return moment, self.flank_pairs.line_keys(nodes, pair, self.symmetric)
 
     def pressed_lines(self, u: np.ndarray, state: LoadState) -> list[PressedLine]:
         """Pressures of the pairs whose flexible-spline tooth this rank owns at displacement u

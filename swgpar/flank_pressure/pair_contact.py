@@ -2,7 +2,7 @@
 
 In the plane model the pressure is that of the contact law, which joins the mesh to the half plane
 (`swgpar.contact.contact_lines`), on cells that are finer than those of the solution. In space the
-load of a line ends within a layer of elements, where the law's lines do not know each other: the
+largest pressure may lie between the law's lines, which are few where the load is short: the
 mesh gives the force of a pair and its place along the face width, the exact flanks are moved with
 their teeth, and the gap between them goes into the contact of two half spaces over a patch
 (`swgpar.flank_pressure.patch_contact`).
