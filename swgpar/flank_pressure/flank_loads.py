@@ -3,7 +3,7 @@ another mesh."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -36,6 +36,26 @@ class LineLoad:
         """Unit vector (3,) of the sum of the loads of all stations."""
         total = self.load.sum(axis=0)
         return total / np.linalg.norm(total)
+
+    def projected(self) -> LineLoad:
+        """The line load with the same nodal forces: what the elements see, without a share of the
+        stations beside a short contact. It may be negative there."""
+        force = self.load * tributary(self.z)[:, None]
+        return replace(self, load=np.linalg.solve(overlaps(self.z), force))
+
+
+def tributary(z: np.ndarray) -> np.ndarray:
+    """Lengths (n_z,) mm of the stations: half of the distances to those beside them."""
+    steps = np.diff(z)
+    return 0.5 * (np.r_[0.0, steps] + np.r_[steps, 0.0])
+
+
+def overlaps(z: np.ndarray) -> np.ndarray:
+    """M (n_z, n_z) mm, integrals of the products of the hat functions."""
+    out, step = np.zeros((len(z), len(z))), np.diff(z)
+    for k, length in enumerate(step):
+        out[k : k + 2, k : k + 2] += length / 6.0 * np.array([[2.0, 1.0], [1.0, 2.0]])
+    return out
 
 
 def nodal_flank_forces(
@@ -111,9 +131,7 @@ def line_load(grid: FlankGrid, forces: np.ndarray) -> LineLoad | None:
     middle = (along * grid.s[:, None]).sum(axis=0) / share
     loaded = size > 1e-6 * size.max()
     s = np.interp(grid.z, grid.z[loaded], np.clip(middle[loaded], grid.s[0], grid.s[-1]))
-    steps = np.diff(grid.z)
-    length = 0.5 * (np.r_[0.0, steps] + np.r_[steps, 0.0])
-    return LineLoad(grid.z, total / length[:, None], s)
+    return LineLoad(grid.z, total / tributary(grid.z)[:, None], s)
 
 
 def nodal_forces(load: LineLoad, grid: FlankGrid, half_width: float) -> np.ndarray:

@@ -19,6 +19,7 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.contact.missing_compliance import MissingCompliance
+from swgpar.flank_pressure.flank_loads import overlaps
 
 SMALLEST = 1e-9
 """Distance (mm) that stands for none: R is continuous there."""
@@ -31,20 +32,12 @@ def indentation(missing: MissingCompliance, z: np.ndarray, force: np.ndarray) ->
     missing : of the flank;  z : (n_z,) mm, stations of its nodes;  force : (n_s, n_z) N, on the
     nodes, into the body
     """
-    load = np.linalg.solve(_overlaps(z), force.T).T
+    load = np.linalg.solve(overlaps(z), force.T).T
     s, (first, last) = missing.s, missing.s[[0, -1]]
     out = missing.green @ load
     for place in (s, 2.0 * first - s, 2.0 * last - s):
         table = _half_space(place[:, None] - s, z)
         out += 0.5 * missing.logarithm * np.einsum("ablk,bk->al", table, load)
-    return out
-
-
-def _overlaps(z: np.ndarray) -> np.ndarray:
-    """M (n_z, n_z) mm, integrals of the products of the hat functions."""
-    out, step = np.zeros((len(z), len(z))), np.diff(z)
-    for k, length in enumerate(step):
-        out[k : k + 2, k : k + 2] += length / 6.0 * np.array([[2.0, 1.0], [1.0, 2.0]])
     return out
 
 

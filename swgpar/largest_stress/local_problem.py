@@ -254,7 +254,7 @@ class LocalProblem:
         grids = {grid.side: grid for grid in self.layout.mesh.flanks}
         for (sector, side), load in self.loads.items():
             grid = grids[side]
-            nodal = nodal_forces(load, grid, HALF_WIDTH * module).reshape(-1, 3)
+            nodal = nodal_forces(load.projected(), grid, HALF_WIDTH * module).reshape(-1, 3)
             self.pressing[sector, grid.nodes.ravel()] = np.linalg.norm(nodal, axis=1)
             index, own = self._numbers(np.array([sector]), grid.nodes.ravel().astype(np.int64))
             np.add.at(forces, index[0, own[0]], nodal[own[0]])
