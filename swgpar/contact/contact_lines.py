@@ -105,7 +105,7 @@ def forces(
     force, carrying = np.zeros(len(gap)), []
     for cells in np.split(np.arange(len(gap)), line_starts(flank)[1:-1]):
         # forces close no gap that is much wider than the deepest overlap
-        near = cells[gap[cells] < -CLOSED * min(gap[cells].min(), 0.0)]
+        near = cells[gap[cells] < -CLOSED * gap[cells].min(initial=0.0)]
         if not len(near):
             continue
         flexibility = np.diag(softness[near])

@@ -44,8 +44,10 @@ def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.
     problem.search(state)
     # without the geometric terms the undeformed drive's stiffness is positive: overlaps here are
     # beyond real pressures
-    for contact in problem.contacts:
+    for contact in problem.wave_generator.all:
         contact.pressure_limit = 0.0
+    for flanks in problem.flanks:
+        flanks.kernel.pressure_limit = 0.0
     u = problem.displacement()
     problem.residual(problem.x, create_vector(partition), state)
     problem.tangent(u, state)

@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from support.contact_blocks import Surface, arc_block
-from swgpar.contact.contact_lines import Strips, complementary_forces, forces, line_starts
+from swgpar.contact.contact_lines import (
+    CellLoads,
+    FlankCompliance,
+    Strips,
+    complementary_forces,
+    forces,
+    line_starts,
+)
 from swgpar.contact.missing_compliance import MissingCompliance
 from swgpar.fem.body import Body
 from swgpar.materials import Isotropic
@@ -60,11 +67,23 @@ def two_lines(seed: int = 2) -> tuple[np.ndarray, np.ndarray, tuple[Strips, Stri
     return line, gap, tuple(Strips(np.tile(e.low, 2), np.tile(e.high, 2)) for e in one)
 
 
+def pressed(
+    line: np.ndarray,
+    gap: np.ndarray,
+    strips: tuple[Strips, Strips],
+    softness: np.ndarray,
+    share: float,
+) -> CellLoads:
+    """Forces on cells of lines, each on a flank of its own and 1 mm long."""
+    bodies = FlankCompliance(BODIES[0], None), FlankCompliance(BODIES[1], None)
+    return forces(line, line, gap, np.ones(len(line)), strips, bodies, softness, share)
+
+
 @pytest.mark.parametrize("share", [1.0, 0.1])
 def test_forces_are_complementary(share: float) -> None:
     """On all cells of a line, also on those far from the overlap; lines do not couple."""
     line, gap, strips = two_lines()
-    found = forces(line, gap, strips, BODIES, np.zeros(len(line)), share)
+    found = pressed(line, gap, strips, np.zeros(len(line)), share)
     assert (found.force >= 0.0).all()
     d = compliance(line_of_cells()) / share
     for number in (3, 8):
@@ -76,7 +95,7 @@ def test_forces_are_complementary(share: float) -> None:
     # the second line alone has the same forces
     second = line == 8
     alone = tuple(Strips(e.low[second], e.high[second]) for e in strips)
-    again = forces(line[second], gap[second], alone, BODIES, np.zeros(second.sum()), share)
+    again = pressed(line[second], gap[second], alone, np.zeros(second.sum()), share)
     np.testing.assert_allclose(again.force, found.force[second], rtol=1e-12)
 
 
@@ -85,13 +104,13 @@ def test_softness_is_of_each_cell_alone() -> None:
     line, gap, strips = two_lines()
     first = line == 3
     softness = np.linspace(0.0, 1e-4, len(line))
-    found = forces(line, gap, strips, BODIES, softness, 0.5)
+    found = pressed(line, gap, strips, softness, 0.5)
     for number in (3, 8):
         f, g = found.force[line == number], gap[line == number]
         d = compliance(line_of_cells()) + np.diag(softness[line == number])
         left = g + d @ f / 0.5
         assert left.min() > -1e-12 and np.abs(left[f > 0.0]).max() < 1e-12
-    hard = forces(line, gap, strips, BODIES, np.zeros(len(line)), 0.5)
+    hard = pressed(line, gap, strips, np.zeros(len(line)), 0.5)
     assert found.force[first].sum() < 0.99 * hard.force[first].sum()
 
 
@@ -100,7 +119,7 @@ def test_forces_are_unique() -> None:
     line, gap, strips = two_lines()
     first = line == 3
     d, g = compliance(line_of_cells()), gap[first]
-    f = forces(line, gap, strips, BODIES, np.zeros(len(line)), 1.0).force[first]
+    f = pressed(line, gap, strips, np.zeros(len(line)), 1.0).force[first]
     energy = f @ g + 0.5 * f @ d @ f
     rng = np.random.default_rng(5)
     for size in (1e-3, 1.0, 10.0):
@@ -128,9 +147,9 @@ def test_forces_of_any_gaps() -> None:
 @pytest.mark.parametrize("share", [1.0, 0.1])
 def test_stiffness_is_that_of_differences(share: float) -> None:
     line, gap, strips = two_lines()
-    found = forces(line, gap, strips, BODIES, np.zeros(len(line)), share)
+    found = pressed(line, gap, strips, np.zeros(len(line)), share)
     stiffness = np.zeros((len(gap), len(gap)))
-    for cells, block in found.lines:
+    for cells, block in found.flanks:
         stiffness[np.ix_(cells, cells)] = block
         assert np.linalg.eigvalsh(0.5 * (block + block.T))[0] > 0.0
         assert np.abs(block - block.T).max() < 1e-9 * np.abs(block).max()
@@ -138,7 +157,7 @@ def test_stiffness_is_that_of_differences(share: float) -> None:
     for k in np.flatnonzero(found.force > 0.0)[::5]:
         step = h * (np.arange(len(gap)) == k)
         plus, minus = (
-            forces(line, gap + sign * step, strips, BODIES, np.zeros(len(line)), share).force
+            pressed(line, gap + sign * step, strips, np.zeros(len(line)), share).force
             for sign in (1.0, -1.0)
         )
         np.testing.assert_allclose(
@@ -149,28 +168,28 @@ def test_stiffness_is_that_of_differences(share: float) -> None:
 def test_cells_without_a_foot_carry_nothing() -> None:
     """Nor do they change the forces of others, but by what they carried."""
     line, gap, strips = two_lines()
-    all_cells = forces(line, gap, strips, BODIES, np.zeros(len(line)), 1.0)
+    all_cells = pressed(line, gap, strips, np.zeros(len(line)), 1.0)
     carrying = np.flatnonzero(all_cells.force > 0.0)
     without = gap.copy()
     without[carrying[::3]] = np.inf
-    found = forces(line, without, strips, BODIES, np.zeros(len(line)), 1.0)
+    found = pressed(line, without, strips, np.zeros(len(line)), 1.0)
     assert not found.force[carrying[::3]].any() and np.isfinite(found.force).all()
-    assert all(np.isfinite(block).all() for _, block in found.lines)
+    assert all(np.isfinite(block).all() for _, block in found.flanks)
     open_cells = gap.copy()
     open_cells[all_cells.force == 0.0] = np.inf
-    same = forces(line, open_cells, strips, BODIES, np.zeros(len(line)), 1.0)
+    same = pressed(line, open_cells, strips, np.zeros(len(line)), 1.0)
     np.testing.assert_allclose(same.force, all_cells.force, rtol=1e-9)
 
 
 def test_no_overlap_no_forces() -> None:
     line, gap, strips = two_lines()
     for gaps in (np.abs(gap) + 1e-6, np.full(len(gap), np.inf)):
-        found = forces(line, gaps, strips, BODIES, np.zeros(len(line)), 1.0)
-        assert not found.force.any() and not found.lines
+        found = pressed(line, gaps, strips, np.zeros(len(line)), 1.0)
+        assert not found.force.any() and not found.flanks
     none = np.zeros(0)
     empty = Strips(none, none)
-    found = forces(none.astype(np.int64), none, (empty, empty), BODIES, np.zeros(len(line)), 1.0)
-    assert not len(found.force) and not found.lines
+    found = pressed(none.astype(np.int64), none, (empty, empty), np.zeros(len(line)), 1.0)
+    assert not len(found.force) and not found.flanks
 
 
 def test_starts_of_lines() -> None:
