@@ -12,8 +12,8 @@ from swgpar.design.cup_section import Cup
 from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
-from swgpar.geometry.drive_geometry import THICK_CUP
 from swgpar.input.require import require, require_available
+from swgpar.meshing.drive_geometry import THICK_CUP
 
 THINNEST = 0.1
 """Thickness of a wall over that of the rim, at least."""

@@ -35,8 +35,8 @@ from swgpar.fem.elements import BodyElements
 from swgpar.fem.local_nodes import LocalNodes
 from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows
-from swgpar.geometry.drive_geometry import FlankCrowning
 from swgpar.load.load_states import LoadState
+from swgpar.meshing.drive_geometry import FlankCrowning
 
 
 class FlankContact:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from swgpar.design.cup_section import Cup
 from swgpar.geometry.cup_wall import CupWall, end_reach, rounded_lines
-from swgpar.geometry.drive_geometry import CupGeometry
+from swgpar.meshing.drive_geometry import CupGeometry
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,6 @@ from swgpar.geometry.bearing import BearingSizes
 from swgpar.geometry.cams import Bearing, Cam, WaveGenerator, make_cam
 from swgpar.geometry.cams.semi_axes import minor_semi_axis, radial_deflection
 from swgpar.geometry.disc_surface import CamSurface, cam_surface
-from swgpar.geometry.drive_geometry import DriveGeometry, FlankCrowning, GearGeometry
 from swgpar.geometry.neutral_line import neutral_line
 from swgpar.geometry.profiles import (
     Conjugate,
@@ -50,6 +49,7 @@ from swgpar.geometry.profiles.tip_relief import relieved
 from swgpar.geometry.rim_motion import axial_travel, omitted_bending
 from swgpar.input.design import Design
 from swgpar.materials import ChosenMaterial, Material
+from swgpar.meshing.drive_geometry import DriveGeometry, FlankCrowning, GearGeometry
 
 
 class DriveDesign(Design):

@@ -7,10 +7,10 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from swgpar.fem.body_layout import BodyLayout
-from swgpar.geometry.drive_geometry import FlankCrowning
 from swgpar.geometry.micro_geometry import crowning
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.rotation import MIRROR, rotated
+from swgpar.meshing.drive_geometry import FlankCrowning
 from swgpar.meshing.sector import FlankGrid
 
 

@@ -26,13 +26,13 @@ from swgpar.fem.partition import Partition
 from swgpar.fem.stress import principal
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.flank_pressure.flank_loads import flank_forces, line_loads, nodal_forces
-from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.geometry.rotation import rotated
 from swgpar.largest_stress.places import OF_REGION
 from swgpar.largest_stress.window_regions import decay_length, pressed, read_regions
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe
+from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.meshing.interpolation import interpolation
 from swgpar.meshing.sector import SectorMesh
 from swgpar.meshing.tooth_sector import build_sector

@@ -21,8 +21,8 @@ from swgpar.answers.answer import (
     with_no_limit,
 )
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
-from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.load.load_states import LoadState
+from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.meshing.sector import SectorMesh
 from swgpar.model.drive_model import DriveModel
 from swgpar.model.nodal_pressure import nodal_pressure

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.fem.body import RING_GEAR
-from swgpar.geometry.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.largest_stress.places import APART_DISTANCE, inside_teeth, near_contact
+from swgpar.meshing.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.sector import SectorMesh
 from swgpar.model.regions import (
     BACK,

@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 
 from swgpar.geometry.arrays import Floats, Ints
-from swgpar.geometry.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.cross_section import CrossSection
+from swgpar.meshing.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.recipe import CupRecipe, MeshRecipe
 from swgpar.meshing.spacing import polar
 from swgpar.meshing.sweep import grid_quads, sweep_line, sweep_quads, symmetric_steps

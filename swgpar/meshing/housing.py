@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from swgpar.geometry.arrays import Floats
-from swgpar.geometry.drive_geometry import GearGeometry
 from swgpar.meshing.cross_section import CrossSection
+from swgpar.meshing.drive_geometry import GearGeometry
 from swgpar.meshing.recipe import ToothRecipe
 from swgpar.meshing.sweep import grid_quads
 

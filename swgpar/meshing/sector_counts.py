@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.meshing.cup import joined_columns, last_full_station, meridian
+from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.meshing.housing import housing_radii
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
 from swgpar.meshing.tooth_sector import gap_elements, require_sections, tooth_recipe

@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats, Ints
-from swgpar.geometry.drive_geometry import DriveGeometry, FlankCrowning
 from swgpar.geometry.micro_geometry import crowning
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.meshing.cross_section import CrossSection, cross_section
 from swgpar.meshing.cup import cup_slice, rounded_back
+from swgpar.meshing.drive_geometry import DriveGeometry, FlankCrowning
 from swgpar.meshing.housing import housing_radii, with_housing
 from swgpar.meshing.mapped import MeshError
 from swgpar.meshing.quality import element_quality

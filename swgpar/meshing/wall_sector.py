@@ -15,8 +15,8 @@ from scipy.interpolate import CubicSpline
 
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.cup_wall import CupWall
-from swgpar.geometry.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.cup import Meridian, section_lines
+from swgpar.meshing.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.quality import element_quality
 from swgpar.meshing.sector import SectorMesh
 from swgpar.meshing.spacing import polar

@@ -32,9 +32,9 @@ from swgpar.fem.elements import BodyElements, Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.sectors_in_reach import RingSectors, WholeTeeth
 from swgpar.fem.stress import body_fields, part_maxima
-from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
+from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.model.bearing_model import build_bearing_contacts, build_race, race_coupling
 from swgpar.model.contact_distances import contact_search, foot_reach
 from swgpar.model.couplings import ring_guide, spline_attachment

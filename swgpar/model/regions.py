@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.geometry.drive_geometry import CupGeometry, DriveGeometry
+from swgpar.meshing.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.sector import SectorMesh
 
 BACK = "fillet at the back"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from swgpar.geometry.drive_geometry import DriveGeometry
+from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.results.figure_set import panels
 
 if TYPE_CHECKING:

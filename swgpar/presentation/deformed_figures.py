@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swgpar.geometry.disc_surface import CamSurface
-from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.geometry.rotation import rotated
+from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.presentation.off_screen import off_screen_plotter, without_margin
 
 if TYPE_CHECKING:

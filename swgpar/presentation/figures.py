@@ -13,8 +13,8 @@ from swgpar.design.kinematics import Kinematics
 from swgpar.drive_results.drive_data import SPLINE, DriveData
 from swgpar.errors import InputError
 from swgpar.evaluation.transmission_error import orders
-from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.load.load_states import Stage
+from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.presentation.circumference_figure import FIELDS, draw_circumference
 from swgpar.presentation.contact_figures import (
     ANGLE,

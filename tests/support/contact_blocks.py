@@ -19,10 +19,10 @@ from swgpar.contact.flanks import FlankContact
 from swgpar.contact.search import FlankPair
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR, Body
 from swgpar.fem.local_nodes import LocalNodes
-from swgpar.geometry.drive_geometry import FlankCrowning
 from swgpar.geometry.rotation import MIRROR
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.materials import Material
+from swgpar.meshing.drive_geometry import FlankCrowning
 from swgpar.meshing.sector import FlankGrid, SectorMesh
 
 ORDERING = "MMD_AT_PLUS_A"
