@@ -114,8 +114,7 @@ static void evaluate(Spring* spring) {
   const double loss = v[LOSS_TORQUE] + v[LOAD_LOSS] * fabs(torque);
   v[OUTPUT_TORQUE] = -torque - v[OUTPUT_VISCOUS_DRAG] * v[OUTPUT_SPEED] -
                      v[OUTPUT_DRAG] * tanh(v[OUTPUT_SPEED] * fabs(RATIO) / v[LOSS_SPEED]);
-  v[WAVE_GENERATOR_TORQUE] = transmission * torque -
-                             v[VISCOUS_LOSS] * v[WAVE_GENERATOR_SPEED] -
+  v[WAVE_GENERATOR_TORQUE] = transmission * torque - v[VISCOUS_LOSS] * v[WAVE_GENERATOR_SPEED] -
                              loss * tanh(v[WAVE_GENERATOR_SPEED] / v[LOSS_SPEED]);
   spring->is_current = 1;
 }
