@@ -332,11 +332,13 @@ def export(
         drive = open_result(source)
     else:
         drive = source if isinstance(source, DriveResult) else load_design(source)
-    others = [open_result(r) if isinstance(r, (str, Path)) else r for r in (ripple, idle)]
-    periodic, without_load = (other if isinstance(other, DriveResult) else None for other in others)
-    known = [other for other in others if other is not None]
-    if not isinstance(drive, DriveDesign | DriveResult) or not all(
-        isinstance(other, DriveResult) for other in known
+    periodic, without_load = (
+        open_result(one) if isinstance(one, (str, Path)) else one for one in (ripple, idle)
+    )
+    if (
+        not isinstance(drive, DriveDesign | DriveResult)
+        or not isinstance(periodic, DriveResult | None)
+        or not isinstance(without_load, DriveResult | None)
     ):
         raise InputError(
             "export is available for drives: a gear train has no geometry and no fields"

@@ -37,11 +37,7 @@ def bearing_shares(model: DriveModel, state: LoadState) -> dict[str, ComplianceS
         return {}
     problem, system = model.problem, model.solver.system
     u, balls = problem.displacement(), problem.wave_generator.balls
-    problem.complete_tangent(u, state)
-    border, rows = problem.supports.border(u, state)
-    grounding, active = problem.supports.grounding(u), problem.matrix_rows.active
-    system.set_system(problem.matrix, active, grounding, border, rows, bound=np.inf)
-    system.factorise()
+    model.solver.factorise_tangent(state)
 
     def race_forces(u: np.ndarray) -> np.ndarray:
         forces = np.zeros_like(u)
@@ -80,7 +76,7 @@ def bearing_shares(model: DriveModel, state: LoadState) -> dict[str, ComplianceS
     pushed = create_vector(model.partition)
     change = ball_forces(u, -STEP)[0] - ball_forces(u, STEP)[0]
     pushed.array.reshape(-1, 3)[: model.partition.n_own] = change[own] / (2.0 * STEP)
-    found = {"torsional": shares(border[-1], 0.0), "radial": shares(pushed, 1.0)}
+    found = {"torsional": shares(system.border[-1], 0.0), "radial": shares(pushed, 1.0)}
     pushed.destroy()
     system.discard_factor()
     balls.evaluate(u, state, None, None)

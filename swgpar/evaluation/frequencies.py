@@ -28,9 +28,9 @@ from swgpar.fem.vectors import create_vector
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
 from swgpar.petsc import PETSc
-from swgpar.solve.bordered_system import BorderedSystem
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.eigenmodes import Eigenmodes, lowest_modes
+from swgpar.solve.newton import NewtonSolver
 
 TONNES_PER_MM3 = 1e-12
 """One kg/m³ in t/mm³, the unit of densities with mm, N and s."""
@@ -172,24 +172,13 @@ def sector_masses(body: Body) -> np.ndarray:
     )
 
 
-def modes_of(
-    problem: DiscreteProblem,
-    system: BorderedSystem,
-    state: LoadState,
-    number: int,
-    mass: LumpedMass,
-) -> Eigenmodes:
+def modes_of(solver: NewtonSolver, state: LoadState, number: int, mass: LumpedMass) -> Eigenmodes:
     """Lowest modes of a body or drive in its equilibrium x; collective."""
-    u = problem.displacement()
-    problem.complete_tangent(u, state)
-    border, rows = problem.supports.border(u, state)
-    bound = np.inf if state.control == "torque" else None
-    grounding, active = problem.supports.grounding(u), problem.matrix_rows.active
-    system.set_system(problem.matrix, active, grounding, border, rows, bound=bound)
-    system.factorise()
+    system = solver.system
+    solver.factorise_tangent(state)
     try:
         return lowest_modes(
-            problem.x, system.multiply, system.solve_with_factor, mass.apply, number
+            solver.problem.x, system.multiply, system.solve_with_factor, mass.apply, number
         )
     finally:
         system.discard_factor()
@@ -207,7 +196,7 @@ def natural_modes(model: DriveModel, state: LoadState) -> list[NaturalMode]:
         gradient = border[-1]
         gradient.scale(1.0 / problem.scale)
     mass = LumpedMass(problem, gradient, TONNES_MM2 * wanted.output_inertia)
-    modes = modes_of(problem, model.solver.system, state, wanted.number, mass)
+    modes = modes_of(model.solver, state, wanted.number, mass)
     found = [
         NaturalMode(float(frequency / (2.0 * np.pi)), mass.shares(shape), _waves(problem, shape))
         for frequency, shape in zip(modes.frequency, modes.shape, strict=True)

@@ -27,7 +27,7 @@ from swgpar.exchange.cam_facets import OUTER_FACE, CamFacets, cam_facets
 from swgpar.geometry.arrays import Ints
 from swgpar.load.negligible_torque import negligible_torque
 from swgpar.meshing import MeshRecipe
-from swgpar.meshing.inp import write_inp
+from swgpar.meshing.inp import number_lines, write_inp
 
 JOB, MESH = "drive.inp", "drive_mesh.inp"
 
@@ -200,8 +200,7 @@ def _clamped(nodes: Ints, reference: int) -> Iterator[str]:
     """Nodes of a clamped ring as one rigid body, whose rotations are the degrees of freedom 1 to 3
     of the node after `reference`."""
     yield "*NSET, NSET=CLAMPED"
-    for start in range(0, len(nodes), 16):
-        yield ", ".join(str(node) for node in nodes[start : start + 16] + 1)
+    yield from number_lines(nodes)
     yield f"*RIGID BODY, NSET=CLAMPED, REF NODE={reference + 1}, ROT NODE={reference + 2}"
 
 

@@ -42,7 +42,7 @@ def element_faces(mesh: SectorMesh, quads: Ints) -> Ints:
     ).reshape(-1, 2)
 
 
-def _lines(numbers: Ints) -> Iterator[str]:
+def number_lines(numbers: Ints) -> Iterator[str]:
     """Yield the 1-based `numbers`, 16 to a line."""
     for start in range(0, len(numbers), 16):
         yield ", ".join(str(n) for n in numbers[start : start + 16] + 1)
@@ -118,7 +118,7 @@ def write_inp(
             first += len(block.data)
         for name, nodes in drive.point_sets.items():
             file.write(f"*NSET, NSET={name.upper()}\n")
-            file.writelines(f"{line}\n" for line in _lines(nodes))
+            file.writelines(f"{line}\n" for line in number_lines(nodes))
         for name, faces in surfaces.items():
             file.write(f"*SURFACE, NAME={name.upper()}, TYPE=ELEMENT\n")
             np.savetxt(file, faces + 1, fmt="%d, S%d")

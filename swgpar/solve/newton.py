@@ -159,6 +159,17 @@ class NewtonSolver:
         grounding, active = problem.supports.grounding(u), problem.matrix_rows.active
         self.system.set_system(problem.matrix, active, grounding, border, rows, bound)
 
+    def factorise_tangent(self, state: LoadState) -> None:
+        """Make the factor of the tangent in the equilibrium x under a load state, for
+        `system.solve_with_factor`; collective. `system.discard_factor` ends its use."""
+        problem, u = self.problem, self.problem.displacement()
+        problem.complete_tangent(u, state)
+        border, rows = problem.supports.border(u, state)
+        bound = np.inf if state.control == "torque" else None
+        grounding, active = problem.supports.grounding(u), problem.matrix_rows.active
+        self.system.set_system(problem.matrix, active, grounding, border, rows, bound)
+        self.system.factorise()
+
     def _test_convergence(
         self, snes: PETSc.SNES, its: int, norms: tuple[float, float, float]
     ) -> int | None:

@@ -30,7 +30,7 @@ def frequencies(width: float, plane: bool, counts: RingCounts, number: int) -> n
     state = LoadState(Stage.LOAD, 3, cam_clearance=0.0)
     solver.problem.search(state)
     mass = LumpedMass(solver.problem)
-    modes = modes_of(solver.problem, solver.system, state, number, mass)
+    modes = modes_of(solver, state, number, mass)
     return modes.frequency / (2.0 * np.pi)
 
 
