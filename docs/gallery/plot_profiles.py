@@ -36,6 +36,7 @@ PROFILES = {
         "e_dedendum": 0.24,
         "r_root": 0.3,
     },
+    "s-shaped": {"type": "s_shaped", "r_root": 0.25},
 }
 
 
@@ -52,7 +53,7 @@ designs = {name: with_profile(profile) for name, profile in PROFILES.items()}
 # The right flank of a tooth of the flexible spline. Each segment of the chain has a colour.
 # The dotted lines are the addendum, the pitch and the dedendum circle.
 
-figure, axes = plt.subplots(1, len(designs), figsize=(12.0, 3.0), sharey=True, layout="constrained")
+figure, axes = plt.subplots(1, len(designs), figsize=(14.0, 2.6), sharey=True, layout="constrained")
 for panel, (name, design) in zip(axes, designs.items()):
     flank = design.profile("flexible_spline")
     for start, end in zip(flank.breaks[:-1], flank.breaks[1:]):

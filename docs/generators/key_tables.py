@@ -49,6 +49,7 @@ DRAWINGS: dict[str, tuple[str, ...]] = {
         "profile_double_arc",
         "profile_common_tangent",
         "profile_trapezoid",
+        "profile_s_shaped",
         "profile_involute",
     ),
     "dynamic_spline": ("drive_pancake",),

@@ -123,6 +123,11 @@ def _check_pancake(design: DriveDesign) -> None:
         (resolved, "output.root_stress = true", "false"),
         (design.solver.condensed_sectors, "solver.condensed_sectors = true", "false"),
         (conjugate, 'dynamic_spline.profile.type = "conjugate"', "the other profiles"),
+        (
+            second.profile.type == "s_shaped",
+            'dynamic_spline.profile.type = "s_shaped"',
+            "the other profiles: its teeth stay in their slots",
+        ),
     ):
         require_available(not given, what, PANCAKE, allowed)
 

@@ -39,6 +39,8 @@ from swgpar.geometry.neutral_line import neutral_line
 from swgpar.geometry.profiles import (
     Conjugate,
     RackInvolute,
+    RackPath,
+    SShaped,
     Teeth,
     ToothMotion,
     ToothProfile,
@@ -361,12 +363,14 @@ class DriveDesign(Design):
     def profile(self, gear: GearName, *, relief: bool = True) -> ToothProfile:
         """Exact flank, with its tip relief or before it. Raises InputError where there is none."""
         section: ExternalGear | InternalGear = getattr(self, gear)
-        partner = None
+        partner, path = None, None
+        if isinstance(section.profile, SShaped):
+            path = self.rack_path()
         if isinstance(section.profile, Conjugate):
             other = self.profile(GEARS[1 - GEARS.index(gear)], relief=False)
             partner = other, self.tooth_motion(section.profile.section)
         keys = section.profile, self.teeth(gear), section.c_P, section.c_l
-        flank, height = make_profile(*keys, gear, partner), section.tip_relief_height
+        flank, height = make_profile(*keys, gear, partner, path), section.tip_relief_height
         amount = section.tip_relief if relief else 0.0
         return relieved(flank, amount, height * self.drive.module, gear)
 
@@ -380,6 +384,13 @@ class DriveDesign(Design):
             share = (self.cup_sizes.rest_plane - z) / self.cup_sizes.rest_plane
         line = neutral_line(self.wave_generator, *axes, inner, radius, share)
         return ToothMotion(line, self.drive.teeth_fs, self.teeth(ring).n_teeth)
+
+    def rack_path(self) -> RackPath:
+        """Path of the flexible spline's tooth in its slot of the ring gear, of racks in their
+        place."""
+        drive = self.drive
+        apart = 0.5 * drive.module * (drive.teeth_rg - drive.teeth_fs)
+        return RackPath(drive.module, self.wave_generator.lobes, apart, 0.5 * self.deflection)
 
     def rigid_teeth(self, ring: GearName = "ring_gear") -> RigidTeeth:
         """Undeformed teeth of the flexible spline and of a ring gear at mid-width."""

@@ -23,12 +23,14 @@ COMMON_TANGENT = {
     "e_dedendum": 0.24,
     "r_root": 0.3,
 }
+S_SHAPED = {"type": "s_shaped", "r_root": 0.25, "deflection": 1.0}
 QUADRUPLE_ARC = {"r_tip": 0.5, "r_addendum": 1.0, "r_dedendum": 20.0, "r_root": 0.6}
 PROFILES = {
     "quadruple_arc": (QUADRUPLE_ARC, QUADRUPLE_ARC, 0.95, 0.5),
     "double_arc": (DOUBLE_ARC, DOUBLE_ARC, 0.95, 0.0),
     "trapezoid": (TRAPEZOID, TRAPEZOID, 0.9, 0.5),
     "common_tangent": (COMMON_TANGENT, COMMON_TANGENT, 0.9, 0.5),
+    "s_shaped": (S_SHAPED, S_SHAPED, 0.9, 0.5),
     "involute": (INVOLUTE, {**INVOLUTE, "cutter_teeth": 80, "shift": 0.1}, 1.0, 0.5),
 }
 SIDE = {"a_p": 0.0097, "C_p": 0.51, "r_c": 10.0}

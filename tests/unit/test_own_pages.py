@@ -108,7 +108,7 @@ def test_own_profile(tmp_path: Path) -> None:
     (profiles / "straight_sided.py").write_text(curve, encoding="utf-8")
     insert(profiles / "keys.py", "ExternalProfile = ", f"{keys}\n\n")
     for involute in ("RackInvolute", "ShaperInvolute"):
-        insert(profiles / "keys.py", f"{involute} | Conjugate,", "StraightSided | ")
+        insert(profiles / "keys.py", f"{involute}\n    | Conjugate,", "StraightSided | ")
     factory = profiles / "__init__.py"
     insert(factory, "    else:\n        profile = involute(", branch)
     insert(factory, "    Trapezoid,\n)\n", "    StraightSided,\n")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -13,10 +12,11 @@ from scipy.optimize import brentq
 import swgpar
 from support.paths import DESIGN
 from support.small_drive import PLANE
+from support.smooth_flank import is_smooth
 from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
-from swgpar.geometry.profiles import Teeth, ToothProfile, make_profile
-from swgpar.geometry.profiles.flank import Segment, check_flank
+from swgpar.geometry.profiles import Teeth, make_profile
+from swgpar.geometry.profiles.flank import Segment
 from swgpar.geometry.profiles.keys import CommonTangent, QuadrupleArc, Trapezoid
 
 GEARS = [(120, True), (122, False)]
@@ -32,17 +32,6 @@ def center(segment: object) -> np.ndarray:
     assert isinstance(segment, Segment)
     normal = np.array([-np.sin(segment.direction), np.cos(segment.direction)])
     return np.asarray(segment.start) + normal / segment.curvature
-
-
-def is_smooth(flank: ToothProfile) -> None:
-    """Differences of points are tangents, segments join, the root is tangent to its circle."""
-    check_flank(flank)
-    for begin, end in pairwise(flank.breaks):
-        s, h = np.linspace(begin, end, 9)[1:-1], 1e-6
-        along = (flank.point(s + h) - flank.point(s - h)) / (2.0 * h)
-        assert along == pytest.approx(flank.tangent(s), abs=1e-8)
-    end = flank.length
-    assert abs(flank.tangent(end)[0] @ flank.point(end)[0]) < 1e-9 * flank.r_root_circle
 
 
 @pytest.mark.parametrize(("n", "external"), GEARS)

@@ -5,8 +5,9 @@ A new profile is a module here, keys in `keys.py`, a branch in `_build` (own_cam
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -28,10 +29,12 @@ from swgpar.geometry.profiles.keys import (
     QuadrupleArc,
     RackInvolute,
     ShaperInvolute,
+    SShaped,
     Trapezoid,
 )
 from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 from swgpar.geometry.profiles.quadruple_arc import quadruple_arc
+from swgpar.geometry.profiles.s_shaped import RackPath, s_shaped
 from swgpar.geometry.profiles.teeth import Teeth
 from swgpar.geometry.profiles.tooth_motion import ToothMotion
 from swgpar.geometry.profiles.trapezoid import trapezoid
@@ -48,6 +51,7 @@ def make_profile(
     c_l: float = 0.5,
     gear: str = "gear",
     partner: tuple[ToothProfile, ToothMotion] | None = None,
+    path: RackPath | None = None,
 ) -> ToothProfile:
     """Flank of a gear.
 
@@ -57,27 +61,33 @@ def make_profile(
     c_l : share of the straight segment above the pitch point; 0.5 without one
     gear : name of the gear's section, for messages
     partner : of conjugate profiles, the other flank and the motion of the flexible spline's tooth
+    path : of the flexible spline's tooth in its slot, for S-shaped profiles
 
     Raises InputError where the keys give no flank.
     """
+    build = partial(_build, teeth=teeth, c_P=c_P, c_l=c_l, gear=gear, partner=partner, path=path)
     try:
-        return _build(keys, teeth, c_P, c_l, gear, partner)
+        return build(keys)
     except InputError as error:
         if not keys.typical_lengths:
             raise
         reason = str(error)
-    advice = _advice(keys, teeth, c_P, c_l, gear)
+    advice = _advice(keys, build, teeth.module, c_l, gear)
     raise InputError(f"{reason}; {advice}" if advice else reason)
 
 
 def _advice(
-    keys: ExternalProfile | InternalProfile, teeth: Teeth, c_P: float, c_l: float, gear: str
+    keys: ExternalProfile | InternalProfile,
+    build: Callable[[ExternalProfile | InternalProfile], ToothProfile],
+    module: float,
+    c_l: float,
+    gear: str,
 ) -> str:
     """What to change in keys that give no flank, to end a sentence; empty if the reason says it."""
 
     def builds(**values: float) -> bool:
         try:
-            _build(keys.model_copy(update=values), teeth, c_P, c_l, gear)
+            build(keys.model_copy(update=values))
         except InputError:
             return False
         return True
@@ -86,11 +96,9 @@ def _advice(
     if isinstance(keys, DoubleArc) and c_l >= 1.0:
         return ""
     lengths = {key: getattr(keys, key) for key in keys.typical_lengths}
-    if advice := advise(name, lengths, lambda key, value: builds(**{key: value}), teeth.module):
+    if advice := advise(name, lengths, lambda key, value: builds(**{key: value}), module):
         return advice
-    typical = {
-        key: float(f"{value * teeth.module:.4g}") for key, value in keys.typical_lengths.items()
-    }
+    typical = {key: float(f"{value * module:.4g}") for key, value in keys.typical_lengths.items()}
     if builds(**typical):
         return f"several keys of {name} do not fit: allowed are for example " + ", ".join(
             f"{key} = {show(value)}" for key, value in typical.items()
@@ -110,7 +118,8 @@ def _build(
     c_P: float,
     c_l: float,
     gear: str,
-    partner: tuple[ToothProfile, ToothMotion] | None = None,
+    partner: tuple[ToothProfile, ToothMotion] | None,
+    path: RackPath | None,
 ) -> ToothProfile:
     """Flank of a gear; raises InputError with the reason where there is none."""
     name = f"{gear}.profile"
@@ -142,6 +151,8 @@ def _build(
         profile = thinned(common_tangent(keys, frame, name), c_P)
     elif isinstance(keys, Points):
         profile = thinned(fitted_flank(keys, teeth, name).profile, c_P)
+    elif isinstance(keys, SShaped):
+        profile = thinned(s_shaped(keys, teeth, path, name), c_P)
     elif isinstance(keys, Conjugate):
         profile = conjugate(keys, teeth, *partner, name)
     else:
@@ -198,6 +209,8 @@ __all__ = [
     "InternalProfile",
     "Points",
     "RackInvolute",
+    "RackPath",
+    "SShaped",
     "Teeth",
     "ToothMotion",
     "ToothProfile",

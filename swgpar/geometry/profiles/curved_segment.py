@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import scipy
 
-from swgpar.geometry.arrays import Floats
+from swgpar.geometry.arrays import Complex, Floats
 
 PANELS, ORDER = 64, 6
 """Panels of the arc length's table and Gauss points in each: round-off on a tooth's curves."""
@@ -28,6 +28,17 @@ class CurvePoints:
     angle_rate: Floats
 
 
+def points_of(z: Complex, first: Complex, second: Complex) -> CurvePoints:
+    """Points of a curve x + i y : (n,) mm with its first and second derivatives by t."""
+    speed = np.abs(first)
+    return CurvePoints(
+        np.stack((z.real, z.imag), axis=-1),
+        np.angle(first),
+        speed,
+        (np.conj(first) * second).imag / speed**2,
+    )
+
+
 @dataclass(frozen=True)
 class CurvedSegment:
     """A smooth segment x(t), 0 <= t <= 1, run through from the tip towards the root.
@@ -38,6 +49,16 @@ class CurvedSegment:
 
     name: str
     evaluate: Callable[[Floats], CurvePoints]
+
+    def between(self, begin: float, end: float) -> CurvedSegment:
+        """The part between two parameters."""
+        share = end - begin
+
+        def evaluate(t: Floats) -> CurvePoints:
+            curve = self.evaluate(begin + share * t)
+            return replace(curve, speed=share * curve.speed, angle_rate=share * curve.angle_rate)
+
+        return CurvedSegment(self.name, evaluate)
 
     @cached_property
     def _table(self) -> tuple[Floats, Floats]:

@@ -105,6 +105,23 @@ class CommonTangent(ProfileKeys):
     r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
 
 
+class SShaped(ProfileKeys):
+    """Path of a rigid tooth at half scale (US patent 4,823,638), and a root arc."""
+
+    typical_lengths = {"r_root": 0.3}
+    divides_straight = False
+
+    type: Literal["s_shaped"] = quantity("s_shaped", text="kind of profile")
+    deflection: float | None = quantity(
+        None,
+        unit="mm",
+        text="radial deflection of the path; without it that of the wave generator",
+        gt=0.0,
+    )
+    r_tip: float = quantity(0.0, unit="mm", text="radius of the rounded tip edge; 0: sharp", ge=0.0)
+    r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
+
+
 class Points(ProfileKeys):
     """A smooth curve through points of one flank, of a space or of a tooth."""
 
@@ -185,12 +202,26 @@ class Conjugate(ProfileKeys):
 
 
 ExternalProfile = Annotated[
-    QuadrupleArc | DoubleArc | CommonTangent | Trapezoid | Points | RackInvolute | Conjugate,
+    QuadrupleArc
+    | DoubleArc
+    | CommonTangent
+    | Trapezoid
+    | SShaped
+    | Points
+    | RackInvolute
+    | Conjugate,
     Field(discriminator="type"),
     BeforeValidator(default_type("quadruple_arc")),
 ]
 InternalProfile = Annotated[
-    QuadrupleArc | DoubleArc | CommonTangent | Trapezoid | Points | ShaperInvolute | Conjugate,
+    QuadrupleArc
+    | DoubleArc
+    | CommonTangent
+    | Trapezoid
+    | SShaped
+    | Points
+    | ShaperInvolute
+    | Conjugate,
     Field(discriminator="type"),
     BeforeValidator(default_type("quadruple_arc")),
 ]

@@ -1,0 +1,176 @@
+"""Ends of a flank that is a smooth curve: the edge at the addendum circle, and the root.
+
+A curve from tip to root begins on the addendum circle or beyond it. It is cut there, or where an
+arc touches both of them. The root arc touches the curve and the dedendum circle. A curve that ends
+before is continued by its tangent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NoReturn
+
+import numpy as np
+
+from swgpar.errors import InputError
+from swgpar.geometry.bracketed_root import root_between
+from swgpar.geometry.profiles.curved_segment import CurvedSegment
+from swgpar.geometry.profiles.flank import FlankSegment, Segment, ToothProfile
+
+SAMPLES = 257
+"""Places of the curve between which the ends are looked for."""
+
+SAME = 1e-9
+"""Length over the module that counts as none."""
+
+
+def with_ends(
+    curve: ToothProfile, module: float, r_tip: float, r_root: float, name: str = "profile"
+) -> ToothProfile:
+    """The flank with an edge, sharp or rounded, and a root.
+
+    curve : its segments lead from tip to root, its circles are those to be reached
+    module, r_tip, r_root : mm, radii of the rounded tip edge (0: sharp) and of the root arc
+    name : section of the design file, for messages
+
+    Raises InputError where the curve does not reach the addendum circle, or an arc does not fit.
+    """
+    ends = _Ends(curve, module, name)
+    begin, tip = ends.tip(r_tip)
+    end, root = ends.root(r_root)
+    if end - begin < SAME * module:
+        raise InputError(
+            f"{name}.r_tip = {r_tip:g} with r_root = {r_root:g} leaves no flank between the arcs: "
+            "allowed are smaller radii"
+        )
+    return replace(curve, segments=(*tip, *_cut(curve, begin, end, SAME * module), *root))
+
+
+def _cut(curve: ToothProfile, begin: float, end: float, least: float) -> list[FlankSegment]:
+    """The segments between two arc lengths, mm; parts shorter than `least` are left out."""
+    parts: list[FlankSegment] = []
+    for start, segment in zip(curve.breaks[:-1], curve.segments, strict=True):
+        first, last = max(begin - start, 0.0), min(end - start, segment.length)
+        if last - first > least:
+            whole = first == 0.0 and last == segment.length
+            parts.append(segment if whole else part_of(segment, first, last))
+    return parts
+
+
+def part_of(segment: FlankSegment, first: float, last: float) -> FlankSegment:
+    """The part of a segment between two of its local arc lengths, mm."""
+    if isinstance(segment, Segment):
+        x, y = segment.point(np.array([first]))[0]
+        direction = segment.direction + segment.curvature * first
+        return replace(
+            segment, start=(float(x), float(y)), direction=direction, length=last - first
+        )
+    if not isinstance(segment, CurvedSegment):
+        raise TypeError(f"no part of a {type(segment).__name__}")
+    begin, end = segment.parameter(np.array([first, last]))
+    return segment.between(float(begin), float(end))
+
+
+@dataclass(frozen=True)
+class _Ends:
+    """Ends of `curve`. module : mm;  name : section of the design file, for messages"""
+
+    curve: ToothProfile
+    module: float
+    name: str
+
+    @property
+    def sign(self) -> float:
+        """+1 for external teeth, -1 for internal ones."""
+        return 1.0 if self.curve.external else -1.0
+
+    def at(self, s: float) -> tuple[complex, complex]:
+        """Point, mm, and unit normal out of the tooth, at the arc length s, mm."""
+        return complex(*self.curve.point(s)[0]), complex(*self.curve.normal(s)[0])
+
+    def above(self, s: float, offset: float, radius: float) -> float:
+        """How far (mm) towards the tip the point `offset` mm along the normal lies from the circle
+        of `radius`, mm."""
+        point, normal = self.at(s)
+        return self.sign * (abs(point + offset * normal) - radius)
+
+    def passing(self, offset: float, radius: float) -> float | None:
+        """First arc length, mm, at which that point is on the circle; None where it never is."""
+        s = np.unique(np.append(np.linspace(0.0, self.curve.length, SAMPLES), self.curve.breaks))
+        places = self.curve.point(s) + offset * self.curve.normal(s)
+        below = np.flatnonzero(self.sign * (np.hypot(*places.T) - radius) <= 0.0)
+        if not below.size:
+            return None
+        if below[0] == 0:
+            return 0.0
+        low, high = s[below[0] - 1], s[below[0]]
+        return root_between(lambda s: self.above(s, offset, radius), low, high, xtol=1e-14)
+
+    def arc(self, name: str, radius: float, centre: complex, normals: Sequence[complex]) -> Segment:
+        """Arc about `centre`, mm, between two unit normals out of the tooth; the root is concave.
+
+        Refused where it would run backwards.
+        """
+        begin, end = normals
+        out = -1.0 if name == "root" else 1.0
+        start, curvature = centre + out * radius * begin, -out * self.sign / radius
+        length = float(np.angle(end / begin)) / curvature
+        if length < -SAME * self.module:
+            raise InputError(
+                f"{self.name}.r_{name} = {radius:g}: the {name} arc would run backwards: allowed "
+                "are other radii"
+            )
+        direction = float(np.angle(begin / (1j * self.sign)))
+        return Segment(name, (start.real, start.imag), direction, curvature, length)
+
+    def tip(self, radius: float) -> tuple[float, list[FlankSegment]]:
+        """Where the curve begins, mm, and the arc before it."""
+        circle = self.curve.r_tip_circle
+        if self.above(0.0, 0.0, circle) < -SAME * self.module:
+            reached = abs(self.at(0.0)[0])
+            raise InputError(
+                f"{self.name}: the flank ends at a radius of {reached:.6g} mm, the addendum circle "
+                f"has {circle:.6g} mm: allowed are smaller addenda"
+            )
+        target = circle - self.sign * radius
+        begin = self.passing(-radius, target)
+        if begin is None or (radius and self.above(0.0, -radius, target) < 0.0):
+            raise InputError(
+                f"{self.name}.r_tip = {radius:g} is out of range: allowed are smaller radii, whose "
+                "arc touches the flank and the addendum circle"
+            )
+        if radius == 0.0:
+            return begin, []
+        point, normal = self.at(begin)
+        centre = point - radius * normal
+        along = self.sign * centre / abs(centre)
+        return begin, [self.arc("tip", radius, centre, (along, normal))]
+
+    def root(self, radius: float) -> tuple[float, list[FlankSegment]]:
+        """Where the curve ends, mm, and what leads from there to the dedendum circle."""
+        reach = self.curve.r_root_circle + self.sign * radius
+        end = self.passing(radius, reach)
+        point, normal = self.at(self.curve.length if end is None else end)
+        line, centre, parts = normal / (1j * self.sign), point + radius * normal, []
+        if end is None:
+            end = self.curve.length
+            along = (np.conj(line) * centre).real
+            rest = along**2 - abs(centre) ** 2 + reach**2
+            length = -along - self.sign * float(np.sqrt(rest)) if rest >= 0.0 else -1.0
+            if length < 0.0:
+                self.refuse_root(radius)
+            start, direction = (point.real, point.imag), float(np.angle(line))
+            parts = [Segment("tangent", start, direction, 0.0, length)]
+            centre += length * line
+        elif end == 0.0:
+            self.refuse_root(radius)
+        along = self.sign * centre / abs(centre)
+        return end, [*parts, self.arc("root", radius, centre, (normal, along))]
+
+    def refuse_root(self, radius: float) -> NoReturn:
+        """Refuse a root arc that does not fit."""
+        raise InputError(
+            f"{self.name}.r_root = {radius:g} is out of range: allowed are smaller radii, whose "
+            "arc reaches the dedendum circle from the flank"
+        )
