@@ -14,13 +14,16 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from swgpar.analysis.shortcuts import finds_contacts
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.flank_pressure.pair_contact import PairContact, pair_contacts
+from swgpar.largest_stress.places import OF_REGION
 from swgpar.largest_stress.region_stress import RegionStress
 from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress
 from swgpar.load.load_states import LoadState
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import body_ratio, coarsened, contact_ratio, with_contact_of
 from swgpar.model.drive_model import DriveModel
+from swgpar.model.regions import INSIDE, TIP, TOOTH_ROOT, UNDER_CONTACT
 
 ORDER = 2
 """Order of the displacements of a mesh."""
@@ -42,6 +45,10 @@ LEAST_WITH_EDGES = 0.02
 """The same where a contact lies on an edge. The forces of the teeth move with the mesh: on
 plane_coarse by 0.7 to 2.7 % of the stress."""
 
+LEAST_IN_RING = 0.1
+"""Least error in the ring gear beside the tooth root, as a share of its largest stress. Its meshes
+have one element in the rim and below the root, which no coarser one has fewer of: more of them
+change these stresses by up to a tenth (docs/verification/effectivity.md)."""
 
 FEWEST_ALONG_FLANKS = 6
 """Elements along a flank in the plane below which no coarser mesh is taken: pressures on four are
@@ -130,19 +137,42 @@ def drive_error(
 
 
 def region_errors(
-    coarser: Sequence[CoarserMesh], recipe: MeshRecipe, fine: RootStress, least: float
+    coarser: Sequence[CoarserMesh],
+    recipe: MeshRecipe,
+    fine: RootStress,
+    least: float,
+    contacts: Sequence[PairContact],
 ) -> dict[str, RegionStress]:
     """The stresses of the regions with their errors by the mesh of the drive, where the coarser
-    meshes show them. Arguments are those of `drive_error`."""
-    return {
-        name: replace(
-            stress,
-            drive_error=_region_error(
-                [(one.recipe, one.regions.get(name)) for one in coarser], recipe, stress, least
-            ),
+    meshes show them. Tips have none where a contact lies on an edge: the stress has no limit there.
+
+    contacts : of all touching pairs;  others : see `drive_error`
+    """
+    found, on_edge = {}, any(pair.edge for pair in contacts)
+    for name, stress in fine.regions.items():
+        kind, _, region = name.partition(OF_REGION)
+        if on_edge and region == TIP:
+            found[name] = replace(stress, drive_error=None)
+            continue
+        share = (
+            LEAST_IN_RING
+            if stress.place.body != FLEXIBLE_SPLINE and region != TOOTH_ROOT
+            else least
         )
-        for name, stress in fine.regions.items()
-    }
+        floor = share * _largest_apart(fine.regions, kind)
+        meshes = [(one.recipe, one.regions.get(name)) for one in coarser]
+        error = _region_error(meshes, recipe, stress, floor)
+        found[name] = replace(stress, drive_error=error)
+    return found
+
+
+def _largest_apart(regions: Mapping[str, RegionStress], kind: str) -> float:
+    """The largest stress (MPa) of a kind and body in regions that no contact presses."""
+    return max(
+        stress.place.value
+        for name, stress in regions.items()
+        if name.startswith(kind + OF_REGION) and stress.place.region not in (UNDER_CONTACT, INSIDE)
+    )
 
 
 def _region_error(
@@ -151,8 +181,9 @@ def _region_error(
     fine: RegionStress,
     least: float,
 ) -> float | None:
+    """least : MPa"""
     if fine.nodal:  # its error is far larger
-        return least * fine.place.value
+        return least
     known = [(one, stress) for one, stress in coarser if stress is not None]
     if not known or coarser[0][1] is None:
         return None
@@ -161,8 +192,7 @@ def _region_error(
     meshes = [(one, stress.tops[shared]) for one, stress in known]
     if not all(value > 0.0 for _, value in meshes):
         return None
-    change = shown_error(meshes) * fine.place.value / meshes[-1][1]
-    return max(change, least * fine.place.value)
+    return max(shown_error(meshes) * fine.place.value / meshes[-1][1], least)
 
 
 def shown_error(meshes: Sequence[tuple[MeshRecipe, float]]) -> float:

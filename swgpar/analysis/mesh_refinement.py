@@ -137,7 +137,7 @@ class Refinement:
             100.0 * _bound(error) / found.s1,
         )
         errors = contact_errors(meshes, recipe, contacts, self.design.wave_generator.lobes)
-        regions = region_errors(meshes, recipe, found, least)
+        regions = region_errors(meshes, recipe, found, least, contacts)
         return Refined(compared, replace(found, drive_error=error, regions=regions), errors)
 
     def _take(self, recipe: MeshRecipe, refined: Refined) -> None:

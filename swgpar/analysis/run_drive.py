@@ -317,7 +317,7 @@ class DriveRun:
         )
         least = least_error(self.model, contacts)
         error = drive_error(known, self.recipe, found, least)
-        regions = region_errors(known, self.recipe, found, least)
+        regions = region_errors(known, self.recipe, found, least, contacts)
         return replace(found, drive_error=error, regions=regions)
 
     def _wall_stress(self, state: LoadState) -> WallStress | None:

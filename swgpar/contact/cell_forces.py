@@ -134,7 +134,6 @@ class CellForces:
                     length=float(active.length[on[0]]),
                     low=active.slave.low[on],
                     high=active.slave.high[on],
-                    facing_tip=float(active.master.low[on].min()),
                     pressure=active.pressure[on, 0],
                 )
             )

@@ -8,6 +8,12 @@ import numpy as np
 
 from swgpar.contact.search import FlankPair
 
+RISES = 1.01
+"""Pressure of the outermost cell over that of the next one from which it rises to the end."""
+
+FEWEST = 4
+"""Cells of a contact that show where its pressure rises."""
+
 
 @dataclass(frozen=True)
 class PressedLine:
@@ -15,8 +21,7 @@ class PressedLine:
 
     pair : of flanks;  z, length : mm, station along the face width and its share of it
     low, high : (n,) mm, ends of the cells, arc lengths from the tip of the flexible spline's tooth,
-    ascending;  facing_tip : mm, least arc length from the tip of the ring gear's tooth
-    pressure : (n,) MPa, constant on each cell
+    ascending;  pressure : (n,) MPa, constant on each cell
     """
 
     pair: FlankPair
@@ -24,7 +29,6 @@ class PressedLine:
     length: float
     low: np.ndarray
     high: np.ndarray
-    facing_tip: float
     pressure: np.ndarray
 
     @property
@@ -47,6 +51,15 @@ class PressedLine:
             contact_end(self.low, self.high, self.pressure, 0, 1),
             contact_end(self.low, self.high, self.pressure, -1, -1),
         )
+
+    @property
+    def ends_on_tips(self) -> tuple[bool, bool]:
+        """Whether the contact ends on the tip of the flexible spline, of the ring gear: the
+        pressure rises to a sharp edge, and falls to 0 where smooth flanks part."""
+        if len(self.pressure) < FEWEST:
+            return False, False
+        low, high = self.pressure[[0, -1]] > RISES * self.pressure[[1, -2]]
+        return bool(low), bool(high)
 
     def strips(self, number: int) -> np.ndarray:
         """Mean pressures (number,) MPa on equal strips between the ends of the contact."""

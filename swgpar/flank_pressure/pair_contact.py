@@ -269,7 +269,7 @@ def _with_pressure(
     """
     tooth, facing = teeth[1], ring_teeth[1]
     gap, plane = FlankGap(tooth, facing), model.design.drive.model == "plane"
-    patch, lines = None, []
+    patch, lines, on_ring_tip = None, [], False
     try:
         if plane:
             lines = lines_of_law()
@@ -288,7 +288,8 @@ def _with_pressure(
         stations = tuple(_station(line, strips) for line in lines)
         line, station = max(zip(lines, stations), key=lambda one: one[0].largest)
         near = END * model.design.drive.module
-        at_end = bool(line.low[0] < near or line.high[-1] > tooth.profile.length - near)
+        on_tip, on_ring_tip = line.ends_on_tips
+        at_end = bool(on_tip or line.low[0] < near or line.high[-1] > tooth.profile.length - near)
         low, high = facing.ends
         reaches = not plane and any(
             one.z - one.length < low or one.z + one.length > high for one in lines
@@ -299,11 +300,12 @@ def _with_pressure(
         return contact
     top = max(stations, key=lambda station: station.pressure_MPa)
     ends = top.s_mm + top.half_width_mm * np.array([[-1.0], [1.0]])
-    ring_tip = gap.foot(ends, np.array([top.z_mm])).min() < END * model.design.drive.module
+    foot = gap.foot(ends, np.array([top.z_mm]))
+    on_ring_tip = bool(on_ring_tip or foot.min() < END * model.design.drive.module)
     places = {
         "end of the face width": reaches,
         f"tip of the {tooth.body.replace('_', ' ')}": at_end,
-        f"tip of the {facing.body.replace('_', ' ')}": ring_tip,
+        f"tip of the {facing.body.replace('_', ' ')}": on_ring_tip,
     }
     edges = [place for place, reached in places.items() if reached]
     middle = tooth.profile.point(np.clip(top.s_mm, 0.0, tooth.profile.length))[0]

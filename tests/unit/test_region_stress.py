@@ -9,11 +9,12 @@ from typing import cast
 import numpy as np
 import pytest
 
-from swgpar.analysis.drive_mesh_error import SAFETY, CoarserMesh, region_errors
+from swgpar.analysis.drive_mesh_error import LEAST_IN_RING, SAFETY, CoarserMesh, region_errors
 from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.flank_pressure.pair_contact import PairContact
 from swgpar.largest_stress.convergence import error_of
 from swgpar.largest_stress.local_problem import WindowStress
-from swgpar.largest_stress.places import Place
+from swgpar.largest_stress.places import OF_REGION, Place
 from swgpar.largest_stress.region_stress import ALIKE, CLOSE_IN_ROOT, RegionStress, WindowReadings
 from swgpar.largest_stress.root_stress import BETWEEN, RootStress
 from swgpar.meshing import load_recipe
@@ -148,12 +149,66 @@ def test_the_error_by_the_drive_is_that_of_the_compared_window() -> None:
         regions={ROOT: fine},
     )
     meshes = [CoarserMesh(coarse_recipe, root.by_part, regions={ROOT: coarse})]
-    found = region_errors(meshes, fine_recipe, root, 0.001)[ROOT]
+    found = region_errors(meshes, fine_recipe, root, 0.001, ())[ROOT]
     assert found.drive_error is not None
     share = found.drive_error / 94.0
     # of second order, by the smallest ratio of counts: 3 / 2
     assert share == pytest.approx(SAFETY * (5.0 / 90.0) / (1.5**2 - 1.0))
-    assert region_errors(meshes, fine_recipe, root, 0.5)[ROOT].drive_error == 47.0
+    assert region_errors(meshes, fine_recipe, root, 0.5, ())[ROOT].drive_error == 47.0
     unknown = [replace(meshes[0], regions={})]
-    assert region_errors(unknown, fine_recipe, root, 0.5)[ROOT].drive_error is None
-    assert region_errors([], fine_recipe, root, 0.5)[ROOT].resolved.error is None
+    assert region_errors(unknown, fine_recipe, root, 0.5, ())[ROOT].drive_error is None
+    assert region_errors([], fine_recipe, root, 0.5, ())[ROOT].resolved.error is None
+
+
+def rooted(regions: dict[str, RegionStress]) -> RootStress:
+    return RootStress(
+        s1=100.0,
+        error=None,
+        on_mesh=0.0,
+        region="tooth root",
+        warning="",
+        tooth=0,
+        radius=59.0,
+        z=0.0,
+        angle_deg=0.0,
+        part=BETWEEN,
+        by_part={BETWEEN: (nan, 100.0)},
+        elements=1,
+        regions=regions,
+    )
+
+
+def region(name: str, value: float) -> RegionStress:
+    kind, _, where = name.partition(OF_REGION)
+    body = FLEXIBLE_SPLINE if kind.startswith("fs") else "ring_gear"
+    place = Place(value, body, where, 0, 20.0, 0.0, 0.0, "", error=0.0)
+    return RegionStress((value,), (value,), 1.0, place)
+
+
+def pair(edge: int) -> PairContact:
+    return PairContact(0, "clockwise", 0, 0.0, 10.0, 1.0, 0.0, edge=edge)
+
+
+def test_small_stresses_are_as_uncertain_as_the_largest_one_of_their_body() -> None:
+    """Elements in the ring gear's rim, of which there is one, change all of its stresses."""
+    values = {"rg_s1 in tooth root": 50.0, "rg_s1 in rim": 2.0, "fs_s1 in tip": 1.0}
+    regions = {name: region(name, value) for name, value in values.items()}
+    regions |= {"fs_s1 in tooth root": region("fs_s1 in tooth root", 100.0)}
+    # what lies under a contact has no limit and is no measure
+    regions |= {"fs_s1 in flank under contact": region("fs_s1 in flank under contact", 900.0)}
+    fine = load_recipe("forces")
+    meshes = [CoarserMesh(coarsened(fine), {}, regions=regions)]
+    found = region_errors(meshes, fine, rooted(regions), 0.004, [pair(0)])
+    assert found["rg_s1 in rim"].drive_error == pytest.approx(LEAST_IN_RING * 50.0)
+    assert found["rg_s1 in tooth root"].drive_error == pytest.approx(0.004 * 50.0)
+    assert found["fs_s1 in tip"].drive_error == pytest.approx(0.004 * 100.0)
+
+
+def test_a_contact_on_an_edge_leaves_no_estimate_in_the_tips() -> None:
+    names = "rg_vm in tip", "rg_vm in tooth root", "fs_vm in tip"
+    regions = {name: region(name, 50.0) for name in names}
+    fine = load_recipe("plane_coarse")
+    meshes = [CoarserMesh(coarsened(fine), {}, regions=regions)]
+    found = region_errors(meshes, fine, rooted(regions), 0.02, [pair(0), pair(1)])
+    without = {name for name, one in found.items() if one.resolved.error is None}
+    assert without == {"rg_vm in tip", "fs_vm in tip"}

@@ -1,0 +1,33 @@
+"""Where a line of contact ends: where smooth flanks part, or on a sharp edge."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from swgpar.contact.pressed_lines import PressedLine
+from swgpar.contact.search import FlankPair
+
+
+def line(pressure: np.ndarray) -> PressedLine:
+    ends = np.linspace(0.2, 0.3, len(pressure) + 1)
+    pair = FlankPair(sector=0, side=1, ring=0, ring_sixths=0, ring_tooth=0)
+    return PressedLine(pair, 0.0, 1.0, ends[:-1], ends[1:], pressure)
+
+
+def test_smooth_flanks_end_where_they_part() -> None:
+    x = np.linspace(-0.95, 0.95, 20)
+    assert line(np.sqrt(1.0 - x**2)).ends_on_tips == (False, False)
+
+
+def test_a_punch_ends_on_its_edges() -> None:
+    """The pressure under a flat punch is 1 / sqrt(1 - x²); under a rounded one with one sharp edge
+    it rises to that edge alone."""
+    x = np.linspace(-0.95, 0.95, 20)
+    assert line(1.0 / np.sqrt(1.0 - x**2)).ends_on_tips == (True, True)
+    assert line(np.sqrt((1.0 + x) / (1.0 - x))).ends_on_tips == (False, True)
+    assert line(np.sqrt((1.0 - x) / (1.0 + x))).ends_on_tips == (True, False)
+
+
+def test_few_cells_show_no_edge() -> None:
+    assert line(np.array([2.0])).ends_on_tips == (False, False)
+    assert line(np.array([2.0, 1.0])).ends_on_tips == (False, False)
