@@ -169,22 +169,31 @@ class LoadStepper:
 
     def _solve(self, state: LoadState, most: int) -> SolveResult:
         """Solve for `state` from the present x. most : Newton iterations"""
-        before = 0
-        if self._takes_up_torque(state):
-            if (held := self._held(state)) is not None:
-                self._close_backlash(held)
-                result = self.solver.solve(held, max_iterations=most)
-                before = result.iterations
-                if not result.converged:
-                    return result
-            self._close_backlash(state)
+        if not self._takes_up_torque(state):
+            return self._solve_from_prediction(state, most)
+        saved = self.problem.x.copy()
+        spent = 0
+        if (held := self._held(state)) is not None:
+            self._close_backlash(held)
+            result = self.solver.solve(held, max_iterations=most)
+            spent = result.iterations
+            if not result.converged:
+                return result
+        self._close_backlash(state)
+        result = self._solve_from_prediction(state, max(1, most - spent))
+        spent += result.iterations
+        if not result.converged and spent < most and not self.problem.touching_pairs():
+            logger.info("   the cam holds the torque before flanks meet: the backlash stays open")
+            saved.copy(self.problem.x)
+            result = self._solve_from_prediction(state, most - spent)
+            spent += result.iterations
+        return replace(result, iterations=spent)
+
+    def _solve_from_prediction(self, state: LoadState, most: int) -> SolveResult:
         self._predict(state)
-        result = self.solver.solve(
-            state,
-            establish_contact=state.switches_on(self.load_state),
-            max_iterations=max(1, most - before),
+        return self.solver.solve(
+            state, establish_contact=state.switches_on(self.load_state), max_iterations=most
         )
-        return replace(result, iterations=before + result.iterations)
 
     def _held(self, state: LoadState) -> LoadState | None:
         """The same load with the spline held, where contacts alone are to hold it; else None.

@@ -355,4 +355,17 @@ class DriveRun:
         )
         for remark in filter(None, (summary.rotation.jammed, summary.rotation.energy)):
             logger.warning("%s", remark)
+        self._log_penetration()
         return recorder.finish(rows, summary, tables)
+
+    def _log_penetration(self) -> None:
+        """Say once how deep cam and pins have got into the flexible spline, where augmentations did
+        not bring them within the tolerance."""
+        settings, rows = self.model.solver.settings, self.recorder.record.rows
+        deepest = max((row["max_penetration_mm"] for row in rows), default=0.0)
+        if settings.max_augmentations and deepest > settings.penetration_tolerance:
+            logger.warning(
+                "cam and pins penetrate by up to %.2g mm, with %d augmentations",
+                deepest,
+                settings.max_augmentations,
+            )

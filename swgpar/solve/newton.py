@@ -348,13 +348,12 @@ class NewtonSolver:
             state.searches += 1
             state.before_augmentation = None
             return
-        penetration = problem.penetration()
-        if penetration > settings.penetration_tolerance:
-            if state.augmentations < settings.max_augmentations:
-                self._augment(state)
-                return
-            if settings.max_augmentations:
-                self._warn(state, penetration)
+        if (
+            state.augmentations < settings.max_augmentations
+            and problem.penetration() > settings.penetration_tolerance
+        ):
+            self._augment(state)
+            return
         problem.accept()
         state.result = SolveResult(True, state.iterations, state.residual, "converged")
 
@@ -374,9 +373,4 @@ class NewtonSolver:
             contact.multiplier = multiplier
         self._trial_residual(problem.x, problem.x.duplicate())  # pressures and gaps of that state
         state.augmentations -= 1
-        self._warn(state, problem.penetration())
         problem.accept()
-
-    def _warn(self, state: SolveState, penetration: float) -> None:
-        text = "   penetration of %.2g mm remains after %d augmentations"
-        logger.warning(text, penetration, state.augmentations)
