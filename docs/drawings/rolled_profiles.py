@@ -1,4 +1,4 @@
-"""S-shaped teeth and the path of a tooth that makes them."""
+"""S-shaped teeth and cycloid teeth, with the path and the rolling circles that make them."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.profiles import ToothProfile
 
 S_SHAPED = {"type": "s_shaped", "r_root": 0.25}
+CYCLOID = {"type": "cycloid", "r_epicycloid": 1.0, "r_hypocycloid": 1.0, "r_root": 0.2}
 COLOURS = {"face": "#2f7fd0", "middle": "#111111", "flank": "#2d9a57", "root": "#d07a20"}
 
 
@@ -105,5 +106,44 @@ def s_shaped() -> Figure:
     return figure
 
 
+def rolling(ax: Axes, r_pitch: float, rho: float, at: np.ndarray, centre: float) -> None:
+    """A rolling circle that touches the pitch circle at the angle `centre` (rad from +y), and the
+    point of it on the flank."""
+    middle = (r_pitch + rho) * np.array([np.sin(centre), np.cos(centre)])
+    ax.plot(*arc(tuple(middle), abs(rho), 0.0, 360.0).T, color=NOTE, lw=0.9)
+    ax.plot(*np.transpose([middle, at]), color=NOTE, lw=0.7)
+    ax.plot(*middle, "+", color=NOTE)
+    ax.plot(*at, "o", color=NOTE, ms=4)
+
+
+def cycloid() -> Figure:
+    """Both gears with the circles whose points move on the flanks."""
+    design = both(CYCLOID)
+    figure, axes = canvas(9.0, 5.4, 1, 2)
+    for ax, gear, title in zip(
+        axes,
+        ("flexible_spline", "ring_gear"),
+        ("external tooth (flexible spline)", "internal tooth (ring gear)"),
+        strict=True,
+    ):
+        profile, r_pitch = design.profile(gear), design.teeth(gear).r_pitch
+        flank(ax, design, gear, title)
+        out, start = 1.0 if profile.external else -1.0, 0.5 * np.pi / profile.n_teeth
+        for index, side in ((0, 1.0), (2, -1.0)):
+            rho = out * side
+            at = profile.point(0.5 * (profile.breaks[index] + profile.breaks[index + 1]))[0]
+            # the circle has rolled to where its centre is one radius away from the point
+            places = start - side * np.linspace(0.0, 3.0, 3001) / r_pitch
+            centres = (r_pitch + rho) * np.column_stack([np.sin(places), np.cos(places)])
+            place = places[np.abs(np.linalg.norm(centres - at, axis=1) - 1.0)[200:].argmin() + 200]
+            rolling(ax, r_pitch, rho, at, place)
+            name = "r_epicycloid" if rho > 0.0 else "r_hypocycloid"
+            centre = (r_pitch + rho) * np.array([np.sin(place), np.cos(place)])
+            label(ax, (centre[0], centre[1] + 0.2 * rho), name, fontsize=8)
+        ax.set_xlim(-1.3, 2.9)
+        ax.set_ylim(r_pitch - 2.2, r_pitch + 2.2)
+    return figure
+
+
 if __name__ == "__main__":
-    run({"profile_s_shaped": s_shaped})
+    run({"profile_s_shaped": s_shaped, "profile_cycloid": cycloid})

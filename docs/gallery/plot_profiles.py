@@ -37,6 +37,7 @@ PROFILES = {
         "r_root": 0.3,
     },
     "s-shaped": {"type": "s_shaped", "r_root": 0.25},
+    "cycloid": {"type": "cycloid", "r_epicycloid": 1.0, "r_hypocycloid": 1.0, "r_root": 0.2},
 }
 
 

@@ -50,6 +50,7 @@ DRAWINGS: dict[str, tuple[str, ...]] = {
         "profile_common_tangent",
         "profile_trapezoid",
         "profile_s_shaped",
+        "profile_cycloid",
         "profile_involute",
     ),
     "dynamic_spline": ("drive_pancake",),

@@ -24,6 +24,7 @@ COMMON_TANGENT = {
     "r_root": 0.3,
 }
 S_SHAPED = {"type": "s_shaped", "r_root": 0.25, "deflection": 1.0}
+CYCLOID = {"type": "cycloid", "r_epicycloid": 1.0, "r_hypocycloid": 1.0, "r_root": 0.2}
 QUADRUPLE_ARC = {"r_tip": 0.5, "r_addendum": 1.0, "r_dedendum": 20.0, "r_root": 0.6}
 PROFILES = {
     "quadruple_arc": (QUADRUPLE_ARC, QUADRUPLE_ARC, 0.95, 0.5),
@@ -31,6 +32,7 @@ PROFILES = {
     "trapezoid": (TRAPEZOID, TRAPEZOID, 0.9, 0.5),
     "common_tangent": (COMMON_TANGENT, COMMON_TANGENT, 0.9, 0.5),
     "s_shaped": (S_SHAPED, S_SHAPED, 0.9, 0.5),
+    "cycloid": (CYCLOID, CYCLOID, 0.9, 0.5),
     "involute": (INVOLUTE, {**INVOLUTE, "cutter_teeth": 80, "shift": 0.1}, 1.0, 0.5),
 }
 SIDE = {"a_p": 0.0097, "C_p": 0.51, "r_c": 10.0}

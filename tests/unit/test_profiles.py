@@ -416,7 +416,7 @@ REFUSED = [
     ("flexible_spline", {**DCA, "r_addendum": 0.1}, [], "flexible_spline.profile.r_addendum"),
     ("flexible_spline", {**DCA, "r_dedendum": 0.0}, [], "flexible_spline.profile.r_dedendum = 0"),
     ("flexible_spline", {**DCA, "straight_l": 0.2}, [], "flexible_spline.profile.straight_l = 0.2"),
-    ("flexible_spline", {"type": "cycloid"}, [], 'flexible_spline.profile.type = "cycloid"'),
+    ("flexible_spline", {"type": "arcs"}, [], 'flexible_spline.profile.type = "arcs"'),
 ]
 
 

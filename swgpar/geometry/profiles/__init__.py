@@ -15,6 +15,7 @@ from swgpar.errors import InputError
 from swgpar.geometry.profiles.advice import advise
 from swgpar.geometry.profiles.common_tangent import common_tangent
 from swgpar.geometry.profiles.conjugate import conjugate
+from swgpar.geometry.profiles.cycloid import cycloid
 from swgpar.geometry.profiles.double_arc import double_arc
 from swgpar.geometry.profiles.flank import ToothProfile, check_flank
 from swgpar.geometry.profiles.from_points import fitted_flank
@@ -22,6 +23,7 @@ from swgpar.geometry.profiles.involute import Cutter, involute
 from swgpar.geometry.profiles.keys import (
     CommonTangent,
     Conjugate,
+    Cycloid,
     DoubleArc,
     ExternalProfile,
     InternalProfile,
@@ -153,6 +155,8 @@ def _build(
         profile = thinned(fitted_flank(keys, teeth, name).profile, c_P)
     elif isinstance(keys, SShaped):
         profile = thinned(s_shaped(keys, teeth, path, name), c_P)
+    elif isinstance(keys, Cycloid):
+        profile = thinned(cycloid(keys, teeth, name), c_P)
     elif isinstance(keys, Conjugate):
         profile = conjugate(keys, teeth, *partner, name)
     else:

@@ -122,6 +122,23 @@ class SShaped(ProfileKeys):
     r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
 
 
+class Cycloid(ProfileKeys):
+    """An epicycloid outside of the pitch circle, a hypocycloid inside, and a root arc."""
+
+    typical_lengths = {"r_epicycloid": 1.0, "r_hypocycloid": 1.0, "r_root": 0.3}
+    divides_straight = False
+
+    type: Literal["cycloid"] = quantity("cycloid", text="kind of profile")
+    r_epicycloid: float = quantity(
+        unit="mm", text="radius of the circle that rolls on the outside of the pitch circle", gt=0.0
+    )
+    r_hypocycloid: float = quantity(
+        unit="mm", text="radius of the circle that rolls on its inside", gt=0.0
+    )
+    r_tip: float = quantity(0.0, unit="mm", text="radius of the rounded tip edge; 0: sharp", ge=0.0)
+    r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
+
+
 class Points(ProfileKeys):
     """A smooth curve through points of one flank, of a space or of a tooth."""
 
@@ -207,6 +224,7 @@ ExternalProfile = Annotated[
     | CommonTangent
     | Trapezoid
     | SShaped
+    | Cycloid
     | Points
     | RackInvolute
     | Conjugate,
@@ -219,6 +237,7 @@ InternalProfile = Annotated[
     | CommonTangent
     | Trapezoid
     | SShaped
+    | Cycloid
     | Points
     | ShaperInvolute
     | Conjugate,
