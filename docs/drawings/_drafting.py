@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import sys
+import argparse
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
@@ -143,7 +143,9 @@ def plane_with(**sections: Mapping[str, object]) -> DriveDesign:
 def run(drawings: Mapping[str, Callable[[], Figure]]) -> None:
     """Write all drawings as PNG files into the folder of the command line, or else into
     docs/_generated."""
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "_generated"
+    options = argparse.ArgumentParser(description=f"Draw {', '.join(drawings)}.")
+    options.add_argument("folder", type=Path, nargs="?", default=ROOT / "docs" / "_generated")
+    folder: Path = options.parse_args().folder
     folder.mkdir(parents=True, exist_ok=True)
     for name, draw in drawings.items():
         figure = draw()

@@ -7,9 +7,10 @@ writes `answers.md` into the folder, for the reference of the summary to include
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from pathlib import Path
+
+from _folder import output_folder
 
 from swgpar.answers.answer import AnswerKind, declared_answers
 from swgpar.drive_results.summary import ANSWER_GROUPS
@@ -50,11 +51,11 @@ def classes() -> str:
     return "\n```{eval-rst}\n" + "\n".join(lines) + "\n```\n"
 
 
-def main() -> None:
+def main(folder: Path) -> None:
     """Write the page."""
     text = "\n".join(tables()) + "\n## Fields of the groups\n" + classes()
-    (Path(sys.argv[1]) / "answers.md").write_text(text, encoding="utf-8")
+    (folder / "answers.md").write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    main(output_folder(__doc__))

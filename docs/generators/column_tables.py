@@ -7,8 +7,9 @@ writes `columns_<drives>.md` into the folder, one for each kind of drives, for a
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
+
+from _folder import output_folder
 
 from swgpar.results.history import DECLARED, columns_of
 
@@ -31,4 +32,4 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(output_folder(__doc__))

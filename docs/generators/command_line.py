@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 from collections.abc import Iterator
 from pathlib import Path
+
+from _folder import output_folder
 
 from swgpar.cli import parser
 
@@ -61,4 +62,4 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(output_folder(__doc__))

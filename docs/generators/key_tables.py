@@ -7,11 +7,11 @@ writes `keys_<file>.md` into the folder, one for each kind of input file, for pa
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
 
+from _folder import output_folder
 from pydantic.fields import FieldInfo
 
 from swgpar.design.drive_design import DriveDesign
@@ -228,7 +228,6 @@ def file_tables(design: type[Section], alike: dict[str, str]) -> str:
 
 def main(folder: Path) -> None:
     """Write all pages."""
-    folder.mkdir(parents=True, exist_ok=True)
     for name, (design, alike) in FILES.items():
         (folder / f"keys_{name}.md").write_text(file_tables(design, alike), encoding="utf-8")
     sections = {"study": StudySection, "study_case": CaseSection, "optimise": OptimiseSection}
@@ -237,4 +236,4 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(output_folder(__doc__))

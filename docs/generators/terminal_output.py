@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import contextlib
 import io
-import sys
 from pathlib import Path
+
+from _folder import output_folder
 
 from swgpar.cli import main as swgpar
 
@@ -33,4 +34,4 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(output_folder(__doc__))

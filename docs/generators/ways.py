@@ -15,6 +15,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from _folder import output_folder
+
 ROOT = Path(__file__).resolve().parents[2]
 THINGS = {
     "design": "the design, from its file on",
@@ -73,4 +75,4 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(output_folder(__doc__))

@@ -207,3 +207,10 @@ def test_stations_of_a_number_exist() -> None:
         names = re.findall(r"`(\w+)`", places)
         text = "\n".join((ROOT / "swgpar" / file).read_text(encoding="utf-8") for file in files)
         assert files and all(f"def {name}(" in text for name in names), places
+
+
+@pytest.mark.parametrize("folder", ["drawings", "generators"])
+def test_scripts_of_the_site_have_a_command_line(folder: str) -> None:
+    """What a script takes from `sys.argv` itself would be a folder's name, `--help` too."""
+    for script in sorted((DOCS / folder).glob("*.py")):
+        assert "sys.argv" not in script.read_text(encoding="utf-8"), script

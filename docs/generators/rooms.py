@@ -6,15 +6,15 @@ import subprocess
 import sys
 from pathlib import Path
 
+from _folder import output_folder
+
 from swgpar.rooms import PURPOSE
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def main() -> None:
-    """Write everything into the folder of the command line, or else into docs/_generated."""
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "_generated"
-    folder.mkdir(parents=True, exist_ok=True)
+def main(folder: Path) -> None:
+    """Write everything."""
     command = [sys.executable, str(ROOT / "scripts" / "import_graph.py"), str(ROOT / "swgpar")]
     command.append(str(folder / "import_graph.png"))
     printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
@@ -28,4 +28,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    main(output_folder(__doc__))
