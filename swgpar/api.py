@@ -29,7 +29,7 @@ from swgpar.results.atomic import agreed, on_all, raise_first, sentence, write_f
 from swgpar.results.figure_set import save_figures
 from swgpar.results.folder import REPORT, given_folder, read_design
 from swgpar.run_options import RunOptions
-from swgpar.systems import Result, system_of, system_of_table
+from swgpar.systems import Result, system_of_section, system_of_table
 
 if TYPE_CHECKING:
     from swgpar.meshing.drive_mesh import DriveMesh
@@ -246,7 +246,7 @@ def run(
     )
     checked, options = on_all(comm, lambda: _checked(design, mesh, given))
     with log.session(comm, terminal=terminal):
-        system = system_of(checked)
+        system = system_of_section(checked.system)
         result = system.run(checked, options)
         if folder is not None:
             if system.draws_figures(checked):
@@ -403,13 +403,13 @@ def check(
     -60.0
     """
     checked = load_design(design, overrides)
-    values = system_of(checked).check(checked)
+    values = system_of_section(checked.system).check(checked)
     return values if mesh is None else values | _needs(_drive(checked), load_mesh(mesh))
 
 
 def _drive(design: Design) -> DriveDesign:
     if not isinstance(design, DriveDesign):
-        raise InputError(f"{system_of(design).noun} has no mesh: allowed are drives")
+        raise InputError(f"{system_of_section(design.system).noun} has no mesh: allowed are drives")
     return design
 
 
@@ -478,7 +478,7 @@ def _checked(
     """The design of a run, and its options with the mesh; refuses options that the design's system
     does not have."""
     checked = load_design(design)
-    system = system_of(checked)
+    system = system_of_section(checked.system)
     options.require_available(system.options, system.noun, mesh=mesh is not None)
     if mesh is None:
         return checked, options

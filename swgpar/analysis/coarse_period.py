@@ -20,12 +20,11 @@ def coarse_period(model: DriveModel, coarse: MeshRecipe, fine: MeshRecipe) -> Co
     None without a sampled period or a torque; in a cup drive, where it would cost a third of the
     run; with friction, whose first period settles; and where an angle does not converge.
     """
-    design = model.design
     stepper = LoadStepper(model)
     sequence = stepper.sequence
-    if design.drive.model != "plane" or not (sequence.samples and sequence.torque):
+    if coarse.face_width is not None or not (sequence.samples and sequence.torque):
         return None
-    if sequence.periods > 1 or design.kinematics.wave_generator_is_fixed:
+    if sequence.periods > 1 or sequence.kinematics.wave_generator_is_fixed:
         return None
     stepper.resume_at(sequence.loaded)
     loaded = model.problem.x.copy()

@@ -10,7 +10,6 @@ from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import wall_ratio
 from swgpar.model.drive_model import DriveModel
-from swgpar.model.regions import resolves_wall
 
 
 def coarse_wall(
@@ -19,7 +18,7 @@ def coarse_wall(
     """The largest stresses of the wall of the loaded model on the coarser of two meshes, None where
     they are not known; collective."""
     ratio = wall_ratio(coarse, fine)
-    if not resolves_wall(model.design) or ratio is None:
+    if not model.design.resolves_wall or ratio is None:
         return None
     try:
         return CoarseWall(ring_stresses(model, state), ratio)

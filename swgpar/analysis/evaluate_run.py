@@ -32,7 +32,6 @@ from swgpar.evaluation.stress_factors import root_factor, stress_factors
 from swgpar.evaluation.transmission_error import evaluate_turns
 from swgpar.largest_stress.places import LargestStresses
 from swgpar.load.load_program import stiffness_program
-from swgpar.load.negligible_torque import negligible_torque
 from swgpar.petsc import PETSc
 from swgpar.results.history import Row, loaded_increments
 from swgpar.version import __version__
@@ -118,7 +117,7 @@ def evaluate_run(
                 sequence.kinematics,
                 design.ratcheting,
                 record.torque_points,
-                1e-3 * negligible_torque(design),
+                1e-3 * design.negligible_torque,
                 ended_early=ended_early,
             )
             if design.ratcheting

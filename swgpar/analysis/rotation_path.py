@@ -9,7 +9,6 @@ from swgpar.analysis.step_bounds import PART_OF_PITCH, pitches_turned
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.ratcheting import TorquePoint, has_fallen, overshoot
 from swgpar.load.load_states import LoadState
-from swgpar.load.negligible_torque import negligible_torque
 from swgpar.log import logger
 
 BEND, BEND_DOWN = 0.1, 0.02
@@ -55,7 +54,7 @@ class RotationPath:
         self.tolerance, self.drop = tolerance, drop
         self._step = PART_OF_PITCH
         # N·m; below it torques are round-off of the forces that bend the spline
-        self._floor = 1e-3 * negligible_torque(stepper.design)
+        self._floor = 1e-3 * stepper.design.negligible_torque
 
     def follow(self, target: LoadState) -> None:
         """Go to `target`, or to where the torque has fallen; the stepper's iterations are those of

@@ -49,7 +49,6 @@ from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
 from swgpar.meshing.recipe_counts import body_ratio
 from swgpar.model.drive_model import DriveModel, build_drive_model
-from swgpar.model.regions import resolves_wall
 from swgpar.petsc import warn_of_unused_options
 from swgpar.results.atomic import on_all
 from swgpar.results.folder import RECIPE, open_log, prepare
@@ -92,7 +91,7 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
     if not options.plain:
         shortcuts = with_shortcuts(design, recipe, levels=options.accuracy is None)
         design, left_out = shortcuts.design, shortcuts.left_out
-    said, sequence = remarks(design), load_sequence(design)
+    sequence, said = load_sequence(design), remarks(design)
     require_samples(sequence, [name for name in ("fatigue", "losses") if getattr(design, name)])
     needs = forecast(design, recipe)
     require_memory(needs, design.solver.memory_limit, comm)
@@ -257,7 +256,7 @@ class DriveRun:
                 seconds = time.perf_counter() - start
                 if design.resolves_root_stress:
                     record.root_stress = self._root_stress(state, state == loaded)
-                if state == loaded and resolves_wall(design):
+                if state == loaded and design.resolves_wall:
                     record.wall_stress = self._wall_stress(state)
                 recorder.keep(seconds, self.seconds)
                 if len(record.rows) == 1:

@@ -51,6 +51,11 @@ def check_cam(design: DriveDesign) -> None:
         _check_concave(design, wave)
     elif isinstance(wave, Harmonic | Polar | Points):
         _check_curve(design)
+    width, widest = wave.width, design.drive.face_width
+    allowed = f"above 0 to {widest:g} mm (drive.face_width)"
+    require(width <= widest, "wave_generator.face_width", width, allowed)
+    if design.drive.model != "plane":
+        _check_modifications(design)
 
 
 def _check_deflection(design: DriveDesign) -> None:
@@ -199,6 +204,16 @@ def _check_curve(design: DriveDesign) -> None:
             f"{bore - radius[at]:.4g} mm inside of the bore: allowed radii above "
             f"{(bore - radius[at]) / (1.0 - UNIQUE):.4g} mm there"
         )
+
+
+def _check_modifications(design: DriveDesign) -> None:
+    # beyond a quarter of its width the cam is a cone of some 30 degrees, off which the spline
+    # slides
+    most = min(0.5 * design.deflection, 0.25 * design.wave_generator.face_width)
+    for key, least in (("wg_crowning", 0.0), ("wg_slope", -most)):
+        value = getattr(design.micro_geometry, key)
+        allowed = f"{least:g} to {most:g} mm (half the deflection, a quarter of the cam's width)"
+        require(least <= value <= most, f"micro_geometry.{key}", value, allowed)
 
 
 def check_outline(design: DriveDesign) -> None:

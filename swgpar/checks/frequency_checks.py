@@ -5,7 +5,6 @@ from __future__ import annotations
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.input.require import require, require_available
-from swgpar.load.negligible_torque import negligible_torque
 
 FREQUENCIES = "[frequencies]"
 
@@ -22,7 +21,7 @@ def check_frequencies(design: DriveDesign) -> None:
     require(friction == 0.0, "contact.friction", friction, f"only 0 with {FREQUENCIES}")
     condensed = design.solver.condensed_sectors
     require(not condensed, "solver.condensed_sectors", condensed, f"only false with {FREQUENCIES}")
-    least = 1e-3 * negligible_torque(design)
+    least = 1e-3 * design.negligible_torque
     allowed = f"above {least:.3g} N·m with {FREQUENCIES}: without a load the teeth have play"
     require(design.load.torque > least, "load.torque", design.load.torque, allowed)
     for body, material in design.materials.items():

@@ -6,7 +6,6 @@ from __future__ import annotations
 from swgpar.checks.clearance import clearances
 from swgpar.checks.tooth_checks import tooth_remarks
 from swgpar.design.drive_design import DriveDesign
-from swgpar.load.negligible_torque import negligible_torque
 
 STRETCH = 1e-3
 """Strain of the neutral line above which it is said: on steel a hoop stress of 200 MPa."""
@@ -24,7 +23,7 @@ def remarks(design: DriveDesign) -> list[str]:
             f"flexible spline; a smaller minor axis shortens the cam"
         )
     sentences += tooth_remarks(design)
-    torque, negligible = design.load.torque, negligible_torque(design)
+    torque, negligible = design.load.torque, design.negligible_torque
     if 0.0 < 1000.0 * torque <= negligible:
         sentences.append(
             f"load.torque = {torque:g} N·m counts as none: up to {0.001 * negligible:.3g} N·m it "

@@ -19,9 +19,9 @@ THIN_RIM = 0.25
 to be avoided by ISO 6336-3 (rim thickness factor); rims of flexible splines are thin on purpose."""
 
 
-def check_heights(design: DriveDesign) -> None:
-    """Raise InputError where tips lie beyond the root circle of the other gear at the major
-    axis."""
+def check_teeth(design: DriveDesign) -> None:
+    """Raise InputError where tips lie beyond the root circle of the other gear at the major axis,
+    and for too large a crowning."""
     module = design.drive.module
     for gear in design.gears:
         _check_heights_of_points(getattr(design, gear), gear)
@@ -42,6 +42,9 @@ def check_heights(design: DriveDesign) -> None:
             )
         allowed = f"{least:.6g} to {LARGEST_DEDENDUM:g} modules (tips of {gear} at the major axis)"
         require(value >= least - ROUND_OFF, key, value, allowed)
+    crowning, most = design.micro_geometry.fs_crowning, 0.25 * module
+    allowed = f"0 to {most:g} mm (a quarter of the module)"
+    require(0.0 <= crowning <= most, "micro_geometry.fs_crowning", crowning, allowed)
 
 
 def _check_heights_of_points(section: ExternalGear | InternalGear, gear: GearName) -> None:

@@ -15,12 +15,12 @@ from swgpar.errors import InputError, StudyError, printable
 from swgpar.input.design import Design
 from swgpar.log import console
 from swgpar.results.atomic import on_all
-from swgpar.systems import system_of
+from swgpar.systems import system_of_section
 
 
 def _run(arguments: argparse.Namespace) -> None:
     design = _design(arguments)
-    system = system_of(design)
+    system = system_of_section(design.system)
     _begin(arguments, "increments", restarts="restart" in system.options)
     given = _given(api.run, arguments)
     result = api.run(design, arguments.mesh, arguments.out, progress=True, **given)
@@ -93,7 +93,7 @@ def _check(arguments: argparse.Namespace) -> None:
     design = _design(arguments)
     values = on_all(MPI.COMM_WORLD, lambda: api.check(design, mesh=arguments.mesh))
     _print(f"{name:40s} {value:.6g}" for name, value in values.items())
-    _print(f"warning: {text}" for text in system_of(design).remarks(design))
+    _print(f"warning: {text}" for text in system_of_section(design.system).remarks(design))
 
 
 def _report(arguments: argparse.Namespace) -> None:

@@ -1,38 +1,15 @@
-"""The validated design of a drive: its sections and the quantities derived from them (section
-3.2)."""
+"""The validated design of a drive: its sections and the sizes derived from them (section 3.2)."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from swgpar.design.cup_section import Cup
 from swgpar.design.cup_sizes import CupSizes
-from swgpar.design.deviations import Deviations
-from swgpar.design.frequency_section import Frequencies
-from swgpar.design.kinematics import Kinematics, make_kinematics
-from swgpar.design.program_sections import Ratcheting, Stiffness
-from swgpar.design.sections import (
-    GEARS,
-    OMITTED_BENDING,
-    Contact,
-    DesignBody,
-    Drive,
-    DynamicSpline,
-    ExternalGear,
-    Fatigue,
-    Gear,
-    GearName,
-    Housing,
-    InternalGear,
-    Load,
-    Losses,
-    MicroGeometry,
-    Output,
-    Solver,
-    Steps,
-)
+from swgpar.design.drive_sections import DriveSections
+from swgpar.design.negligible_torque import negligible_torque
+from swgpar.design.sections import GEARS, OMITTED_BENDING, ExternalGear, GearName, InternalGear
 from swgpar.geometry.bearing import BearingSizes
-from swgpar.geometry.cams import Bearing, Cam, WaveGenerator, make_cam
+from swgpar.geometry.cams import Cam, make_cam
 from swgpar.geometry.cams.semi_axes import minor_semi_axis, radial_deflection
 from swgpar.geometry.disc_surface import CamSurface, cam_surface
 from swgpar.geometry.neutral_line import neutral_line
@@ -41,7 +18,6 @@ from swgpar.geometry.profiles import (
     RackInvolute,
     RackPath,
     SShaped,
-    Teeth,
     ToothMotion,
     ToothProfile,
     make_profile,
@@ -49,46 +25,11 @@ from swgpar.geometry.profiles import (
 from swgpar.geometry.profiles.rigid_teeth import RigidTeeth
 from swgpar.geometry.profiles.tip_relief import relieved
 from swgpar.geometry.rim_motion import axial_travel, omitted_bending
-from swgpar.input.design import Design
-from swgpar.materials import ChosenMaterial, Material
 from swgpar.meshing.drive_geometry import DriveGeometry, FlankCrowning, GearGeometry
 
 
-class DriveDesign(Design):
+class DriveDesign(DriveSections):
     """A drive, its load and how it is computed. Attributes are the keys of the design file."""
-
-    drive: Drive
-    flexible_spline: ExternalGear
-    ring_gear: InternalGear
-    dynamic_spline: DynamicSpline | None = None
-    wave_generator: WaveGenerator
-    cup: Cup | None = None
-    micro_geometry: MicroGeometry = MicroGeometry()
-    material: ChosenMaterial
-    load: Load = Load()
-    stiffness: Stiffness | None = None
-    ratcheting: Ratcheting | None = None
-    contact: Contact = Contact()
-    steps: Steps = Steps()
-    solver: Solver = Solver()
-    output: Output = Output()
-    fatigue: Fatigue | None = None
-    losses: Losses | None = None
-    deviations: Deviations | None = None
-    frequencies: Frequencies | None = None
-
-    @property
-    def gears(self) -> tuple[GearName, ...]:
-        """The gears in the order of the bodies; a dynamic spline is the third one."""
-        return GEARS if self.dynamic_spline is None else (*GEARS, "dynamic_spline")
-
-    def axial_range(self, gear: GearName) -> tuple[float, float]:
-        """Ends (mm) of the teeth of a gear along z."""
-        half, second = 0.5 * self.drive.face_width, self.dynamic_spline
-        if second is None or gear == "flexible_spline":
-            return -half, half
-        begin = half - (second.face_width or half - 0.5 * second.gap)
-        return (begin, half) if gear == "dynamic_spline" else (-half, begin - second.gap)
 
     @property
     def deflection(self) -> float:
@@ -115,63 +56,6 @@ class DriveDesign(Design):
         return minor_semi_axis(self.wave_generator, self.inner_radius, 0.5 * self.deflection)
 
     @property
-    def kinematics(self) -> Kinematics:
-        """Speeds and angles."""
-        return make_kinematics(
-            self.drive, self.wave_generator.lobes, self.dynamic_spline is not None
-        )
-
-    @property
-    def has_program(self) -> bool:
-        """Whether the output follows a load program, in place of one torque and a rotation."""
-        return bool(self.load.program or self.stiffness or self.ratcheting)
-
-    @property
-    def is_mirror_symmetric(self) -> bool:
-        """Whether the undeformed drive is its own image in the plane through the axis and the major
-        axis. The balls of a bearing are placed on one side of it or the other. With bolts no other
-        state mirrors it."""
-        return (
-            self.wave_generator.is_mirror_symmetric and self.bearing is None and not self.is_bolted
-        )
-
-    @property
-    def has_cup(self) -> bool:
-        """Whether the flexible spline has a wall and an end; the plane model leaves them out."""
-        return self.drive.model == "cup"
-
-    @property
-    def has_attachment(self) -> bool:
-        """Whether closed end or flange is clamped or bolted."""
-        return self.has_cup and self.cup.attachment != "edge"
-
-    @property
-    def is_bolted(self) -> bool:
-        """Whether bolts hold the cup, so that its teeth are not alike."""
-        return self.has_attachment and self.cup.attachment == "bolted"
-
-    @property
-    def copies(self) -> int:
-        """How many times the model makes the whole drive: the number of lobes where the drive
-        equals itself rotated by one of them and the design allows it, else 1."""
-        lobes = self.wave_generator.lobes
-        counts = [self.drive.teeth_fs, self.drive.teeth_rg]
-        if self.bearing is not None:
-            counts.append(self.bearing.balls)
-        if self.is_bolted:
-            counts.append(self.cup.bolts)
-        # modes of a part of the drive are not all modes
-        symmetric = all(count % lobes == 0 for count in counts) and self.frequencies is None
-        symmetric = symmetric and self.wave_generator.lobes_are_alike
-        return lobes if symmetric and self.solver.symmetry else 1
-
-    @property
-    def periods(self) -> int:
-        """Periods that are computed with `steps.samples`: two with friction, whose state settles in
-        the first."""
-        return 2 if self.contact.friction else 1
-
-    @property
     def backlash(self) -> float:
         """Circumferential backlash at the pitch circles, mm (eqs 6.1 to 6.3)."""
         return self.backlash_of("ring_gear")
@@ -193,31 +77,11 @@ class DriveDesign(Design):
         return self.backlash / (self.drive.teeth_fs * self.drive.module)
 
     @property
-    def bearing(self) -> Bearing | None:
-        """Section [wave_generator.bearing]; None where the cam touches the flexible spline."""
-        return self.wave_generator.bearing
-
-    @property
     def bearing_sizes(self) -> BearingSizes:
         """Sizes of the bearing, which the design must have."""
         return BearingSizes(
             self.inner_radius, self.bearing.race_thickness, self.bearing.ball_diameter
         )
-
-    @property
-    def race_width(self) -> float:
-        """Width of the outer race, mm."""
-        return self.bearing.race_width or self.wave_generator.face_width
-
-    @property
-    def housing(self) -> Housing | None:
-        """Section [ring_gear.housing]; None where the frame around the ring gear is rigid."""
-        return self.ring_gear.housing
-
-    @property
-    def frame_is_rigid(self) -> bool:
-        """Whether a rigid frame surrounds the ring gear, or its housing."""
-        return self.housing is None or self.housing.outside == "held"
 
     @property
     def cage_speed(self) -> float:
@@ -234,21 +98,11 @@ class DriveDesign(Design):
         return self.bearing_sizes.rolling_speed(self.kinematics.spline_speed)
 
     @property
-    def uses_pins(self) -> bool:
-        """Whether pins deflect the flexible spline; with a bearing the cam grows instead."""
-        return self.steps.pins and self.bearing is None
-
-    @property
-    def without_windows(self) -> str:
-        """What keeps windows from resolving the stress at the teeth; empty without."""
-        if self.bearing is not None:
-            return "a bearing"
-        return "" if self.dynamic_spline is None else "two ring gears"
-
-    @property
-    def resolves_root_stress(self) -> bool:
-        """Whether windows resolve the stress at the teeth."""
-        return self.output.root_stress and not self.has_program and not self.without_windows
+    def negligible_torque(self) -> float:
+        """Output torque (N·mm) up to which the drive counts as unloaded."""
+        rim = self.flexible_spline.rim
+        sizes = self.drive.face_width, rim, self.inner_radius + 0.5 * rim
+        return negligible_torque(self.modulus_of("flexible_spline"), self.deflection, *sizes)
 
     @property
     def axial_travel(self) -> float:
@@ -270,23 +124,6 @@ class DriveDesign(Design):
         return omitted_bending(self.deflection, *sizes, self.drive.teeth_fs, wave.lobes, elliptical)
 
     @property
-    def leaves_out_far_teeth(self) -> bool:
-        """Whether teeth out of reach are left out; they have mass."""
-        return self.solver.far_teeth == "left_out" and self.frequencies is None
-
-    @property
-    def condenses_teeth(self) -> bool:
-        """Whether a tooth is one element where nothing touches it."""
-        return self.leaves_out_far_teeth and self.drive.model != "plane"
-
-    @property
-    def leaves_out_sectors(self) -> bool:
-        """Whether sectors of the ring gear out of reach are left out; an elastic housing gives way
-        all round."""
-        clamped = self.kinematics.standing_gear == "ring_gear" and self.housing is None
-        return self.leaves_out_far_teeth and clamped
-
-    @property
     def can_condense(self) -> bool:
         """Whether sectors may be condensed: in the plane model, where that leaves out little
         bending strain."""
@@ -298,36 +135,6 @@ class DriveDesign(Design):
         return CupSizes(
             self.cup, self.inner_radius, self.flexible_spline.rim, 0.5 * self.drive.face_width
         )
-
-    def modulus_of(self, *bodies: DesignBody) -> float:
-        """Modulus of elasticity (MPa) of the softest of bodies: the scale of contacts and supports
-        between them."""
-        return min(self.materials[body].modulus for body in bodies)
-
-    def penalty(self, *bodies: DesignBody) -> float:
-        """Stiffness of the support of a body, or penalty of the flanks of two in exported jobs,
-        MPa / mm."""
-        return self.contact.penalty_coef * self.modulus_of(*bodies) / self.drive.module
-
-    @property
-    def wg_penalty(self) -> float:
-        """Penalty of the contact of cam and pins, MPa / mm."""
-        return self.contact.wg_penalty_coef * self.modulus_of("flexible_spline") / self.drive.module
-
-    @property
-    def materials(self) -> dict[str, Material]:
-        """Materials of the gears, of the housing and of the bearing by name: that of their own
-        section, else [material]."""
-        sections: dict[str, Gear | Housing | Bearing | None] = {
-            "housing": self.housing,
-            "bearing": self.bearing,
-        }
-        sections |= {gear: getattr(self, gear) for gear in self.gears}
-        return {
-            body: section.material or self.material
-            for body, section in sections.items()
-            if section is not None
-        }
 
     @property
     def crowning(self) -> FlankCrowning:
@@ -355,10 +162,6 @@ class DriveDesign(Design):
             cup=self.cup_sizes.geometry if self.has_cup else None,
             housing=self.housing.thickness if self.housing else 0.0,
         )
-
-    def teeth(self, gear: GearName) -> Teeth:
-        """Number and sizes of the teeth of a gear."""
-        return self.drive.teeth(gear, getattr(self, gear))
 
     def profile(self, gear: GearName, *, relief: bool = True) -> ToothProfile:
         """Exact flank, with its tip relief or before it. Raises InputError where there is none."""

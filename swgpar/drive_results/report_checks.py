@@ -17,7 +17,6 @@ from swgpar.evaluation.rotation import Rotation
 from swgpar.largest_stress.accuracy import Accuracy
 from swgpar.largest_stress.places import APART, LargestStresses
 from swgpar.largest_stress.root_stress import RootStress
-from swgpar.load.negligible_torque import negligible_torque
 from swgpar.results.history import loaded_increments
 
 RESOLUTION = 0.05
@@ -42,7 +41,7 @@ def checks(summary: DriveSummary, history: Mapping[str, np.ndarray]) -> list[Che
         summary.design.contact,
         summary.design.drive.module,
     )
-    loaded = 1000.0 * summary.design.load.torque > negligible_torque(summary.design)
+    loaded = 1000.0 * summary.design.load.torque > summary.design.negligible_torque
     period = 0.999999 * np.degrees(summary.design.kinematics.period_angle)
     covered = steps.samples > 0 or steps.rotation >= period
     tolerance = contact.penetration_tolerance * module

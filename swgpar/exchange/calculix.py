@@ -25,7 +25,6 @@ from swgpar.errors import InputError
 from swgpar.exchange.calculix_model import JobModel, Surface, Term
 from swgpar.exchange.cam_facets import OUTER_FACE, CamFacets, cam_facets
 from swgpar.geometry.arrays import Ints
-from swgpar.load.negligible_torque import negligible_torque
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.inp import number_lines, write_inp
 
@@ -86,7 +85,7 @@ def _check(design: DriveDesign) -> None:
             refuse(key, "a design without it")
     if design.is_bolted:
         refuse('cup.attachment = "bolted"', '"edge" or "clamped"')
-    least = 0.001 * negligible_torque(design)
+    least = 0.001 * design.negligible_torque
     if design.load.torque <= least:
         refuse(
             f"load.torque = {design.load.torque:g} N·m",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from annotated_types import Gt
 
@@ -47,6 +47,8 @@ class Output(Section):
 
 class TrainDesign(Design):
     """What every gear train's design file may hold beside its own sections."""
+
+    system: ClassVar[str] = "gear_train"
 
     published: dict[str, Any] = quantity({}, text="published values by quantity")
     output: Output = Output()

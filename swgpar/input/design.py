@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 from pydantic import PrivateAttr
 
@@ -12,7 +12,12 @@ from swgpar.input.toml_file import Overrides, apply_overrides
 
 
 class Design(Section):
-    """The content of a design file. Attributes are its sections; a design never changes."""
+    """The content of a design file. Attributes are its sections; a design never changes.
+
+    system : section by which files of its kind are recognised, a key of `swgpar.systems.SYSTEMS`
+    """
+
+    system: ClassVar[str]
 
     _maker: Callable[[dict[str, Any]], Self] = PrivateAttr()
 

@@ -16,7 +16,6 @@ import numpy as np
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.kinematics import Kinematics
 from swgpar.design.program_sections import ProgramStage, Ratcheting, Stiffness
-from swgpar.load.negligible_torque import negligible_torque
 
 NO_TORQUE = 1e-3
 """Share of the largest torque of a program that stands for zero.
@@ -203,7 +202,7 @@ def stiffness_program(design: DriveDesign) -> StiffnessProgram:
         section,
         torque,
         section.rated_torque or torque,
-        1e-3 * negligible_torque(design),
+        1e-3 * design.negligible_torque,
         tuple(period * k / section.positions for k in range(section.positions)),
         uses_mirror=not section.loop and design.is_mirror_symmetric,
     )

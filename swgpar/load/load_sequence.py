@@ -20,7 +20,6 @@ from swgpar.load.load_states import (
     LoadState,
     Stage,
 )
-from swgpar.load.negligible_torque import negligible_torque
 
 
 def start_state(design: DriveDesign) -> LoadState:
@@ -87,7 +86,7 @@ def load_sequence(design: DriveDesign) -> LoadSequence:
         torque = kinematics.internal_torque(design.load.torque)
         angles = rotation_angles(steps, kinematics.period_angle, design.periods)
         states += _rotation(
-            torque if abs(torque) > negligible_torque(design) else 0.0,
+            torque if abs(torque) > design.negligible_torque else 0.0,
             steps.load_increments,
             angles,
             kinematics.ratio,

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
 from swgpar.meshing.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.sector import SectorMesh
 
@@ -56,11 +55,6 @@ AVERAGE = "below the contact of teeth: an average over elements, larger on a fin
 NOTCH = "in the notch behind the teeth, a corner without fillet: no limit to converge to"
 EDGE = "at the edge of the wave generator: edge contact, no limit to converge to"
 CLAMPED = "at the edge of a rigid attachment: no limit to converge to"
-
-
-def resolves_wall(design: DriveDesign) -> bool:
-    """Whether rings resolve the wall of a design. Their columns are too wide for bolts."""
-    return design.output.root_stress and design.has_cup and not design.is_bolted
 
 
 def sector_regions(geometry: DriveGeometry, mesh: SectorMesh) -> dict[bool, np.ndarray]:

@@ -2,14 +2,13 @@
 them."""
 
 from swgpar.systems.protocol import Measured, Result, System
-from swgpar.systems.registry import SYSTEMS, system_of, system_of_section, system_of_table
+from swgpar.systems.registry import SYSTEMS, system_of_section, system_of_table
 
 __all__ = [
     "SYSTEMS",
     "Measured",
     "Result",
     "System",
-    "system_of",
     "system_of_section",
     "system_of_table",
 ]

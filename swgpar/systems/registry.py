@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from importlib import import_module
 from typing import Any
 
-from swgpar.errors import InputError
-from swgpar.input.design import Design
 from swgpar.systems.protocol import System
 
 SYSTEMS = {
@@ -21,7 +19,7 @@ read as the last one."""
 
 
 def system_of_section(section: str) -> System[Any, Any]:
-    """The kind of systems with this section, a key of `SYSTEMS`."""
+    """The kind of systems with this section, a key of `SYSTEMS`; a design has it as `system`."""
     module, _, name = SYSTEMS[section].rpartition(".")
     return getattr(import_module(module), name)
 
@@ -30,13 +28,3 @@ def system_of_table(table: Mapping[str, Any]) -> System[Any, Any]:
     """The kind of a design from the content of its file, or from the key "design" of a summary."""
     *_, last = SYSTEMS
     return system_of_section(next((section for section in SYSTEMS if section in table), last))
-
-
-def system_of(design: Design) -> System[Any, Any]:
-    """The kind of a checked design."""
-    for section in SYSTEMS:
-        if section in type(design).model_fields:
-            return system_of_section(section)
-    raise InputError(
-        f"{type(design).__name__} is not a design: allowed what swgpar.load_design returns"
-    )

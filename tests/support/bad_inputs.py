@@ -39,7 +39,7 @@ from swgpar.results.folder import CHECKPOINT
 from swgpar.results.parallel_hdf5 import Block
 from swgpar.studies.cases import expand
 from swgpar.studies.spec import load_study
-from swgpar.systems import system_of
+from swgpar.systems import system_of_section
 
 SLOWEST = 60.0
 """Processor seconds after which an input counts as hanging: other programs may keep this one
@@ -381,7 +381,7 @@ def _not_finite(values: Mapping[str, float]) -> str:
 def _use_design(folder: Path) -> str:
     design = swgpar.load_design(folder / "input.toml")
     derived = swgpar.check(design)
-    system_of(design).remarks(design)
+    system_of_section(design.system).remarks(design)
     fault = _not_finite(derived)
     return fault or (
         _use_mesh(design, load_recipe(RECIPE)) if isinstance(design, DriveDesign) else ""

@@ -189,11 +189,12 @@ def test_own_answer(tmp_path: Path) -> None:
     execute(
         tmp_path,
         """
-from swgpar.systems import system_of
+from swgpar.systems import system_of_section
 
 run()
 found = swgpar.open_result(folder)
-system, design = system_of(found.summary.design), found.summary.design
+design = found.summary.design
+system = system_of_section(design.system)
 iterations = found.summary["residue.iterations"]
 assert iterations.value == found.history["newton_iterations"].sum() > 0
 assert 0.0 < found.summary["time.increments"].value <= 1.0

@@ -16,10 +16,10 @@ from swgpar.analysis import run_drive
 from swgpar.checks.clearance import clearances
 from swgpar.checks.remarks import remarks
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.negligible_torque import RING_FLEXIBILITY
 from swgpar.evaluation.jamming import energy_remark, jamming_remark
 from swgpar.evaluation.rigid_clearance import rigid_clearance
 from swgpar.load.load_sequence import load_sequence
-from swgpar.load.negligible_torque import RING_FLEXIBILITY, negligible_torque
 
 PERIOD = ("steps.rotation=9", "steps.increment=3")
 
@@ -161,7 +161,7 @@ def test_the_ring_between_two_forces() -> None:
 @pytest.mark.parametrize("share", [1e-5, 0.99, 1.01, 3.0])
 def test_small_torques_converge_or_count_as_none(share: float) -> None:
     """1e-5 of the smallest torque that is resolved is less than 1e-9 N·m."""
-    least = 1e-3 * negligible_torque(design())
+    least = 1e-3 * design().negligible_torque
     torque = share * least
     assert 1e-5 * least < 1e-9
     with Messages() as messages:

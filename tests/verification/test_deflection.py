@@ -10,7 +10,7 @@ import swgpar
 from plain_ring import PlainRingDesign, RingCounts, RingModel
 from support.cam_ring import INNER, STEEL, THICKNESS, closed_form
 from support.drive_groups import PLANE
-from swgpar.load.negligible_torque import RING_FLEXIBILITY
+from swgpar.design.negligible_torque import RING_FLEXIBILITY
 
 HALF_ANGLE = np.radians(15.0)
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
-
 RING_FLEXIBILITY = 0.25 * np.pi - 2.0 / np.pi
 """Change of the diameter of a ring under two opposed forces F, over F r^3 / (E I) (Timoshenko)."""
 
@@ -17,13 +15,16 @@ them, the flanks that carry it do not settle. The stresses by bending are larger
 """
 
 
-def negligible_torque(design: DriveDesign) -> float:
+def negligible_torque(
+    modulus: float, deflection: float, width: float, rim: float, radius: float
+) -> float:
     """Output torque (N·mm) up to which a drive counts as unloaded: that of `NEGLIGIBLE` at the
-    spline's radius.
+    radius (mm) of the middle of the flexible spline's rim.
 
     The bending force is that of a ring with the section of the rim, between two opposed forces.
+
+    modulus : MPa;  deflection : mm, of the diameter;  width, rim : mm
     """
-    rim, radius = design.flexible_spline.rim, design.inner_radius + 0.5 * design.flexible_spline.rim
-    stiffness = design.modulus_of("flexible_spline") * design.drive.face_width * rim**3 / 12.0
-    force = design.deflection * stiffness / (RING_FLEXIBILITY * radius**3)
+    stiffness = modulus * width * rim**3 / 12.0
+    force = deflection * stiffness / (RING_FLEXIBILITY * radius**3)
     return NEGLIGIBLE * force * radius

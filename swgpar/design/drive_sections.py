@@ -1,0 +1,225 @@
+"""The sections of a drive's design file, and what follows from their keys alone: which parts the
+drive has, what of it is computed, materials."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from swgpar.design.cup_section import Cup
+from swgpar.design.deviations import Deviations
+from swgpar.design.frequency_section import Frequencies
+from swgpar.design.kinematics import Kinematics, make_kinematics
+from swgpar.design.program_sections import Ratcheting, Stiffness
+from swgpar.design.sections import (
+    GEARS,
+    Contact,
+    DesignBody,
+    Drive,
+    DynamicSpline,
+    ExternalGear,
+    Fatigue,
+    Gear,
+    GearName,
+    Housing,
+    InternalGear,
+    Load,
+    Losses,
+    MicroGeometry,
+    Output,
+    Solver,
+    Steps,
+)
+from swgpar.geometry.cams import Bearing, WaveGenerator
+from swgpar.geometry.profiles import Teeth
+from swgpar.input.design import Design
+from swgpar.materials import ChosenMaterial, Material
+
+
+class DriveSections(Design):
+    """What a design file of a drive gives. Attributes are its sections."""
+
+    system: ClassVar[str] = "drive"
+
+    drive: Drive
+    flexible_spline: ExternalGear
+    ring_gear: InternalGear
+    dynamic_spline: DynamicSpline | None = None
+    wave_generator: WaveGenerator
+    cup: Cup | None = None
+    micro_geometry: MicroGeometry = MicroGeometry()
+    material: ChosenMaterial
+    load: Load = Load()
+    stiffness: Stiffness | None = None
+    ratcheting: Ratcheting | None = None
+    contact: Contact = Contact()
+    steps: Steps = Steps()
+    solver: Solver = Solver()
+    output: Output = Output()
+    fatigue: Fatigue | None = None
+    losses: Losses | None = None
+    deviations: Deviations | None = None
+    frequencies: Frequencies | None = None
+
+    @property
+    def gears(self) -> tuple[GearName, ...]:
+        """The gears in the order of the bodies; a dynamic spline is the third one."""
+        return GEARS if self.dynamic_spline is None else (*GEARS, "dynamic_spline")
+
+    def axial_range(self, gear: GearName) -> tuple[float, float]:
+        """Ends (mm) of the teeth of a gear along z."""
+        half, second = 0.5 * self.drive.face_width, self.dynamic_spline
+        if second is None or gear == "flexible_spline":
+            return -half, half
+        begin = half - (second.face_width or half - 0.5 * second.gap)
+        return (begin, half) if gear == "dynamic_spline" else (-half, begin - second.gap)
+
+    @property
+    def kinematics(self) -> Kinematics:
+        """Speeds and angles."""
+        return make_kinematics(
+            self.drive, self.wave_generator.lobes, self.dynamic_spline is not None
+        )
+
+    @property
+    def has_program(self) -> bool:
+        """Whether the output follows a load program, in place of one torque and a rotation."""
+        return bool(self.load.program or self.stiffness or self.ratcheting)
+
+    @property
+    def is_mirror_symmetric(self) -> bool:
+        """Whether the undeformed drive is its own image in the plane through the axis and the major
+        axis. The balls of a bearing are placed on one side of it or the other. With bolts no other
+        state mirrors it."""
+        return (
+            self.wave_generator.is_mirror_symmetric and self.bearing is None and not self.is_bolted
+        )
+
+    @property
+    def has_cup(self) -> bool:
+        """Whether the flexible spline has a wall and an end; the plane model leaves them out."""
+        return self.drive.model == "cup"
+
+    @property
+    def has_attachment(self) -> bool:
+        """Whether closed end or flange is clamped or bolted."""
+        return self.has_cup and self.cup.attachment != "edge"
+
+    @property
+    def is_bolted(self) -> bool:
+        """Whether bolts hold the cup, so that its teeth are not alike."""
+        return self.has_attachment and self.cup.attachment == "bolted"
+
+    @property
+    def copies(self) -> int:
+        """How many times the model makes the whole drive: the number of lobes where the drive
+        equals itself rotated by one of them and the design allows it, else 1."""
+        lobes = self.wave_generator.lobes
+        counts = [self.drive.teeth_fs, self.drive.teeth_rg]
+        if self.bearing is not None:
+            counts.append(self.bearing.balls)
+        if self.is_bolted:
+            counts.append(self.cup.bolts)
+        # modes of a part of the drive are not all modes
+        symmetric = all(count % lobes == 0 for count in counts) and self.frequencies is None
+        symmetric = symmetric and self.wave_generator.lobes_are_alike
+        return lobes if symmetric and self.solver.symmetry else 1
+
+    @property
+    def periods(self) -> int:
+        """Periods that are computed with `steps.samples`: two with friction, whose state settles in
+        the first."""
+        return 2 if self.contact.friction else 1
+
+    @property
+    def bearing(self) -> Bearing | None:
+        """Section [wave_generator.bearing]; None where the cam touches the flexible spline."""
+        return self.wave_generator.bearing
+
+    @property
+    def race_width(self) -> float:
+        """Width of the outer race, mm."""
+        return self.bearing.race_width or self.wave_generator.face_width
+
+    @property
+    def housing(self) -> Housing | None:
+        """Section [ring_gear.housing]; None where the frame around the ring gear is rigid."""
+        return self.ring_gear.housing
+
+    @property
+    def frame_is_rigid(self) -> bool:
+        """Whether a rigid frame surrounds the ring gear, or its housing."""
+        return self.housing is None or self.housing.outside == "held"
+
+    @property
+    def uses_pins(self) -> bool:
+        """Whether pins deflect the flexible spline; with a bearing the cam grows instead."""
+        return self.steps.pins and self.bearing is None
+
+    @property
+    def without_windows(self) -> str:
+        """What keeps windows from resolving the stress at the teeth; empty without."""
+        if self.bearing is not None:
+            return "a bearing"
+        return "" if self.dynamic_spline is None else "two ring gears"
+
+    @property
+    def resolves_root_stress(self) -> bool:
+        """Whether windows resolve the stress at the teeth."""
+        return self.output.root_stress and not self.has_program and not self.without_windows
+
+    @property
+    def resolves_wall(self) -> bool:
+        """Whether rings resolve the stress of the wall of a cup. Their columns are too wide for
+        bolts."""
+        return self.output.root_stress and self.has_cup and not self.is_bolted
+
+    @property
+    def leaves_out_far_teeth(self) -> bool:
+        """Whether teeth out of reach are left out; they have mass."""
+        return self.solver.far_teeth == "left_out" and self.frequencies is None
+
+    @property
+    def condenses_teeth(self) -> bool:
+        """Whether a tooth is one element where nothing touches it."""
+        return self.leaves_out_far_teeth and self.drive.model != "plane"
+
+    @property
+    def leaves_out_sectors(self) -> bool:
+        """Whether sectors of the ring gear out of reach are left out; an elastic housing gives way
+        all round."""
+        clamped = self.kinematics.standing_gear == "ring_gear" and self.housing is None
+        return self.leaves_out_far_teeth and clamped
+
+    def modulus_of(self, *bodies: DesignBody) -> float:
+        """Modulus of elasticity (MPa) of the softest of bodies: the scale of contacts and supports
+        between them."""
+        return min(self.materials[body].modulus for body in bodies)
+
+    def penalty(self, *bodies: DesignBody) -> float:
+        """Stiffness of the support of a body, or penalty of the flanks of two in exported jobs,
+        MPa / mm."""
+        return self.contact.penalty_coef * self.modulus_of(*bodies) / self.drive.module
+
+    @property
+    def wg_penalty(self) -> float:
+        """Penalty of the contact of cam and pins, MPa / mm."""
+        return self.contact.wg_penalty_coef * self.modulus_of("flexible_spline") / self.drive.module
+
+    @property
+    def materials(self) -> dict[str, Material]:
+        """Materials of the gears, of the housing and of the bearing by name: that of their own
+        section, else [material]."""
+        sections: dict[str, Gear | Housing | Bearing | None] = {
+            "housing": self.housing,
+            "bearing": self.bearing,
+        }
+        sections |= {gear: getattr(self, gear) for gear in self.gears}
+        return {
+            body: section.material or self.material
+            for body, section in sections.items()
+            if section is not None
+        }
+
+    def teeth(self, gear: GearName) -> Teeth:
+        """Number and sizes of the teeth of a gear."""
+        return self.drive.teeth(gear, getattr(self, gear))
