@@ -44,6 +44,11 @@ class AnswerKind:
     remark: str = ""
     limit: str = ""
 
+    def of(self, word: str, part: str) -> AnswerKind:
+        """The kind for one of the parts for which an upper-case word stands."""
+        name, text = (one.replace(word, part) for one in (self.name, self.text))
+        return replace(self, name=name, text=text)
+
 
 @dataclass(frozen=True)
 class Answer:

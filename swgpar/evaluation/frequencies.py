@@ -7,7 +7,7 @@ rotation of bodies and damping are left out (docs/theory/frequencies.md).
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from mpi4py import MPI
@@ -24,7 +24,7 @@ from swgpar.answers.answer import (
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.losses import mass_matrices
 from swgpar.fem.body import FLEXIBLE_SPLINE, Body
-from swgpar.fem.vectors import create_vector
+from swgpar.fem.vectors import create_vector, sum_at_owners
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
 from swgpar.petsc import PETSc
@@ -86,14 +86,7 @@ class NaturalFrequencies(AnswerGroup):
     def kinds_of(cls, number: int) -> tuple[AnswerKind, ...]:
         """The kinds of so many frequencies."""
         (kind,) = declared_answers(cls)
-        return tuple(
-            replace(
-                kind,
-                name=kind.name.replace("NUMBER", str(k)),
-                text=kind.text.replace("NUMBER", str(k)),
-            )
-            for k in range(1, number + 1)
-        )
+        return tuple(kind.of("NUMBER", str(k)) for k in range(1, number + 1))
 
     def answers(self) -> Iterator[Answer]:
         for kind, mode in zip(self.kinds_of(len(self.modes)), self.modes, strict=True):
@@ -126,12 +119,8 @@ class LumpedMass:
             local = body.local[body.owned]
             of_sector = np.broadcast_to(sector_masses(body.layout.body), local.shape)
             np.add.at(masses, local[local >= 0], of_sector[local >= 0])
-            vector = create_vector(partition)
             values = np.repeat(masses[:, None], 3, axis=1)
-            vector.setValuesBlocked(
-                problem.elements.local.number, values, addv=PETSc.InsertMode.ADD_VALUES
-            )
-            vector.assemble()
+            vector = sum_at_owners(partition, problem.elements.local.number, values)
             self.bodies[name] = vector
             self.total.axpy(1.0, vector)
 

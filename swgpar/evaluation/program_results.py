@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -82,7 +81,7 @@ class ProgramStages(AnswerGroup):
         *(
             AnswerKind(
                 f"program.STAGE.{name}",
-                f"{name} at the end of the stage STAGE",
+                f"{name} at the end of STAGE",
                 unit,
                 exact=name == "wg_angle_deg",
             )
@@ -101,15 +100,7 @@ class ProgramStages(AnswerGroup):
     @classmethod
     def kinds_of(cls, stages: Iterable[str]) -> tuple[AnswerKind, ...]:
         """The kinds for stages with these names."""
-        return tuple(
-            replace(
-                kind,
-                name=kind.name.replace("STAGE", stage),
-                text=kind.text.replace("the stage STAGE", stage),
-            )
-            for stage in stages
-            for kind in declared_answers(cls)
-        )
+        return tuple(kind.of("STAGE", one) for one in stages for kind in declared_answers(cls))
 
     def answers(self) -> Iterator[Answer]:
         for stage, values in self.stages.items():

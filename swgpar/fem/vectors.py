@@ -16,6 +16,15 @@ def create_vector(partition: Partition) -> PETSc.Vec:
     )
 
 
+def sum_at_owners(partition: Partition, number: np.ndarray, values: np.ndarray) -> PETSc.Vec:
+    """Vector of the sums over all ranks of values (n, 3) at the nodes with these global numbers
+    (n,); collective."""
+    vector = create_vector(partition)
+    vector.setValuesBlocked(number, values, addv=PETSc.InsertMode.ADD_VALUES)
+    vector.assemble()
+    return vector
+
+
 class Exchange:
     """Values of distributed vectors at the nodes with the given global numbers, (n,) int32.
 

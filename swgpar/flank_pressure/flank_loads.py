@@ -9,7 +9,7 @@ import numpy as np
 
 from swgpar.contact.flanks import FlankContact
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.fem.vectors import create_vector, read_field
+from swgpar.fem.vectors import read_field, sum_at_owners
 from swgpar.load.load_states import LoadState
 from swgpar.meshing.sector import FlankGrid, SectorMesh
 from swgpar.model.drive_model import DriveModel
@@ -69,10 +69,7 @@ def nodal_flank_forces(
     problem = model.problem
     local = np.zeros((len(problem.local_nodes), 3))
     flanks.add_owned_forces(problem.displacement(), state, local, friction=friction)
-    total = create_vector(model.partition)
-    total.setValuesBlocked(problem.local_nodes.number, -local, addv=PETSc.InsertMode.ADD_VALUES)
-    total.assemble()
-    return total
+    return sum_at_owners(model.partition, problem.local_nodes.number, -local)
 
 
 def flank_forces(

@@ -6,9 +6,8 @@ import numpy as np
 
 from swgpar.contact.contact import FacePressure
 from swgpar.fem.elements import BodyElements
-from swgpar.fem.vectors import create_vector
+from swgpar.fem.vectors import sum_at_owners
 from swgpar.load.load_states import LoadState
-from swgpar.petsc import PETSc
 from swgpar.solve.discrete_problem import DiscreteProblem
 
 
@@ -24,9 +23,7 @@ def nodal_pressure(problem: DiscreteProblem, state: LoadState, body: BodyElement
         faces = contact.owned_pressure() if contact.is_active(state) else None
         if faces is not None:
             _add_nodal(faces, sums)
-    total = create_vector(problem.partition)
-    total.setValuesBlocked(problem.local_nodes.number, sums, addv=PETSc.InsertMode.ADD_VALUES)
-    total.assemble()
+    total = sum_at_owners(problem.partition, problem.local_nodes.number, sums)
     force, area, _ = problem.exchange(total).T
     total.destroy()
     mean = np.divide(force, area, out=np.zeros(n), where=area > 0.0)
