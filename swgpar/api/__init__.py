@@ -1,0 +1,22 @@
+"""The Python interface: what the command line, drivers and notebooks call. The names are those of
+`import swgpar`.
+
+Under mpirun every rank calls the same functions with the same arguments; results are the same on
+all ranks. An error of swgpar is raised on all ranks. Any other error of one rank leaves the others
+waiting: `mpirun -n 2 python -m mpi4py script.py` ends all ranks then.
+"""
+
+from swgpar.api.designs import check, mesh, new
+from swgpar.api.runs import export, load_design, load_mesh, open_result, run, save_report
+
+__all__ = [
+    "check",
+    "export",
+    "load_design",
+    "load_mesh",
+    "mesh",
+    "new",
+    "open_result",
+    "run",
+    "save_report",
+]

@@ -1,0 +1,181 @@
+"""What there is of a design without a run: a new one, derived sizes, its mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from mpi4py import MPI
+
+from swgpar.analysis.shortcuts import MESHES
+from swgpar.api.runs import DesignLike, MeshLike, load_design, load_mesh
+from swgpar.checks.starter import CamType, Model, Profile, Request, Shape, as_toml, starter_design
+from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import InputError, OutputError
+from swgpar.input.design import Design
+from swgpar.input.toml_file import Overrides
+from swgpar.meshing import MeshRecipe, build_sector_meshes
+from swgpar.results.atomic import agreed, on_all, write_from_root
+from swgpar.results.folder import given_folder
+from swgpar.systems import system_of_section
+
+if TYPE_CHECKING:
+    from swgpar.meshing.drive_mesh import DriveMesh
+
+
+def new(
+    out: str | Path | None = None,
+    *,
+    ratio: float,
+    torque: float,
+    diameter: float | None = None,
+    bore: float | None = None,
+    profile: Profile = "quadruple_arc",
+    cam: CamType | None = None,
+    layout: Literal["ring_fixed", "spline_fixed"] = "ring_fixed",
+    model: Model = "cup",
+    shape: Shape = "cup",
+    lobes: Literal[2, 3] = 2,
+    overwrite: bool = False,
+) -> DriveDesign:
+    """A checked design to start from; collective when it is written.
+
+    Parameters
+    ----------
+    out : path
+        Design file to write, with the meaning of every key.
+    ratio : float
+        Speed of the wave generator over that of the output, without its sign; a multiple of 0.5,
+        with three lobes a whole number.
+    torque : float, N·m
+        On the output.
+    diameter, bore : float, mm
+        Pitch diameter or inner diameter of the flexible spline; one of both.
+    profile : "quadruple_arc", "double_arc" or "involute"
+    cam : "elliptical", "parabolic", "simplified", "four_roller" or "harmonic"
+        Without it the ellipse, and with three lobes the harmonic cam.
+    layout : "ring_fixed" or "spline_fixed"
+    model : "cup", "plane" or "pancake", as in the section [drive]
+    shape : "cup", "short" (a cup of half the length) or "hat" (silk hat, with a flange outwards)
+    lobes : 2 or 3, of the cam
+    overwrite : bool
+        Replace a file that exists.
+
+    Raises
+    ------
+    InputError
+        A number that is out of range.
+    OutputError
+        The file exists, or cannot be written.
+
+    Examples
+    --------
+    >>> design = swgpar.new(ratio=100, diameter=50.8, torque=52.0)
+    >>> design.drive.teeth_fs, design.drive.module
+    (200, 0.254)
+    """
+    cam = cam or ("elliptical" if lobes == 2 else "harmonic")
+    request = Request(ratio, torque, diameter, bore, profile, cam, layout, model, shape, lobes)
+    design, table = starter_design(request)
+    build_sector_meshes(design.geometry, load_mesh(MESHES[model]))
+    if out is not None:
+        path, comm = Path(out), MPI.COMM_WORLD
+        with agreed(comm, path):
+            if comm.rank == 0 and path.exists() and not overwrite:
+                raise OutputError(
+                    f"{path} exists: replace it with overwrite = true (--overwrite), or give "
+                    "another name"
+                )
+        write_from_root(comm, path, as_toml(request, design, table, path.name).encode())
+    return design
+
+
+def mesh(
+    design: DesignLike,
+    mesh: MeshLike,
+    out: str | Path | None = None,
+    formats: Sequence[str] = ("vtu",),
+    comm: MPI.Comm = MPI.COMM_WORLD,
+) -> DriveMesh:
+    """The mesh of a whole drive; collective when it is written.
+
+    Parameters
+    ----------
+    design : design, path or mapping
+    mesh : recipe, name, path or mapping
+    out : path
+        Folder into which rank 0 writes the mesh.
+    formats : sequence of str
+        Files to write: "vtu" (ParaView), "msh" (Gmsh), "inp" (Abaqus, CalculiX).
+
+    Raises
+    ------
+    InputError
+        The design is not that of a drive, or the recipe turns an element inside out.
+    OutputError
+        The folder cannot be written.
+
+    Examples
+    --------
+    >>> swgpar.mesh("drivers/cup_45deg.toml", "coarse").quality["ring_gear"]["min_scaled_jacobian"]
+    """
+
+    from swgpar.meshing.drive_mesh import DriveMesh  # with what writes files of meshes
+
+    def make() -> DriveMesh:
+        drive = _drive(load_design(design))
+        sectors = build_sector_meshes(drive.geometry, load_mesh(mesh))
+        return DriveMesh(sectors, drive.materials, drive.drive.face_width)
+
+    if out is None:
+        return make()
+    folder = given_folder(out)
+    whole = on_all(comm, make)
+    on_all(comm, lambda: whole.write(folder, formats) if comm.rank == 0 else None)
+    return whole
+
+
+def check(
+    design: DesignLike, overrides: Overrides = (), mesh: MeshLike | None = None
+) -> dict[str, float]:
+    """Derived geometry of a design, without a run; with a mesh also what a run on it will need.
+
+    Returns
+    -------
+    dict of float
+        Values by name; the names have units. With a mesh: elements, unknowns, memory and time.
+
+    Raises
+    ------
+    InputError
+        As `load_design` and `load_mesh`, or the mesh does not fit into the memory of this machine.
+
+    Examples
+    --------
+    >>> swgpar.check("drivers/cup_45deg.toml")["ratio (wave generator / output)"]
+    -60.0
+    """
+    checked = load_design(design, overrides)
+    values = system_of_section(checked.system).check(checked)
+    return values if mesh is None else values | _needs(_drive(checked), load_mesh(mesh))
+
+
+def _needs(design: DriveDesign, recipe: MeshRecipe) -> dict[str, float]:
+    from swgpar.analysis.forecast import forecast, require_memory
+
+    needs = forecast(design, recipe)
+    require_memory(needs, design.solver.memory_limit)
+    build_sector_meshes(design.geometry, recipe)  # or the reason why the recipe gives no mesh
+    return {
+        "elements of the drive": needs.elements,
+        "unknowns modelled": needs.unknowns,
+        "memory of all ranks, about (GB)": needs.memory,
+        "time of a run on 2 cores, about (s)": needs.seconds,
+    }
+
+
+def _drive(design: Design) -> DriveDesign:
+    if not isinstance(design, DriveDesign):
+        raise InputError(f"{system_of_section(design.system).noun} has no mesh: allowed are drives")
+    return design
