@@ -1,4 +1,4 @@
-"""Errors by the mesh of the drive of what the contacts of its flanks give, in the plane.
+"""Errors by the mesh of the drive of what the contacts of its flanks give.
 
 The loaded drive is solved on coarser meshes for the error of the tension at the teeth. The contacts
 there show the errors by the same groups of counts (`swgpar.analysis.drive_mesh_error`). They are
@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from swgpar.analysis.drive_mesh_error import CoarserMesh, shown_error
+from swgpar.analysis.drive_mesh_error import SAFETY, CoarserMesh, shown_error
 from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares
 from swgpar.flank_pressure.pair_contact import PairContact
 from swgpar.meshing import MeshRecipe
@@ -20,9 +20,14 @@ LEAST_PRESSURE = 0.02
 """Least error of a pressure, as a share of it. No coarser mesh has fewer than six elements along a
 flank, which change it by 0.3 to 0.8 %; those across the tooth change it by up to 1.7 %."""
 
-LEAST_FORCE = 0.015
+PRESSURE_SAFETY = {"plane": 1.0, "cup": 1.0 / SAFETY}
+"""Share of the error that meshes show which pressures have. In a cup drive all counts along the
+flanks and the face width are coarser, so that the change needs no factor for those that are not."""
+
+LEAST_FORCE = {"plane": 0.015, "cup": 0.08}
 """Least error of a force, as a share of it: elements along the flank, across the tooth and in the
-ring gear, of which no coarser mesh has fewer, change it by up to 1.5 %
+ring gear, of which no coarser mesh has fewer, change it by up to 1.5 % in the plane. In a cup drive
+the forces of some ten pairs move with the layers along the face width, by 1 to 9 %
 (docs/verification/effectivity.md)."""
 
 ALONE = 0.99
@@ -40,24 +45,26 @@ def contact_errors(
     lobes: int,
 ) -> ContactErrorShares:
     """Errors on the mesh of `recipe`, on which the loaded drive has these contacts; none of them is
-    known without coarser meshes, or in a cup drive, whose pressures have errors that no mesh
-    shows."""
-    if not coarser or not contacts or recipe.face_width is not None:
+    known without coarser meshes."""
+    if not coarser or not contacts:
         return UNKNOWN
+    model = "plane" if recipe.face_width is None else "cup"
     alone = any(lobes * pair.force_share > ALONE for pair in contacts)
     meshes = [*((one.recipe, one.contacts) for one in coarser), (recipe, contacts)]
 
-    def error(measure: Measure, least: float) -> float | None:
+    def of_pressure(measure: Measure) -> float | None:
         share = _error_share(meshes, measure)
-        return None if share is None else max(share, least)
+        return None if share is None else max(PRESSURE_SAFETY[model] * share, LEAST_PRESSURE)
+
+    def of_force(measure: Measure) -> float | None:
+        share = None if alone else _error_share(meshes, measure)
+        return None if share is None else max(share, LEAST_FORCE[model])
 
     return ContactErrorShares(
-        pressure=error(lambda pair: pair.pressure_MPa, LEAST_PRESSURE),
-        pressure_off_edges=error(
-            lambda pair: np.nan if pair.edge else pair.pressure_MPa, LEAST_PRESSURE
-        ),
-        force=None if alone else error(lambda pair: pair.force_N, LEAST_FORCE),
-        force_share=None if alone else error(lambda pair: pair.force_share, LEAST_FORCE),
+        pressure=of_pressure(lambda pair: pair.pressure_MPa),
+        pressure_off_edges=of_pressure(lambda pair: np.nan if pair.edge else pair.pressure_MPa),
+        force=of_force(lambda pair: pair.force_N),
+        force_share=of_force(lambda pair: pair.force_share),
     )
 
 

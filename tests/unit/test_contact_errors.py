@@ -15,6 +15,7 @@ from swgpar.analysis.drive_mesh_error import (
     CoarserMesh,
     coarser_recipes,
     shown_error,
+    smallest_ratio,
 )
 from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares, error_of_largest
 from swgpar.evaluation.period_ranges import MISSED
@@ -55,7 +56,7 @@ def test_changes_of_both_groups_are_added() -> None:
     found = errors([pair(1, 500.0, force=90.0)], [pair(1, 530.0)], [pair(1, 520.0)])
     assert found.pressure == pytest.approx(FACTOR * (30.0 + 10.0) / 520.0)
     assert found.force == pytest.approx(FACTOR * 10.0 / 100.0)
-    assert found.force_share == LEAST_FORCE  # no change at all is chance
+    assert found.force_share == LEAST_FORCE["plane"]  # no change at all is chance
 
 
 def test_the_pair_with_the_largest_value_is_compared_as_well() -> None:
@@ -78,11 +79,19 @@ def test_pairs_on_edges_do_not_count_among_those_off_edges() -> None:
     assert found.pressure_off_edges is None and found.pressure == LEAST_PRESSURE
 
 
-def test_without_coarser_meshes_or_in_space_nothing_is_known() -> None:
-    assert contact_errors([], FINE, [pair(1, 600.0)], 2) == UNKNOWN
+def test_in_space_one_mesh_with_fewer_elements_in_all_directions_shows_the_errors() -> None:
     cup = load_recipe("forces")
-    coarser = [CoarserMesh(one, {}, [pair(1, 580.0)]) for one in coarser_recipes(cup)]
-    assert coarser and contact_errors(coarser, cup, [pair(1, 600.0)], 2) == UNKNOWN
+    (coarse,) = coarser_recipes(cup)
+    ratio = smallest_ratio(coarse, cup)
+    found = contact_errors([CoarserMesh(coarse, {}, [pair(1, 500.0)])], cup, [pair(1, 600.0)], 2)
+    assert found.pressure == pytest.approx(100.0 / 600.0 / (ratio**2 - 1.0))
+    assert found.force == LEAST_FORCE["cup"]
+    same = contact_errors([CoarserMesh(coarse, {}, [pair(1, 600.0)])], cup, [pair(1, 600.0)], 2)
+    assert same.pressure == LEAST_PRESSURE
+
+
+def test_without_coarser_meshes_nothing_is_known() -> None:
+    assert contact_errors([], FINE, [pair(1, 600.0)], 2) == UNKNOWN
     # a pressure that could not be computed
     unknown = [pair(1, math.nan)]
     assert errors(unknown, unknown, unknown).pressure is None
