@@ -79,11 +79,7 @@ def _error_share(
     by_pair = [
         (
             recipe,
-            {
-                (pair.ring, pair.tooth, pair.flank): value
-                for pair in pairs
-                if np.isfinite(value := measure(pair))
-            },
+            {pair.key: value for pair in pairs if np.isfinite(value := measure(pair))},
         )
         for recipe, pairs in meshes
     ]

@@ -185,8 +185,8 @@ def region(name: str, value: float) -> RegionStress:
     return RegionStress((value,), (value,), 1.0, place)
 
 
-def pair(edge: int) -> PairContact:
-    return PairContact(0, "clockwise", 0, 0.0, 10.0, 1.0, 0.0, edge=edge)
+def pair(edge: int, force: float = 10.0, tooth: int = 0) -> PairContact:
+    return PairContact(tooth, "clockwise", tooth, 0.0, force, 1.0, 0.0, edge=edge)
 
 
 @pytest.mark.parametrize(("model", "mesh"), [("plane", "plane_coarse"), ("cup", "forces")])
@@ -200,7 +200,7 @@ def test_small_stresses_are_as_uncertain_as_the_largest_one_of_their_body(
     # what lies under a contact has no limit and is no measure
     regions |= {"fs_s1 in flank under contact": region("fs_s1 in flank under contact", 900.0)}
     fine = load_recipe(mesh)
-    meshes = [CoarserMesh(coarsened(fine), {}, regions=regions)]
+    meshes = [CoarserMesh(coarsened(fine), {}, [pair(0)], regions)]
     found = region_errors(meshes, fine, rooted(regions), 0.004, [pair(0)])
     assert found["rg_s1 in rim"].drive_error == pytest.approx(LEAST_IN_RING[model] * 50.0)
     root = 0.004 if model == "plane" else LEAST_IN_RING[model]
@@ -216,3 +216,15 @@ def test_a_contact_on_an_edge_leaves_no_estimate_in_the_tips() -> None:
     found = region_errors(meshes, fine, rooted(regions), 0.02, [pair(0), pair(1)])
     without = {name for name, one in found.items() if one.resolved.error is None}
     assert without == {"rg_vm in tip", "fs_vm in tip"}
+
+
+def test_the_ring_gear_is_as_uncertain_as_the_forces_of_its_pairs() -> None:
+    regions = {"rg_s1 in tooth root": region("rg_s1 in tooth root", 50.0)}
+    fine = load_recipe("plane_fine")
+    coarse = coarsened(fine)
+    # the third pair carries too little
+    before = [pair(0, 9.0), pair(0, 4.0, 1), pair(0, 0.1, 2)]
+    meshes = [CoarserMesh(coarse, {}, before, regions)]
+    after = [pair(0, 10.0), pair(0, 5.0, 1), pair(0, 0.9, 2)]
+    found = region_errors(meshes, fine, rooted(regions), 0.004, after)["rg_s1 in tooth root"]
+    assert found.drive_error == pytest.approx(50.0 * SAFETY * 0.2 / (1.5**2 - 1.0))
