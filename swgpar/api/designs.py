@@ -10,7 +10,8 @@ from mpi4py import MPI
 
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.api.runs import DesignLike, MeshLike, load_design, load_mesh
-from swgpar.checks.starter import CamType, Model, Profile, Request, Shape, as_toml, starter_design
+from swgpar.checks.starter import CamType, Model, Profile, Request, Shape, starter_design
+from swgpar.checks.starter_file import as_toml
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
 from swgpar.input.design import Design

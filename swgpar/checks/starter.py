@@ -23,9 +23,9 @@ from swgpar.geometry.bracketed_root import root_between
 from swgpar.geometry.cams import make_cam, taut_length
 from swgpar.geometry.cams.keys import Harmonic, Parabolic, Simplified
 from swgpar.geometry.profiles.keys import DoubleArc, ProfileKeys, QuadrupleArc, RackInvolute
-from swgpar.input.quantities import Section, show
+from swgpar.input.quantities import show
 from swgpar.input.require import require, require_available
-from swgpar.input.toml_file import toml_value, with_value
+from swgpar.input.toml_file import with_value
 
 Profile = Literal["quadruple_arc", "double_arc", "involute"]
 """Kinds of profiles of a starter design."""
@@ -358,47 +358,3 @@ def _cam_keys(cam: CamType, table: dict[str, Any]) -> dict[str, float]:
         lambda a_p: Parabolic(a_p=a_p, C_p=C_p, r_c=r_c, face_width=1.0), ellipse, 1.08 * ellipse
     )
     return {"C": 1.0, "a_p": _rounded(a_p, 5), "C_p": C_p, "r_c": r_c}
-
-
-def as_toml(request: Request, design: DriveDesign, table: dict[str, Any], name: str) -> str:
-    """The design file with the meaning of every key.
-
-    design, table : of `starter_design`;  name : of the file, for the commands in its head
-    """
-    size = (
-        f"bore {request.bore:g} mm"
-        if request.diameter is None
-        else f"pitch diameter {request.diameter:g} mm"
-    )
-    drive = design.drive
-    lines = [
-        f"# Strain wave gear: ratio {request.ratio:g}, {size}, torque {request.torque:g} N·m.",
-        "# These are given, with the kinds of profile and cam. All other values are assumptions to "
-        "start from: sizes",
-        f"# of the blank are shares of the pitch diameter, {drive.module * drive.teeth_fs:.5g} mm, "
-        "those of the teeth multiples of the module.",
-        f"#   swgpar check {name}",
-        f"#   mpirun -n 2 swgpar run {name} --out results/{name.removesuffix('.toml')}",
-    ]
-    for section, content in table.items():
-        lines += _section(section, getattr(design, section), content)
-    return "\n".join(lines) + "\n"
-
-
-def _section(title: str, section: Section, content: dict[str, Any]) -> list[str]:
-    """Lines of a section: its plain keys with the texts of their fields, then the sections in
-    it."""
-    tables = {key: value for key, value in content.items() if isinstance(value, dict)}
-    entries = {
-        key: f"{key} = {toml_value(value)}" for key, value in content.items() if key not in tables
-    }
-    width = max(map(len, entries.values()))
-    fields = type(section).model_fields
-    lines = [
-        "",
-        f"[{title}]",
-        *(f"{entry:{width}s}  # {fields[key].description}" for key, entry in entries.items()),
-    ]
-    for key, value in tables.items():
-        lines += _section(f"{title}.{key}", getattr(section, key), value)
-    return lines

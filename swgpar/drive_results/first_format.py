@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from swgpar.evaluation.fatigue import CRITERIA, Life
 from swgpar.evaluation.largest_contact import largest_contact
 from swgpar.evaluation.numerics import evaluate_numerics
 from swgpar.evaluation.rotation import Rotation
+from swgpar.evaluation.safety_and_life import CRITERIA, Life
 from swgpar.evaluation.step_values import step_values
 from swgpar.results.history import Row
 from swgpar.results.table import as_rows

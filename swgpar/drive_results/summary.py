@@ -9,7 +9,6 @@ from swgpar.answers.answer import Answer, AnswerGroup, AnswerKind
 from swgpar.answers.table import AnswerTable
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.bearing_loads import BallLoads
-from swgpar.evaluation.fatigue import SafetyAndLife
 from swgpar.evaluation.frequencies import NaturalFrequencies
 from swgpar.evaluation.housing_values import HousingStresses
 from swgpar.evaluation.largest_contact import LargestContact
@@ -20,6 +19,7 @@ from swgpar.evaluation.program_results import ProgramStages
 from swgpar.evaluation.ratcheting import RatchetingTorque
 from swgpar.evaluation.rigid_clearance import RigidClearance
 from swgpar.evaluation.rotation import Rotation
+from swgpar.evaluation.safety_and_life import SafetyAndLife
 from swgpar.evaluation.slip_error import SlipError
 from swgpar.evaluation.step_values import StepValues
 from swgpar.evaluation.stiffness import TorsionalStiffness

@@ -15,7 +15,8 @@ from support.small_drive import PLANE
 from support.stepping import WORLD, load_stepper, small
 from swgpar.analysis.deviating_drive import DeviatingDrive, TurnPoint
 from swgpar.errors import InputError
-from swgpar.evaluation.fatigue import SafetyAndLife, evaluate_fatigue
+from swgpar.evaluation.fatigue import evaluate_fatigue
+from swgpar.evaluation.safety_and_life import SafetyAndLife
 from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.load.load_sequence import load_sequence

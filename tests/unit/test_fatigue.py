@@ -12,7 +12,7 @@ from swgpar.answers.answer import declared_answers
 from swgpar.checks.design_file import load_design
 from swgpar.design.sections import Fatigue
 from swgpar.errors import InputError
-from swgpar.evaluation.fatigue import SafetyAndLife, _life
+from swgpar.evaluation.fatigue import _life
 from swgpar.evaluation.fatigue_criteria import (
     critical_plane,
     crossland,
@@ -22,6 +22,7 @@ from swgpar.evaluation.fatigue_criteria import (
     smallest_ball,
 )
 from swgpar.evaluation.losses import DriveLosses
+from swgpar.evaluation.safety_and_life import SafetyAndLife
 from swgpar.fem.stress import rotated_tensor
 from swgpar.systems.drive import DRIVE
 

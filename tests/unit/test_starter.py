@@ -17,9 +17,9 @@ from swgpar.checks.starter import (
     CamType,
     Profile,
     Request,
-    as_toml,
     starter_design,
 )
+from swgpar.checks.starter_file import as_toml
 from swgpar.cli import main, parser
 from swgpar.errors import InputError, OutputError
 from swgpar.geometry.cams import taut_length
