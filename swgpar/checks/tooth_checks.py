@@ -72,13 +72,20 @@ def _room(design: DriveDesign, gear: GearName, faced: GearName) -> float:
 
 
 def tooth_remarks(design: DriveDesign) -> list[str]:
-    """Sentences about tips that touch a root, and about a thin rim."""
+    """Sentences about tips that touch a root, swept areas as flanks, and a thin rim."""
     sentences = []
     for gear, faced in _faced(design):
         if _room(design, gear, faced) <= ROUND_OFF * design.drive.module:
             sentences.append(
                 f"the tips of {gear} touch the root circle of {faced} at the major axis: contact "
                 f"there is not computed; a larger dedendum_coef of {faced} leaves room"
+            )
+    for gear in design.gears:
+        if any(segment.name == "swept" for segment in design.profile(gear).segments):
+            other = "ring_gear" if gear == "flexible_spline" else "flexible_spline"
+            sentences.append(
+                f"{gear}.profile is the boundary of the area that the teeth of {other} sweep: "
+                "the envelope of their flanks is undercut or not all that touches"
             )
     rim, teeth = design.flexible_spline.rim, design.teeth("flexible_spline")
     height = teeth.addendum + teeth.dedendum

@@ -7,7 +7,7 @@ import numpy as np
 from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.drive_sections import DriveSections
 from swgpar.design.negligible_torque import negligible_torque
-from swgpar.design.sections import GEARS, OMITTED_BENDING, ExternalGear, GearName, InternalGear
+from swgpar.design.sections import OMITTED_BENDING, ExternalGear, GearName, InternalGear
 from swgpar.geometry.bearing import BearingSizes
 from swgpar.geometry.cams import Cam, make_cam
 from swgpar.geometry.cams.semi_axes import minor_semi_axis, radial_deflection
@@ -170,8 +170,12 @@ class DriveDesign(DriveSections):
         if isinstance(section.profile, SShaped):
             path = self.rack_path()
         if isinstance(section.profile, Conjugate):
-            other = self.profile(GEARS[1 - GEARS.index(gear)], relief=False)
-            partner = other, self.tooth_motion(section.profile.section)
+            # the flexible spline's is that to the ring gear
+            ring: GearName = "ring_gear" if gear == "flexible_spline" else gear
+            other = self.profile(
+                ring if gear == "flexible_spline" else "flexible_spline", relief=False
+            )
+            partner = other, self.tooth_motion(section.profile.section, ring)
         keys = section.profile, self.teeth(gear), section.c_P, section.c_l
         flank, height = make_profile(*keys, gear, partner, path), section.tip_relief_height
         amount = section.tip_relief if relief else 0.0

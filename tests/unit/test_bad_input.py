@@ -140,7 +140,7 @@ PANCAKE = [
     (("dynamic_spline.rim=200",), "dynamic_spline.rim = 200", "0.01 to 100 mm"),
     (("dynamic_spline.profile.r_tip=9",), "dynamic_spline.profile.r_tip = 9", "smaller"),
     (
-        ("dynamic_spline.profile={type='conjugate',r_root=0.3}",),
+        ("dynamic_spline.profile={type='s_shaped',r_root=0.3}",),
         "dynamic_spline.profile.type",
         "the other profiles",
     ),

@@ -162,7 +162,8 @@ def _build(
     else:
         profile = involute(_cutter(keys, teeth, c_P), name)
     try:
-        check_flank(profile, from_points=isinstance(keys, Points))
+        swept = any(segment.name == "swept" for segment in profile.segments)
+        check_flank(profile, corners=swept or isinstance(keys, Points))
     except InputError as error:
         given = [f"{key} = {show(value)}" for key, value in keys if isinstance(value, float)]
         values = f" with {', '.join(given)}" if given else ""

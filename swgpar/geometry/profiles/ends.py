@@ -96,15 +96,17 @@ class _Ends:
         return self.sign * (abs(point + offset * normal) - radius)
 
     def passing(self, offset: float, radius: float) -> float | None:
-        """First arc length, mm, at which that point is on the circle; None where it never is."""
+        """First arc length, mm, at which that point passes the circle towards the root; None where
+        it never does."""
         s = np.unique(np.append(np.linspace(0.0, self.curve.length, SAMPLES), self.curve.breaks))
         places = self.curve.point(s) + offset * self.curve.normal(s)
-        below = np.flatnonzero(self.sign * (np.hypot(*places.T) - radius) <= 0.0)
-        if not below.size:
-            return None
-        if below[0] == 0:
+        above = self.sign * (np.hypot(*places.T) - radius)
+        if abs(above[0]) < SAME * self.module:
             return 0.0
-        low, high = s[below[0] - 1], s[below[0]]
+        passed = np.flatnonzero((above[:-1] > 0.0) & (above[1:] <= 0.0))
+        if not passed.size:
+            return None
+        low, high = s[passed[0]], s[passed[0] + 1]
         return root_between(lambda s: self.above(s, offset, radius), low, high, xtol=1e-14)
 
     def arc(self, name: str, radius: float, centre: complex, normals: Sequence[complex]) -> Segment:
@@ -127,15 +129,14 @@ class _Ends:
     def tip(self, radius: float) -> tuple[float, list[FlankSegment]]:
         """Where the curve begins, mm, and the arc before it."""
         circle = self.curve.r_tip_circle
-        if self.above(0.0, 0.0, circle) < -SAME * self.module:
+        if radius == 0.0 and self.above(0.0, 0.0, circle) < -SAME * self.module:
             reached = abs(self.at(0.0)[0])
             raise InputError(
                 f"{self.name}: the flank ends at a radius of {reached:.6g} mm, the addendum circle "
                 f"has {circle:.6g} mm: allowed are smaller addenda"
             )
-        target = circle - self.sign * radius
-        begin = self.passing(-radius, target)
-        if begin is None or (radius and self.above(0.0, -radius, target) < 0.0):
+        begin = self.passing(-radius, circle - self.sign * radius)
+        if begin is None:
             raise InputError(
                 f"{self.name}.r_tip = {radius:g} is out of range: allowed are smaller radii, whose "
                 "arc touches the flank and the addendum circle"
@@ -150,6 +151,8 @@ class _Ends:
     def root(self, radius: float) -> tuple[float, list[FlankSegment]]:
         """Where the curve ends, mm, and what leads from there to the dedendum circle."""
         reach = self.curve.r_root_circle + self.sign * radius
+        if self.above(0.0, radius, reach) <= 0.0:
+            self.refuse_root(radius)
         end = self.passing(radius, reach)
         point, normal = self.at(self.curve.length if end is None else end)
         line, centre, parts = normal / (1j * self.sign), point + radius * normal, []
@@ -163,8 +166,6 @@ class _Ends:
             start, direction = (point.real, point.imag), float(np.angle(line))
             parts = [Segment("tangent", start, direction, 0.0, length)]
             centre += length * line
-        elif end == 0.0:
-            self.refuse_root(radius)
         along = self.sign * centre / abs(centre)
         return end, [*parts, self.arc("root", radius, centre, (normal, along))]
 

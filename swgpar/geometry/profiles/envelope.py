@@ -20,7 +20,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from swgpar.geometry.arrays import Floats
+from swgpar.geometry.arrays import Complex, Floats
 from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints
 from swgpar.geometry.profiles.flank import FlankSegment, Segment, ToothProfile
 from swgpar.geometry.profiles.tooth_motion import Pose, ToothMotion
@@ -43,21 +43,37 @@ lobes."""
 class Contacts:
     """Points of the given flank, s, at angles psi of the motion.
 
-    psi, psi_rate : (n,) rad and its derivative by s where they touch
-    point : (n,) complex, mm;  angle, angle_rate : (n,) rad, of the tangent from tip to root, and
-    its derivative by s
-    speed : (n,) arc length of the envelope by that of the given flank
-    value, slope : (n,) mm, velocity across the flank, 0 where they touch, and its derivative by psi
+    psi : (n,) rad
+    point : (n,) complex, mm, in the frame of the envelope's tooth
+    angle : (n,) rad, of the tangent from tip to root of that tooth
+    along, value : (n,) mm, velocity along the flank and across it, 0 where they touch
+    slope, bend : (n,) mm and 1, derivatives of the value by psi and by s
+    turning : (n,) mm, change of the angle where they touch: by s times the slope
     """
 
     psi: Floats
-    psi_rate: Floats
-    point: np.ndarray
+    point: Complex
     angle: Floats
-    angle_rate: Floats
-    speed: Floats
+    along: Floats
     value: Floats
     slope: Floats
+    bend: Floats
+    turning: Floats
+
+    @property
+    def psi_rate(self) -> Floats:
+        """Change (n,) of psi by s, rad/mm, where they touch."""
+        return -self.bend / np.where(self.slope == 0.0, np.nan, self.slope)
+
+    @property
+    def angle_rate(self) -> Floats:
+        """Change (n,) of the angle by s, rad/mm."""
+        return self.turning / self.slope
+
+    @property
+    def speed(self) -> Floats:
+        """Arc length (n,) of the envelope by that of the given flank."""
+        return 1.0 + self.along * self.psi_rate
 
 
 @dataclass(frozen=True)
@@ -96,23 +112,33 @@ class Envelope:
         value = (np.conj(1j * tangent) * v).real
         change = back * (pose.c2 - 1j * pose.angle1 * pose.c1) + 1j * pose.angle2 * z
         slope = (np.conj(1j * tangent) * change).real
-        rate = -(pose.angle1 - kappa * along) / np.where(slope == 0.0, np.nan, slope)
-        point, angle, angle_rate = pose.moved(z), phi + pose.angle, kappa + pose.angle1 * rate
+        bend = pose.angle1 - kappa * along
+        turning = kappa * slope - pose.angle1 * bend
+        angle = phi + pose.angle + np.pi
         if self.given.external:
-            # run through backwards and mirrored: the angle -> pi - (angle + half pitch) + pi
-            point, angle, angle_rate = self.motion.mirrored(point), -angle - half_pitch, -angle_rate
-        else:
-            angle = angle + np.pi
-        return Contacts(
-            psi,
-            rate,
-            point * np.exp(1j * self.turn),
-            angle + self.turn,
-            angle_rate,
-            1.0 + along * rate,
-            value,
-            slope,
-        )
+            # mirrored, and run through backwards
+            angle, turning = -(phi + pose.angle) - half_pitch, -turning
+        point = self._placed(pose.moved(z))
+        return Contacts(psi, point, angle + self.turn, along, value, slope, bend, turning)
+
+    def _placed(self, points: Complex) -> Complex:
+        """Points (n,) x + i y, mm, of the slot, in the frame of the envelope's tooth."""
+        placed = self.motion.mirrored(points) if self.given.external else points
+        return placed * np.exp(1j * self.turn)
+
+    def path(self, s: Floats, pose: Pose) -> tuple[Complex, Complex, Complex]:
+        """Points x + i y (n,), mm, at the arc lengths s (n,) mm of the given flank, in the frame of
+        the envelope's tooth, and their first two derivatives by psi.
+
+        pose : of n positions, or of one
+        """
+        point = self.given.point(s) @ (1.0, 1j)
+        if not self.given.external:
+            point = self.motion.mirrored(point)
+        arm = np.exp(1j * pose.angle) * point
+        first = pose.c1 + 1j * pose.angle1 * arm
+        second = pose.c2 + (1j * pose.angle2 - pose.angle1**2) * arm
+        return self._placed(pose.c + arm), self._placed(first), self._placed(second)
 
     def solved(self, segment: FlankSegment, s: Floats, psi: Floats) -> Contacts:
         """Contacts at `s` : (n,) mm of a segment, by Newton's method from psi (n,) rad."""
@@ -128,8 +154,8 @@ class Envelope:
         """Segments (n,) of the given flank on which the arc lengths `s` (n,) mm lie."""
         return np.clip(np.searchsorted(self.given.breaks, s) - 1, 0, len(self.given.segments) - 1)
 
-    def _at(self, s: float, psi: float) -> Contacts:
-        """The same at one arc length of the whole given flank."""
+    def contact_at(self, s: float, psi: float) -> Contacts:
+        """Contact at one arc length, mm, of the whole given flank, near the angle psi, rad."""
         index = int(self._segment_of(np.array([s]))[0])
         return self.solved(
             self.given.segments[index], np.array([s - self.given.breaks[index]]), np.array([psi])
@@ -186,7 +212,7 @@ class Envelope:
     def point(self, s: float) -> tuple[complex, float]:
         """Point, mm, and tangent angle, rad, from tip to root, at the arc length s, mm, of the
         given flank."""
-        contact = self._at(s, float(np.interp(s, *self.branch)))
+        contact = self.contact_at(s, float(np.interp(s, *self.branch)))
         return complex(contact.point[0]), float(contact.angle[0])
 
     def piece(self, index: int, low: float, high: float) -> CurvedSegment:
