@@ -107,7 +107,7 @@ class FigureSet(ABC):
                 figure = self.drawings[name]()
                 if writes:
                     exact = name in self.exact_size
-                    figure.savefig(path, dpi=figure.dpi if exact else DOTS_PER_INCH)
+                    _write(figure, path, figure.dpi if exact else DOTS_PER_INCH)
             except Exception as error:  # whatever a drawing library raises
                 failure = failure or OutputError(f"cannot draw {path}: {sentence(error)}")
         raise_first(comm, failure)
@@ -123,6 +123,17 @@ class FigureSet(ABC):
 
     exact_size: tuple[str, ...] = ()
     """Figures that show a picture and are written pixel by pixel."""
+
+
+def _write(figure: Figure, path: Path, dots_per_inch: float) -> None:
+    """Write a figure as a PNG file. `savefig` draws a figure with a layout engine twice, the first
+    time for the layout alone."""
+    figure.set_dpi(dots_per_inch)
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)
+        figure.set_layout_engine(None)
+    figure.savefig(path, dpi=dots_per_inch)
 
 
 class NamedFigures(FigureSet):
