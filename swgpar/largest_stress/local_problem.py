@@ -86,6 +86,17 @@ class WindowStress:
 
 
 @dataclass(frozen=True)
+class WindowState:
+    """The equilibrium of a window, from which a finer one around the same tooth begins.
+
+    mesh : sector of the window;  displacement : (n_teeth, n_node, 3) mm
+    """
+
+    mesh: SectorMesh
+    displacement: np.ndarray
+
+
+@dataclass(frozen=True)
 class _Found:
     """A largest stress (MPa), the tooth and the node of its sector."""
 
@@ -137,6 +148,7 @@ class LocalProblem:
     tooth : in the middle of the window
     recipe : of the window's mesh
     gear : name of the body
+    coarser : equilibrium of a coarser window around the tooth, which is nearer than the drive's
     """
 
     def __init__(
@@ -146,6 +158,7 @@ class LocalProblem:
         tooth: int,
         recipe: MeshRecipe,
         gear: str = FLEXIBLE_SPLINE,
+        coarser: WindowState | None = None,
     ) -> None:
         self.model, self.state, geometry = model, state, model.geometry
         self.gear = gear
@@ -191,7 +204,8 @@ class LocalProblem:
             ),
         )
         self.problem = problem
-        own = displacement[self.partition.owned_indices(gear)]
+        begin = displacement if coarser is None else self._interpolated(coarser)
+        own = begin[self.partition.owned_indices(gear)]
         write_field(self.partition, gear, own, problem.x)
 
     def _of_the_drive(self, teeth: np.ndarray) -> np.ndarray:
@@ -200,10 +214,22 @@ class LocalProblem:
         model = self.model
         coarse = model.partition.layouts[self.gear]
         field = read_field(model.partition, self.gear, teeth - coarse.first_tooth, model.problem.x)
-        angle = self.layout.sector_angle(teeth)
-        local = rotated(field, -angle[:, None])
+        return self._interpolated(WindowState(coarse.mesh, field))
+
+    def _interpolated(self, coarse: WindowState) -> np.ndarray:
+        """Displacement (n_teeth, n_node, 3) mm at the nodes of this window from those of another
+        mesh of its teeth."""
+        angle = self.layout.sector_angle(self.layout.first_tooth + np.arange(self.layout.count))
+        local = rotated(coarse.displacement, -angle[:, None])
         matrix = interpolation(coarse.mesh, self.layout.mesh)
         return rotated(np.stack([matrix @ sector for sector in local]), angle[:, None])
+
+    def equilibrium(self) -> WindowState:
+        """The present state, for a finer window; collective."""
+        teeth = np.arange(self.layout.count)
+        return WindowState(
+            self.layout.mesh, read_field(self.partition, self.gear, teeth, self.problem.x)
+        )
 
     def _numbers(self, sectors: np.ndarray, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Own local indices (n_sectors, n) of nodes, and whether this rank owns them."""

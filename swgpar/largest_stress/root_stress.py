@@ -30,7 +30,12 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.largest_stress.candidate_teeth import candidates, followed
 from swgpar.largest_stress.convergence import error_of
-from swgpar.largest_stress.local_problem import LocalProblem, WindowStress, tooth_nodes
+from swgpar.largest_stress.local_problem import (
+    LocalProblem,
+    WindowState,
+    WindowStress,
+    tooth_nodes,
+)
 from swgpar.largest_stress.places import OF_REGION, root_nodes
 from swgpar.largest_stress.region_stress import (
     RegionStress,
@@ -206,10 +211,10 @@ def resolve_root_stress(
     teeth = candidates(*on_mesh, in_root=in_root, mises=mises)
     places = [(tooth, ends) for tooth in teeth for ends in parts]
     values: dict[tuple[int, bool], list[float]] = {place: [math.nan] * skipped for place in places}
-    readings = WindowReadings(skipped)
+    readings, states = WindowReadings(skipped), dict[int, WindowState]()
     count = levels or LEVELS[kind]
     for level in range(skipped, count):
-        found = _solve(model, state, places, window_recipe(kind, level), readings)
+        found = _solve(model, state, places, window_recipe(kind, level), readings, states)
         for place, stress in found.items():
             values[place].append(stress.value)
         best = max(places, key=lambda place: found[place].value)
@@ -249,12 +254,14 @@ def _ring_stresses(
     nodal = nodal_by_sector(model, state, RING_GEAR, averages)
     tooth = int(nodal[f"rg_s1{OF_REGION}{TOOTH_ROOT}"].argmax())
     readings = WindowReadings(skipped)
-    first = model.partition.layouts[RING_GEAR].first_tooth
+    first, coarser = model.partition.layouts[RING_GEAR].first_tooth, None
     for level in range(skipped, min(levels, RING_LEVELS[kind])):
-        window = LocalProblem(model, state, first + tooth, window_recipe(kind, level), RING_GEAR)
+        recipe = window_recipe(kind, level)
+        window = LocalProblem(model, state, first + tooth, recipe, RING_GEAR, coarser)
         try:
             window.solve()
             readings.add(tooth, window.by_region())
+            coarser = window.equilibrium()
         finally:
             window.destroy()
     return readings.stresses(model, RING_GEAR, nodal, RATIO[kind])
@@ -316,18 +323,22 @@ def _solve(
     places: list[tuple[int, bool]],
     recipe: MeshRecipe,
     readings: WindowReadings | None = None,
+    states: dict[int, WindowState] | None = None,
 ) -> dict[tuple[int, bool], WindowStress]:
     """Largest stresses at the ends of teeth or between them, by tooth and whether at the ends: a
     window per tooth.
 
     readings : takes the stresses of all regions
+    states : equilibria of coarser windows by tooth, which those of these windows replace
     """
+    states = {} if states is None else states
     first = model.partition.layouts[FLEXIBLE_SPLINE].first_tooth
     found: dict[tuple[int, bool], WindowStress] = {}
     for tooth in dict.fromkeys(tooth for tooth, _ in places):
-        window = LocalProblem(model, state, first + tooth, recipe)
+        window = LocalProblem(model, state, first + tooth, recipe, coarser=states.get(tooth))
         try:
             window.solve()
+            states[tooth] = window.equilibrium()
             found |= {place: window.largest(place[1]) for place in places if place[0] == tooth}
             if readings is not None:
                 readings.add(tooth, window.by_region())
