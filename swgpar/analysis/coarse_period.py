@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from swgpar.analysis.coarse_start import transfer
 from swgpar.analysis.drive_mesh_error import ORDER, SAFETY, smallest_ratio
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.predictor import KnownState
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.period_ranges import INPUT_TORQUE, CoarsePeriod, period_ranges
 from swgpar.log import logger
@@ -11,11 +13,13 @@ from swgpar.meshing import MeshRecipe
 from swgpar.model.drive_model import DriveModel
 
 
-def coarse_period(model: DriveModel, coarse: MeshRecipe, fine: MeshRecipe) -> CoarsePeriod | None:
+def coarse_period(
+    model: DriveModel, coarse: MeshRecipe, run: LoadStepper, fine: MeshRecipe
+) -> CoarsePeriod | None:
     """Take the loaded model on the mesh of `coarse` through the period that a run samples, and back
-    to its loaded state; collective.
+    to its loaded state; collective. Its states guide the run.
 
-    fine : recipe of the run's mesh
+    run, fine : takes the run through its states, on the mesh of that recipe
 
     None without a sampled period or a torque; in a cup drive, where it would cost a third of the
     run; with friction, whose first period settles; and where an angle does not converge.
@@ -28,15 +32,25 @@ def coarse_period(model: DriveModel, coarse: MeshRecipe, fine: MeshRecipe) -> Co
         return None
     stepper.resume_at(sequence.loaded)
     loaded = model.problem.x.copy()
-    rows = [stepper.row()]
+    rows, guides = [stepper.row()], [_on_mesh_of(run, stepper)]
     try:
         for state in sequence.from_loaded[1:]:
             stepper.advance(state)
             rows.append(stepper.row())
+            guides.append(_on_mesh_of(run, stepper))
     except ConvergenceError as error:
         logger.info("the errors over the period by the mesh are not known: %s", error)
         return None
     finally:
         loaded.copy(model.problem.x)
+    run.guides = guides
     factor = SAFETY / (smallest_ratio(coarse, fine) ** ORDER - 1.0)
     return CoarsePeriod(period_ranges(sequence.kinematics, rows, INPUT_TORQUE), factor)
+
+
+def _on_mesh_of(run: LoadStepper, stepper: LoadStepper) -> KnownState:
+    """The present state of `stepper` on the mesh of the run."""
+    x = run.problem.x.duplicate()
+    x.set(0.0)
+    transfer(stepper.model, stepper.problem.x, run.model, x)
+    return KnownState(stepper.load_state.angle, x)

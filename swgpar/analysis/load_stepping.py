@@ -30,6 +30,9 @@ all."""
 MAX_EXTRAPOLATION = 2.0
 """Largest step of a load program that is predicted along the last one, over that one."""
 
+SAME_ANGLE = 1e-9
+"""Difference (rad) of two angles that are the same."""
+
 MAX_CLOSING_ROTATIONS = 10
 """Rotations in which a backlash is closed: each leaves about an eighth of it, by the pressure
 angle."""
@@ -43,6 +46,8 @@ class LoadStepper:
     sequence : load states of the design's run;  load_state : the state reached
     iterations, residual : Newton iterations and last residual of the last increment
     known_states : periodic states that predictions start from
+    guides : states at angles of the run on a coarser mesh, interpolated to this one: predictions
+    follow their changes
     """
 
     def __init__(self, model: DriveModel) -> None:
@@ -53,12 +58,13 @@ class LoadStepper:
         self.iterations = 0
         self.residual = 0.0
         self.known_states: list[KnownState] = []
+        self.guides: list[KnownState] = []
         self._last: ProgramState = None
         self._before: ProgramState = None
 
     def reset(self) -> None:
         """Go back to the undeformed drive."""
-        self.load_state, self.known_states = self.sequence.start, []
+        self.load_state, self.known_states, self.guides = self.sequence.start, [], []
         self._last = self._before = None
         self.problem.x.set(0.0)
         self.problem.resume({})
@@ -329,10 +335,22 @@ class LoadStepper:
 
     def _predict_rotation(self, angle: float) -> None:
         """Predict the state at an angle of the wave generator (rad) from the known or present
-        ones."""
-        x = self.problem.x
+        ones, with what guides add to their own prediction."""
+        x, partition, fixed = self.problem.x, self.model.partition, self.model.fixed_body
         known = self.known_states or [KnownState(self.load_state.angle, x)]
-        predict(self.model.partition, self.model.fixed_body, known, x, angle)
+        predict(partition, fixed, known, x, angle)
+        guide, *guided = (self._guide(one) for one in (angle, *(state.angle for state in known)))
+        if guide is None or None in guided:
+            return
+        predicted = guided[-1].x.copy()
+        predict(partition, fixed, guided, predicted, angle)
+        x.axpy(1.0, guide.x)
+        x.axpy(-1.0, predicted)
+        predicted.destroy()
+
+    def _guide(self, angle: float) -> KnownState | None:
+        """The guide at an angle of the wave generator (rad), None without one."""
+        return next((one for one in self.guides if abs(one.angle - angle) < SAME_ANGLE), None)
 
     def row(self) -> dict[str, float]:
         """The history's row of the present state, without stresses and times; collective."""

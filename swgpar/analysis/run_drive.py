@@ -228,7 +228,8 @@ class DriveRun:
             except (ConvergenceError, InputError) as error:
                 logger.info("the error by the mesh of the drive is not known: %s", error)
         if not self.coarser and ratio is not None:
-            self.recorder.record.coarse_period = coarse_period(model, recipe, self.recipe)
+            period = coarse_period(model, recipe, self.stepper, self.recipe)
+            self.recorder.record.coarse_period = period
         self.coarser.append(found)
 
     def go_through(self, states: Sequence[LoadState]) -> None:
