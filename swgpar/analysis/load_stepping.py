@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from swgpar.analysis.bent_start import bend
-from swgpar.analysis.predictor import KnownState, predict
+from swgpar.analysis.predictor import KnownState, predict, predict_guided
 from swgpar.analysis.snapshot import ProgramState, Snapshot
 from swgpar.analysis.step_bounds import steps_needed
 from swgpar.errors import ConvergenceError
@@ -29,9 +29,6 @@ all."""
 
 MAX_EXTRAPOLATION = 2.0
 """Largest step of a load program that is predicted along the last one, over that one."""
-
-SAME_ANGLE = 1e-9
-"""Difference (rad) of two angles that are the same."""
 
 MAX_CLOSING_ROTATIONS = 10
 """Rotations in which a backlash is closed: each leaves about an eighth of it, by the pressure
@@ -335,22 +332,11 @@ class LoadStepper:
 
     def _predict_rotation(self, angle: float) -> None:
         """Predict the state at an angle of the wave generator (rad) from the known or present
-        ones, with what guides add to their own prediction."""
-        x, partition, fixed = self.problem.x, self.model.partition, self.model.fixed_body
+        ones."""
+        x = self.problem.x
         known = self.known_states or [KnownState(self.load_state.angle, x)]
-        predict(partition, fixed, known, x, angle)
-        guide, *guided = (self._guide(one) for one in (angle, *(state.angle for state in known)))
-        if guide is None or None in guided:
-            return
-        predicted = guided[-1].x.copy()
-        predict(partition, fixed, guided, predicted, angle)
-        x.axpy(1.0, guide.x)
-        x.axpy(-1.0, predicted)
-        predicted.destroy()
-
-    def _guide(self, angle: float) -> KnownState | None:
-        """The guide at an angle of the wave generator (rad), None without one."""
-        return next((one for one in self.guides if abs(one.angle - angle) < SAME_ANGLE), None)
+        fixed = self.model.fixed_body
+        predict_guided(self.model.partition, fixed, known, self.guides, x, angle)
 
     def row(self) -> dict[str, float]:
         """The history's row of the present state, without stresses and times; collective."""

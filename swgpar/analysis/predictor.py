@@ -27,6 +27,10 @@ SAME_POSITION = 1e-6
 counts."""
 
 
+SAME_ANGLE = 1e-9
+"""Difference (rad) of two angles that are the same."""
+
+
 @dataclass(frozen=True)
 class KnownState:
     """A state: angle of the wave generator (rad) and its vector x."""
@@ -94,6 +98,35 @@ def predict(
         new.append((body, rotated(coords + moved, at) - rotated(coords, at)))
     for body, values in new:
         write_field(partition, body, values, x)
+
+
+def predict_guided(
+    partition: Partition,
+    fixed_body: str,
+    known: list[KnownState],
+    guides: list[KnownState],
+    x: PETSc.Vec,
+    angle: float,
+) -> None:
+    """Set x as `predict`, and add what the prediction from the guides misses at that angle;
+    collective.
+
+    guides : states on another mesh, interpolated to this one. Without those at the angle and at
+    all angles of the known states nothing is added
+    """
+
+    def at(place: float) -> KnownState | None:
+        return next((one for one in guides if abs(one.angle - place) < SAME_ANGLE), None)
+
+    predict(partition, fixed_body, known, x, angle)
+    there, before = at(angle), [one for state in known if (one := at(state.angle)) is not None]
+    if there is None or len(before) < len(known):
+        return
+    predicted = before[-1].x.copy()
+    predict(partition, fixed_body, before, predicted, angle)
+    x.axpy(1.0, there.x)
+    x.axpy(-1.0, predicted)
+    predicted.destroy()
 
 
 def _pattern(

@@ -8,7 +8,12 @@ from mpi4py import MPI
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.analysis.predictor import KnownState, interpolation_points, predict
+from swgpar.analysis.predictor import (
+    KnownState,
+    interpolation_points,
+    predict,
+    predict_guided,
+)
 from swgpar.checks.design_file import load_design
 from swgpar.fem.vectors import create_vector, read_field, write_field
 from swgpar.geometry.rotation import rotated
@@ -26,8 +31,8 @@ def model(request: pytest.FixtureRequest) -> DriveModel:
     )
 
 
-def wave(model: DriveModel, angle: float, slip: float = 0.0) -> PETSc.Vec:
-    """The drive in a wave of 1 mm with two lobes that the generator has turned by `angle` (rad).
+def wave(model: DriveModel, angle: float, slip: float = 0.0, *, height: float = 1.0) -> PETSc.Vec:
+    """The drive in a wave of a height (mm) with two lobes, turned by `angle` (rad).
 
     The gear that is not fixed has turned by the ratio, and by `slip` in its pattern.
     """
@@ -46,7 +51,8 @@ def wave(model: DriveModel, angle: float, slip: float = 0.0) -> PETSc.Vec:
         place = rotated(coords, at + turn)
         around = np.arctan2(place[..., 1], place[..., 0])
         radial = np.stack([np.cos(around), np.sin(around), np.zeros_like(around)], axis=-1)
-        values = place + np.cos(2.0 * (around - angle))[..., None] * radial - rotated(coords, at)
+        lift = height * np.cos(2.0 * (around - angle))[..., None] * radial
+        values = place + lift - rotated(coords, at)
         values[:, layout.numbering.without_unknowns] = 0.0
         write_field(partition, body, values, x)
     return x
@@ -57,7 +63,21 @@ def error(model: DriveModel, known: list[float], angle: float, slip: float = 0.0
     x = create_vector(model.partition)
     states = [KnownState(at, wave(model, at)) for at in known]
     predict(model.partition, model.fixed_body, states, x, angle, slip, resting={model.fixed_body})
-    exact, worst = wave(model, angle, slip), 0.0
+    return distance(model, x, wave(model, angle, slip))
+
+
+def guided_error(model: DriveModel, known: list[float], guides: list[float], angle: float) -> float:
+    """The same with guides of a wave half as high again at some angles."""
+    x = create_vector(model.partition)
+    states = [KnownState(at, wave(model, at)) for at in known]
+    higher = [KnownState(at, wave(model, at, height=1.5)) for at in guides]
+    predict_guided(model.partition, model.fixed_body, states, higher, x, angle)
+    return distance(model, x, wave(model, angle))
+
+
+def distance(model: DriveModel, x: PETSc.Vec, exact: PETSc.Vec) -> float:
+    """Largest difference (mm) of two states, over all ranks."""
+    worst = 0.0
     for body in model.partition.layouts:
         own = model.partition.owned_indices(body)
         gap = read_field(model.partition, body, own, x) - read_field(
@@ -102,6 +122,18 @@ def test_more_states_make_it_better(model: DriveModel) -> None:
     close = error(model, [0.0, 0.25 * pitch, 0.75 * pitch], 0.5 * pitch)
     assert close < 0.04 * alone
     assert error(model, [0.0, 0.25 * pitch], 1.25 * pitch) < 1e-11
+
+
+@pytest.mark.parallel([1, 2, 3])
+def test_guides_add_what_their_own_prediction_misses(model: DriveModel) -> None:
+    """Those of a wave half as high again miss half as much again: half of the error is left."""
+    pitch = model.design.kinematics.period_angle
+    known, middle = [0.0, 0.25 * pitch], 0.6 * pitch
+    alone = error(model, known, middle)
+    guided = guided_error(model, known, [0.0, 0.25 * pitch, middle], middle)
+    assert guided == pytest.approx(0.5 * alone, rel=1e-6)
+    lacking = guided_error(model, known, [0.0, middle], middle)
+    assert lacking == pytest.approx(alone, rel=1e-12)
 
 
 def test_weights_reproduce_cubic_polynomials_and_the_latest_state_counts() -> None:
