@@ -8,7 +8,12 @@ from dataclasses import replace
 
 import pytest
 
-from swgpar.analysis.contact_errors import LEAST_FORCE, LEAST_PRESSURE, contact_errors
+from swgpar.analysis.contact_errors import (
+    LEAST_FORCE,
+    LEAST_PRESSURE,
+    LEAST_WITH_EDGES,
+    contact_errors,
+)
 from swgpar.analysis.drive_mesh_error import (
     ORDER,
     SAFETY,
@@ -121,3 +126,8 @@ def test_only_counts_that_differ_decide() -> None:
     assert shown_error([(coarse, 1.0), (between, 2.0), (FINE, 2.5)]) == pytest.approx(1.5 * FACTOR)
     with pytest.raises(ValueError, match="empty"):
         shown_error([(FINE, 1.0), (FINE, 2.0)])
+
+
+def test_forces_are_less_certain_where_a_contact_lies_on_an_edge() -> None:
+    fine = [pair(1, 600.0), pair(2, 900.0, edge=1)]
+    assert errors(fine, fine, fine).force == LEAST_WITH_EDGES > LEAST_FORCE["plane"]
