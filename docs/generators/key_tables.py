@@ -52,12 +52,19 @@ DRAWINGS: dict[str, tuple[str, ...]] = {
         "profile_s_shaped",
         "profile_cycloid",
         "profile_involute",
+        "profile_points",
+        "profile_conjugate",
+        "tip_relief",
     ),
+    "ring_gear": ("housing",),
     "dynamic_spline": ("drive_pancake",),
-    "wave_generator": ("cams",),
-    "cup": ("drive_section", "cup_shapes"),
+    "wave_generator": ("cams", "cam_sizes", "bearing"),
+    "cup": ("drive_section", "cup_shapes", "cup_attachment"),
     "micro_geometry": ("crowning", "slope"),
+    "load": ("drive_front",),
+    "contact": ("contact_cells",),
     "steps": ("load_stages",),
+    "deviations": ("deviations",),
 }
 """Drawings of `docs/drawings` beside the sections of a drive: they show what the keys measure."""
 
