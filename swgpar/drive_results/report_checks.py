@@ -1,14 +1,15 @@
 """Verdicts on a finished run: balance, energy, penetration, edge contact, resolution, and what else
-may mislead."""
+may mislead; and on the strength of the drive."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from swgpar.checks.clearance import Clearance, clearances
+from swgpar.drive_results.check import Check
+from swgpar.drive_results.strength_checks import strength_checks
 from swgpar.drive_results.summary import BodySizes, DriveSummary
 from swgpar.evaluation.jamming import ENERGY
 from swgpar.evaluation.largest_contact import LargestContact
@@ -24,14 +25,6 @@ RESOLUTION = 0.05
 
 QUALITY = 0.2
 """Least scaled Jacobian of the elements."""
-
-
-class Check(NamedTuple):
-    """good : the verdict, None where nothing can be said;  text : the numbers behind it"""
-
-    name: str
-    good: bool | None
-    text: str
 
 
 def checks(summary: DriveSummary, history: Mapping[str, np.ndarray]) -> list[Check]:
@@ -58,6 +51,7 @@ def checks(summary: DriveSummary, history: Mapping[str, np.ndarray]) -> list[Che
         _resolution(summary.root_stress, summary.accuracy),
         _meshed(summary.stresses),
         _elements(summary.bodies),
+        *strength_checks(summary),
     ]
 
 

@@ -49,6 +49,7 @@ def drive_report(result: DriveResult) -> bytes:
         scripts=(SCRIPT,) if view else (),
         description=_description(summary),
         look=[check.name for check in judged if check.good is False],
+        strong=all(check.good for check in judged if check.of_strength),
         drawings=draw_drive(design),
         groups=_groups(summary),
         details=detail_table(summary),

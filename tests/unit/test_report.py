@@ -132,6 +132,12 @@ def test_verdicts_follow_the_numbers(folder: Path) -> None:
     assert {c.name: c.good for c in checks(summary, deep)}["penetration"] is False
 
 
+def test_the_first_line_is_not_green_without_a_verdict_on_strength(folder: Path) -> None:
+    text = (folder / "report.html").read_text(encoding="utf-8")
+    assert "The strength of the drive is not judged." in text
+    assert '<p class="ok">' not in text
+
+
 @pytest.mark.parametrize("name", ["cup_45deg", "plane_half_turn"])
 def test_drawings_have_the_dimensions(name: str) -> None:
     design = swgpar.load_design(DRIVERS / f"{name}.toml")
