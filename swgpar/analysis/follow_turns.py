@@ -89,8 +89,8 @@ def _next(points: Iterator[TurnPoint]) -> tuple[list[TurnPoint], str]:
     """The next points of this rank, and why there are no more."""
     found: list[TurnPoint] = []
     try:
-        for point in islice(points, ROUND):  # one by one: those before an error count
-            found.append(point)  # noqa: PERF402
+        for point in islice(points, ROUND):
+            found.append(point)  # noqa: PERF402, one by one: those before an error count
     except ConvergenceError as error:
         return found, str(error)
     return found, ""

@@ -17,7 +17,7 @@ from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.evaluation.program_results import PointRow, point_rows
-from swgpar.evaluation.stiffness import CHORDS, NAMES, Stiffness, by_position
+from swgpar.evaluation.stiffness import CHORDS, NAMES, StiffnessValues, by_position
 from swgpar.load.load_program import stiffness_program
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
@@ -34,7 +34,7 @@ DOUBLED = 1.0 / (1.0 - 2.0**-ORDER)
 def stiffness_error(
     design: DriveDesign, recipe: MeshRecipe, rows: Sequence[PointRow], comm: MPI.Comm
 ) -> dict[str, float] | None:
-    """Error of every value of `Stiffness` on the mesh of `recipe`; None where it is not known.
+    """Error of every value of `StiffnessValues` on the mesh of `recipe`; None where there is none.
 
     rows : of program.csv on that mesh. Collective.
     """
@@ -69,7 +69,7 @@ def stiffness_error(
     }
 
 
-def _changes(before: Stiffness, after: Stiffness, factor: float) -> Mapping[str, float]:
+def _changes(before: StiffnessValues, after: StiffnessValues, factor: float) -> Mapping[str, float]:
     """Sizes of the changes of the values that both have, times a factor."""
     both = {name: (getattr(before, name), getattr(after, name)) for name in NAMES}
     return {
@@ -84,7 +84,7 @@ def _first_position(design: DriveDesign) -> DriveDesign:
     return design.model_copy(update={"stiffness": section})
 
 
-def _stiffness_on(design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> Stiffness:
+def _stiffness_on(design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> StiffnessValues:
     """The stiffness at the only position of a design, on another mesh."""
     model = solve_to_load(design, recipe, comm)
     try:

@@ -16,7 +16,7 @@ from swgpar.input.design import Design
 from swgpar.input.toml_file import Overrides, apply_overrides, read_toml, require_source
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.meshing.recipe import make_recipe
-from swgpar.results.atomic import agreed, on_all, raise_first, sentence, write_file
+from swgpar.results.atomic import agreed, on_all, raise_first, reason_of, write_file
 from swgpar.results.figure_set import save_figures
 from swgpar.results.folder import REPORT, given_folder, read_design
 from swgpar.run_options import RunOptions
@@ -195,7 +195,7 @@ def save_report(result: Result, folder: str | Path, comm: MPI.Comm = MPI.COMM_WO
         try:
             write_file(path, system_of_table(result.design_table).report(result))
         except Exception as error:  # whatever a drawing raises
-            failure = OutputError(f"cannot write {path}: {sentence(error)}")
+            failure = OutputError(f"cannot write {path}: {reason_of(error)}")
     raise_first(comm, failure)
 
 

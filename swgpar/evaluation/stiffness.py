@@ -40,7 +40,7 @@ WAY_BACK = {
 
 
 @evaluation
-class Stiffness:
+class StiffnessValues:
     """Torsional stiffness at one angle of the wave generator, or its mean, spread or error over
     several.
 
@@ -70,18 +70,18 @@ class Stiffness:
 
 
 CHORDS = ("K1", "K2", "K3")
-NAMES = tuple(field.name for field in fields(Stiffness))
+NAMES = tuple(field.name for field in fields(StiffnessValues))
 
 
 @evaluation
-class StiffnessAtAngle(Stiffness):
+class StiffnessAtAngle(StiffnessValues):
     """The stiffness at an angle (degrees) of the wave generator."""
 
     wg_angle_deg: float
 
 
 @evaluation
-class TorsionalStiffness(Stiffness, AnswerGroup):
+class TorsionalStiffness(StiffnessValues, AnswerGroup):
     """Means of the torsional stiffness over angles of the wave generator.
 
     torque_Nm, rated_torque_Nm : largest torque of the loop, and the rated one;  break_points :
@@ -94,7 +94,7 @@ class TorsionalStiffness(Stiffness, AnswerGroup):
     torque_Nm: float
     rated_torque_Nm: float
     break_points: tuple[float, ...]
-    spread: Stiffness
+    spread: StiffnessValues
     mesh_error: Mapping[str, float] | None
     positions: tuple[StiffnessAtAngle, ...]
 
@@ -186,7 +186,7 @@ class Loop:
         return self.loading[0].at(torque) if torque > 0.0 else -self.unloading[1].at(-torque)
 
 
-def at_position(program: StiffnessProgram, rows: Sequence[PointRow]) -> Stiffness:
+def at_position(program: StiffnessProgram, rows: Sequence[PointRow]) -> StiffnessValues:
     """The stiffness from the rows of the loop at one angle of the wave generator, in the order of
     the program."""
     loop = Loop(rows)
@@ -203,7 +203,7 @@ def at_position(program: StiffnessProgram, rows: Sequence[PointRow]) -> Stiffnes
         name: float(torque / rotation) if torque > program.negligible and rotation else None
         for name, torque, rotation in zip(CHORDS, *steps, strict=True)
     }
-    return Stiffness(
+    return StiffnessValues(
         **chords,
         lost_motion=(middle(0, share) + middle(1, share)) / ARC_MINUTE,
         hysteresis=(unloading[0].at(0.0) + unloading[1].at(0.0)) / ARC_MINUTE,
@@ -235,7 +235,9 @@ def _loop_work(branches: Sequence[Sequence[PointRow]]) -> float:
     return work_by_torque([row for rows in branches for row in rows])
 
 
-def by_position(program: StiffnessProgram, rows: Sequence[PointRow]) -> dict[float, Stiffness]:
+def by_position(
+    program: StiffnessProgram, rows: Sequence[PointRow]
+) -> dict[float, StiffnessValues]:
     """The stiffness at every angle (deg) of the wave generator, from all rows of program.csv."""
     return {
         angle: at_position(program, here) for angle, here in rows_by_position(program, rows).items()
@@ -255,9 +257,10 @@ def rows_by_position(
 
 
 def _over(
-    positions: Mapping[float, Stiffness], reduced: Callable[[list[float]], float]
+    positions: Mapping[float, StiffnessValues], reduced: Callable[[list[float]], float]
 ) -> dict[str, Any]:
-    """A number for the values of all positions, by field of `Stiffness`; None where one lacks."""
+    """A number for the values of all positions, by field of `StiffnessValues`; None where one
+    lacks."""
     table = {name: [getattr(one, name) for one in positions.values()] for name in NAMES}
     return {
         name: None if None in values else float(reduced(values)) for name, values in table.items()
@@ -277,7 +280,7 @@ def torsional_stiffness(
         torque_Nm=program.torque,
         rated_torque_Nm=program.rated_torque,
         break_points=tuple(program.section.break_points),
-        spread=Stiffness(**_over(positions, np.ptp)),
+        spread=StiffnessValues(**_over(positions, np.ptp)),
         mesh_error=error,
         positions=tuple(
             StiffnessAtAngle(**asdict(one), wg_angle_deg=angle) for angle, one in positions.items()

@@ -29,7 +29,7 @@ from swgpar.gear_trains.result import (
 from swgpar.input.quantities import show
 from swgpar.input.toml_file import validate
 from swgpar.log import logger
-from swgpar.results.atomic import agreed, sentence
+from swgpar.results.atomic import agreed, reason_of
 from swgpar.results.figure_set import Drawings, NamedFigures
 from swgpar.results.folder import SUMMARY, open_log, prepare, read_summary
 from swgpar.results.lock import releasing
@@ -130,7 +130,7 @@ def reported_arithmetic() -> Iterator[None]:
             yield
     except (np.linalg.LinAlgError, ArithmeticError, ValueError, MemoryError) as error:
         raise InputError(
-            f"the gear train cannot be computed with these values: {sentence(error)}"
+            f"the gear train cannot be computed with these values: {reason_of(error)}"
         ) from None
 
 

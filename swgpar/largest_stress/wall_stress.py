@@ -131,7 +131,7 @@ def resolve_wall(
 
     Raises ConvergenceError or InputError where a part cannot be computed.
     """
-    rings: list[Ring] = []
+    rings: list[WallRing] = []
     try:
         for counts in RINGS:
             rings.append(_solved_ring(model, state, counts, rings[-1:]))
@@ -181,7 +181,7 @@ def _drive_share(name: str, fine: Mapping[str, Spot], coarse: CoarseWall | None)
 
 
 @dataclass(frozen=True)
-class Ring:
+class WallRing:
     """A ring in equilibrium, and the grid of its sector."""
 
     problem: WallProblem
@@ -193,8 +193,8 @@ class Ring:
 
 
 def _solved_ring(
-    model: DriveModel, state: LoadState, counts: WallCounts, coarser: Sequence[Ring] = ()
-) -> Ring:
+    model: DriveModel, state: LoadState, counts: WallCounts, coarser: Sequence[WallRing] = ()
+) -> WallRing:
     """coarser : a ring whose displacements to begin with, if there is one"""
     grid = wall_sector(model.geometry, counts, wall_start(model.geometry, model.geometry.cup))
     begin = coarser[0].displacements() if coarser else None
@@ -204,7 +204,7 @@ def _solved_ring(
     except BaseException:
         problem.destroy()
         raise
-    return Ring(problem, grid)
+    return WallRing(problem, grid)
 
 
 def _regions_of_ring(ring: WallProblem) -> np.ndarray:
@@ -274,7 +274,7 @@ class OnSlices:
 
 
 def _on_slices(
-    rings: Sequence[Ring], spots: Mapping[str, Spot], tension: float
+    rings: Sequence[WallRing], spots: Mapping[str, Spot], tension: float
 ) -> dict[str, OnSlices]:
     """The stresses of the finer ring that may be the largest of their kind, on slices; collective.
 
@@ -309,7 +309,7 @@ def _on_slices(
     return found
 
 
-def _is_held(spot: Spot, middle: Spot, ring: Ring) -> bool:
+def _is_held(spot: Spot, middle: Spot, ring: WallRing) -> bool:
     """Whether a slice around `middle` resolves another stress too."""
     return spot.sector == middle.sector and bool(
         np.linalg.norm(spot.section - middle.section) <= HELD * _thickness(ring.problem.model)
@@ -322,7 +322,7 @@ def _thickness(model: DriveModel) -> float:
     return max(wall.thickness, wall.end_thickness)
 
 
-def _read(ring: Ring, counts: WallCounts, middle: Spot) -> dict[str, Spot]:
+def _read(ring: WallRing, counts: WallCounts, middle: Spot) -> dict[str, Spot]:
     """Largest stresses in the middle of a slice around a stress of a ring; collective."""
     model = ring.problem.model
     thickness, pitch = _thickness(model), 2.0 * np.pi / ring.grid.mesh.n_sectors
@@ -339,7 +339,7 @@ def _read(ring: Ring, counts: WallCounts, middle: Spot) -> dict[str, Spot]:
 
 
 def _slice_mesh(
-    ring: Ring, counts: WallCounts, middle: Spot, reach: float
+    ring: WallRing, counts: WallCounts, middle: Spot, reach: float
 ) -> tuple[SectorMesh, np.ndarray]:
     """Mesh within `reach` (mm) along the section of a stress, and distances (n_node,) mm from it"""
     model = ring.problem.model

@@ -11,7 +11,7 @@ from mpi4py import MPI
 from swgpar.errors import InputError, OutputError, SwgparError
 from swgpar.optimisation.problem import Evaluation, Problem
 from swgpar.optimisation.spec import OptimiseSection, Variable
-from swgpar.results.atomic import on_all, on_root, sentence
+from swgpar.results.atomic import on_all, on_root, reason_of
 from swgpar.studies.many_runs import do_runs
 from swgpar.tasks import Send
 
@@ -52,7 +52,7 @@ def _stored(comm: MPI.Comm, where: str, task: Callable[[], T]) -> T:
         except SwgparError:
             raise
         except Exception as error:
-            raise OutputError(f"the storage {where} cannot be used: {sentence(error)}") from None
+            raise OutputError(f"the storage {where} cannot be used: {reason_of(error)}") from None
 
     return on_all(comm, guarded)
 

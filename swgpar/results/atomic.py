@@ -26,7 +26,7 @@ TEMPORARY = ".tmp"
 """Suffix of files being written; left-overs of a killed run are removed by the next one."""
 
 
-def sentence(error: BaseException) -> str:
+def reason_of(error: BaseException) -> str:
     """Reason of a failure without traceback, number or file name."""
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
@@ -72,7 +72,7 @@ def agreed(comm: MPI.Comm, path: Path, action: str = "write") -> Iterator[None]:
     except SwgparError as error:
         failure = error
     except (OSError, RuntimeError, ValueError, KeyError) as error:
-        failure = OutputError(f"cannot {action} {path}: {sentence(error)}")
+        failure = OutputError(f"cannot {action} {path}: {reason_of(error)}")
     raise_first(comm, failure)
 
 

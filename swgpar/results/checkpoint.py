@@ -20,7 +20,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from swgpar.errors import OutputError
 from swgpar.results import parallel_hdf5
-from swgpar.results.atomic import agreed, on_root, plain, sentence
+from swgpar.results.atomic import agreed, on_root, plain, reason_of
 from swgpar.results.parallel_hdf5 import Block
 
 T = TypeVar("T")
@@ -112,8 +112,8 @@ def _read_attrs(path: Path) -> bytes:
             text, digest = file[_ATTRS][:].tobytes(), file[_DIGEST][:].tobytes()
     except (OSError, RuntimeError, ValueError, KeyError, TypeError, IndexError) as error:
         if isinstance(error, OSError) and error.errno is not None:
-            raise OutputError(f"cannot read {path}: {sentence(error)}") from None
-        raise _damaged(path, sentence(error)) from None
+            raise OutputError(f"cannot read {path}: {reason_of(error)}") from None
+        raise _damaged(path, reason_of(error)) from None
     if hashlib.sha256(text).digest() != digest:
         raise _damaged(path, "its attributes are not what was written")
     return text

@@ -11,7 +11,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.errors import InputError, OutputError
-from swgpar.results.atomic import sentence
+from swgpar.results.atomic import reason_of
 from swgpar.results.fields import (
     FLANKS,
     MESH,
@@ -90,7 +90,7 @@ class FieldFiles:
         try:
             return h5py.File(path, "r")
         except OSError as error:
-            raise OutputError(f"cannot read {path}: {sentence(error)}") from None
+            raise OutputError(f"cannot read {path}: {reason_of(error)}") from None
 
     def _get(self, part: str, name: str) -> np.ndarray:
         with self._open(part) as file:

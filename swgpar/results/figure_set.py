@@ -13,7 +13,7 @@ from mpi4py import MPI
 
 from swgpar.errors import OutputError, SwgparError
 from swgpar.log import logger
-from swgpar.results.atomic import agreed, raise_first, sentence
+from swgpar.results.atomic import agreed, raise_first, reason_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,7 +35,7 @@ def import_matplotlib() -> None:
     here = os.open(".", os.O_RDONLY)
     try:
         os.chdir("/")
-        import matplotlib  # noqa: F401
+        import matplotlib  # noqa: F401, makes it known to later imports
     finally:
         os.fchdir(here)
         os.close(here)
@@ -109,7 +109,7 @@ class FigureSet(ABC):
                     exact = name in self.exact_size
                     _write(figure, path, figure.dpi if exact else DOTS_PER_INCH)
             except Exception as error:  # whatever a drawing library raises
-                failure = failure or OutputError(f"cannot draw {path}: {sentence(error)}")
+                failure = failure or OutputError(f"cannot draw {path}: {reason_of(error)}")
         raise_first(comm, failure)
         return list(paths.values())
 

@@ -12,7 +12,7 @@ from swgpar import log
 from swgpar.errors import InputError, OutputError
 from swgpar.input.quantities import show
 from swgpar.results import history, lock
-from swgpar.results.atomic import TEMPORARY, agreed, discard, on_root, sentence, write_file
+from swgpar.results.atomic import TEMPORARY, agreed, discard, on_root, reason_of, write_file
 
 RECIPE = "recipe.toml"
 """The mesh recipe that was chosen for an accuracy."""
@@ -137,7 +137,7 @@ def read_summary(folder: Path) -> dict[str, Any]:
     try:
         return json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise OutputError(f"cannot read {folder / SUMMARY}: {sentence(error)}") from None
+        raise OutputError(f"cannot read {folder / SUMMARY}: {reason_of(error)}") from None
 
 
 def read_design(folder: Path) -> dict[str, Any]:

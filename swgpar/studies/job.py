@@ -16,7 +16,7 @@ from swgpar.errors import InputError, SwgparError, printable
 from swgpar.input.design import Design
 from swgpar.log import logger
 from swgpar.petsc import PETSc
-from swgpar.results.atomic import agreed, on_root, sentence, to_json, write_file, write_from_root
+from swgpar.results.atomic import agreed, on_root, reason_of, to_json, write_file, write_from_root
 from swgpar.results.figure_set import save_figures
 from swgpar.results.folder import SUMMARY
 from swgpar.run_options import RunOptions
@@ -74,7 +74,7 @@ def run_one(
         outcome = Outcome("failed", str(error))
     except Exception as error:
         logger.exception("unexpected error")
-        outcome = Outcome("failed", printable(f"{type(error).__name__}: {sentence(error)}"))
+        outcome = Outcome("failed", printable(f"{type(error).__name__}: {reason_of(error)}"))
         if comm.size > 1:
             if folder is not None:
                 status = {"status": "failed", **record, "reason": outcome.reason}

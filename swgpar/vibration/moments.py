@@ -62,12 +62,12 @@ class SampleMoments:
 HasMoments = Moments | SampleMoments
 
 
-def sampling_error(count: int) -> float:
+def deviation_error(count: int) -> float:
     """Standard error of a standard deviation of `count` normal samples, in % of it."""
     return float(100.0 / np.sqrt(2.0 * count))
 
 
-def largest(moments: HasMoments, names: Iterable[str]) -> dict[str, float]:
+def largest_moments(moments: HasMoments, names: Iterable[str]) -> dict[str, float]:
     """Largest size of the mean and largest deviation over time, of every value by name."""
     columns = {"mean": np.abs(moments.mean), "deviation": moments.deviation}
     return {

@@ -22,7 +22,13 @@ from swgpar.gear_trains.gear_pair.quantities import VALUES
 from swgpar.gear_trains.result import Computed, Table
 from swgpar.log import logger
 from swgpar.vibration.linearisation import EQUIVALENT, Criterion, linearise
-from swgpar.vibration.moments import Moments, SampleMoments, columns, percent_errors, sampling_error
+from swgpar.vibration.moments import (
+    Moments,
+    SampleMoments,
+    columns,
+    deviation_error,
+    percent_errors,
+)
 from swgpar.vibration.sampling import Tasks, block_sizes, random_stream, run_tasks
 
 BINS = 120
@@ -62,7 +68,7 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> Computed:
     blocks = [done["monte_carlo"][case * len(sizes) :][: len(sizes)] for case in cases]
     samples = [reduce(SampleMoments.merged_with, parts) for parts in blocks]
     values: dict[str, float | list[float]] = {
-        "sampling_error_percent": sampling_error(design.monte_carlo.samples)
+        "sampling_error_percent": deviation_error(design.monte_carlo.samples)
     }
     tables = {}
     for case in cases:

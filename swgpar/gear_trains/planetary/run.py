@@ -21,9 +21,9 @@ from swgpar.vibration.dominant_cycles import dominant_cycles
 from swgpar.vibration.moments import (
     SampleMoments,
     columns,
-    largest,
+    deviation_error,
+    largest_moments,
     percent_errors,
-    sampling_error,
 )
 from swgpar.vibration.sampling import Tasks, block_sizes, random_stream, run_tasks
 
@@ -96,7 +96,7 @@ def _values(
     """The quantities. separated : steps of samples with a mesh that was off its loaded flank"""
     own, revolutions = moments[design.ring.rim], design.time.revolutions
     values: dict[str, float | list[float]] = {
-        "sampling_error_percent": sampling_error(samples.count),
+        "sampling_error_percent": deviation_error(samples.count),
         "least_eigenvalue_over_largest": own.smallest_eigenvalue,
         "asymmetry_of_correlations": own.asymmetry,
     }
@@ -104,9 +104,11 @@ def _values(
         mean = own.mean[:, MONITORED_NAMES.index(column)]
         values[f"dominant_cycles_{name}"] = dominant_cycles(mean, revolutions)
     values["out_of_contact"] = separated / (design.time.steps * design.monte_carlo.samples)
-    values |= largest(own, MONITORED) | percent_errors(own, samples, MONITORED_NAMES)
+    values |= largest_moments(own, MONITORED) | percent_errors(own, samples, MONITORED_NAMES)
     for rim in design.ring.rims:
-        values |= largest(moments[rim], [f"{name}_{number_label(rim)}" for name in MONITORED])
+        values |= largest_moments(
+            moments[rim], [f"{name}_{number_label(rim)}" for name in MONITORED]
+        )
     return values
 
 

@@ -17,7 +17,7 @@ from swgpar.gear_trains.ring.quantities import POINTS
 from swgpar.log import logger
 from swgpar.vibration.curved_beam import free_frequencies
 from swgpar.vibration.dominant_cycles import dominant_cycles
-from swgpar.vibration.moments import HasMoments, Moments, SampleMoments, columns, largest
+from swgpar.vibration.moments import HasMoments, Moments, SampleMoments, columns, largest_moments
 from swgpar.vibration.sampling import Tasks, TaskSeconds, block_sizes, random_stream, run_tasks
 
 ROWS = 400
@@ -50,7 +50,7 @@ def compute(design: RingDesign, comm: MPI.Comm) -> Computed:
         return Computed(modes, tables, values, {})
     responses, curve, simulated, seconds = _moving(design, comm)
     for speed, response in zip(design.moving_load.speeds, responses, strict=True):
-        values |= largest(response, [f"{point}_{number_label(speed)}" for point in POINTS])
+        values |= largest_moments(response, [f"{point}_{number_label(speed)}" for point in POINTS])
     values["critical_speeds"] = _peaks(curve)
     for point, mean in zip(POINTS, responses[0].mean.T, strict=True):
         values[f"dominant_cycles_{point}"] = dominant_cycles(mean)
