@@ -42,7 +42,7 @@ TIMES = {"plane": 2.25, "cup": 1.5}
 LONGEST = 3000.0
 """Seconds that a run may take; a drive that takes longer is left out."""
 
-MOST_MODELLED = {"plane": None, "cup": 30}
+MOST_MODELLED = {"plane": None, "cup": 60}
 """Most teeth of the flexible spline that are modelled, by symmetry a half or a third of all. The
 references of other cup drives would cost too much."""
 

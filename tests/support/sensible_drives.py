@@ -49,6 +49,17 @@ CONJUGATE, THREE_LOBES = 0.1, 0.1
 SHAPES = ("cup", "cup", "short", "hat")
 """Shapes of the flexible spline of a cup drive."""
 
+CUP_WIDTH, CUP_LENGTH = (0.15, 0.4), (1.0, 2.0)
+"""Face width and length of a cup over its pitch radius; short ones have half of the length. The
+reference cup has 0.17 and 0.67."""
+
+YOUNG = 210e3
+"""MPa, as the base design has."""
+
+MOST_BENDING = 300.0
+"""MPa: largest bending stress of the rim of a cup drive by the wave generator, of a ring of the
+rim's thickness without teeth."""
+
 
 @dataclass(frozen=True)
 class SensibleDrive:
@@ -90,6 +101,8 @@ def _drive(
     case = _case(rng, model)
     if most_modelled is not None and _modelled(case) > most_modelled:
         return None
+    if model == "cup" and _bending(case) > MOST_BENDING:
+        return None
     table = read_toml(BASE)
     for key, value in case.items():
         table = with_value(table, key, value)
@@ -113,6 +126,15 @@ def _modelled(case: Case) -> float:
     return teeth[0] / lobes if all(number % lobes == 0 for number in teeth) else teeth[0]
 
 
+def _bending(case: Case) -> float:
+    """MPa, by the curvature that a radial displacement of the deflection brings to a ring."""
+    lobes = case["wave_generator"].get("lobes", 2)
+    module = case["drive.module"]
+    deflection = 0.5 * module * (case["drive.teeth_rg"] - case["drive.teeth_fs"])
+    radius = 0.5 * case["drive.teeth_fs"] * module
+    return 0.5 * YOUNG * case["flexible_spline.rim"] * (lobes**2 - 1) * deflection / radius**2
+
+
 def _words(table: dict[str, Any]) -> str:
     """Kinds of profile, cam, lobes, layout and shape."""
     drive, wave = table["drive"], table["wave_generator"]
@@ -132,6 +154,10 @@ def _case(rng: np.random.Generator, model: str) -> Case:
     three = rng.uniform() < THREE_LOBES
     case = draw(rng, model, teeth, module, ("harmonic",) if three else KINDS)
     case["contact.friction"] = 0.0
+    radius = 0.5 * teeth * module
+    if model == "cup":
+        width = round(radius * float(rng.uniform(*CUP_WIDTH)), 4)
+        case["drive.face_width"] = case["wave_generator"]["face_width"] = width
     rim, width = case["flexible_spline.rim"], case["drive.face_width"]
     if three:
         case["drive.teeth_rg"] = teeth + 3
@@ -142,11 +168,11 @@ def _case(rng: np.random.Generator, model: str) -> Case:
     if rng.uniform() < CONJUGATE:
         case["ring_gear.profile"] = {"type": "conjugate", "r_root": 0.2 * module}
         case |= {"ring_gear.c_P": 1.0, "ring_gear.c_l": 0.5}
-    radius = 0.5 * teeth * module
     allowed = 2.0 * RIM_TENSION[model] * width * case["flexible_spline.rim"] * radius
     allowed *= 1.5 if three else 1.0
     case["load.torque"] = round(1e-3 * allowed * float(rng.uniform(*TORQUE)), 6)
     if model == "cup":
+        case["cup"]["length"] = round(radius * float(rng.uniform(*CUP_LENGTH)), 4)
         case["cup"] |= _shape(rng, str(rng.choice(SHAPES)), case, radius)
     return case
 
