@@ -116,3 +116,10 @@ def with_equal_doubled(recipe: MeshRecipe, coarse: MeshRecipe) -> MeshRecipe:
             2 * count if count == getattr(getattr(coarse, section), name) else count
         ),
     )
+
+
+def resized(recipe: MeshRecipe, ratio: float) -> MeshRecipe:
+    """The recipe with `ratio` times the elements in every direction; InputError if too many."""
+    return with_counts(
+        recipe, lambda _, name, count: max(SMALLEST.get(name, 1), round(ratio * count))
+    )

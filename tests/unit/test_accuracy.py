@@ -32,22 +32,18 @@ from swgpar.input.toml_file import to_toml
 from swgpar.largest_stress.root_stress import BETWEEN, ENDS, RootStress, resolve_root_stress
 from swgpar.largest_stress.window_recipes import LEVELS
 from swgpar.load.load_sequence import load_sequence
-from swgpar.meshing import MeshRecipe, load_recipe
+from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe_counts import (
     RATIO,
     body_ratio,
     coarsened,
     contact_ratio,
     refined,
+    resized,
     with_contact_of,
-    with_counts,
 )
 
 LOADED = ["steps.rotation=0", "steps.bent_start=true"]
-
-
-def times_as_many(recipe: MeshRecipe, times: float) -> MeshRecipe:
-    return with_counts(recipe, lambda _, name, count: round(times * count))
 
 
 def chosen(
@@ -58,22 +54,23 @@ def chosen(
     design = with_accuracy(load_design(DESIGN, [*PLANE, *LOADED, *overrides]), accuracy)
     return choose_mesh(
         design,
-        times_as_many(load_recipe(RECIPE), times),
+        resized(load_recipe(RECIPE), times),
         accuracy,
         MPI.COMM_SELF,
         largest=largest,
     )
 
 
-def test_other_counts_scale_every_count_and_no_grading() -> None:
+def test_a_resized_recipe_scales_every_count_and_no_grading() -> None:
     recipe = load_recipe("full")
-    finer = times_as_many(recipe, 2.0)
+    finer = resized(recipe, 2.0)
     for title, section in recipe.model_dump(exclude_none=True).items():
         for name, value in section.items():
             expected = 2 * value if type(value) is int else value
             assert getattr(getattr(finer, title), name) == expected, (title, name)
+    assert resized(load_recipe("plane_coarse"), 0.1).flexible_spline.tip == 2
     with pytest.raises(InputError, match="is out of range: allowed"):
-        times_as_many(recipe, 100.0)
+        resized(recipe, 100.0)
 
 
 def test_a_chosen_recipe_can_be_read_again(tmp_path: Path) -> None:
@@ -226,7 +223,7 @@ def test_the_error_holds() -> None:
     found = chosen(0.2, times=2.0)
     error, s1, design = found.root_stress.total_error, found.root_stress.s1, found.model.design
     found.model.destroy()
-    finer = solve_to_load(design, times_as_many(found.recipe, 2.0), MPI.COMM_SELF)
+    finer = solve_to_load(design, resized(found.recipe, 2.0), MPI.COMM_SELF)
     loaded = load_sequence(design).loaded
     reference = resolve_root_stress(finer, loaded, LEVELS["plane"] + 1).s1
     finer.destroy()
