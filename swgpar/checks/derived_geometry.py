@@ -6,6 +6,7 @@ import numpy as np
 
 from swgpar.checks.clearance import WORDS, Clearance, clearances
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.growth import cam_strain, frame_growth, growths
 from swgpar.geometry.cams import Cam, OffsetCam, PolarCam, pin_travel, taut_length
 from swgpar.geometry.profiles import Points
 from swgpar.geometry.profiles.from_points import fitted_flank
@@ -70,6 +71,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         - lobe,
         "tips at the minor axis (mm)": ring.r_tip_circle - spline.r_tip_circle - valley,
         **_clearance(every[0]),
+        **_growth(design),
         **_dynamic_spline(design),
         **_clearance(*every[1:]),
         **_rigid_contact(design.rigid_teeth().mesh()),
@@ -128,6 +130,25 @@ def _cup(design: DriveDesign) -> dict[str, float]:
     if cup.attachment == "bolted":
         sizes["attached area, one side (mm2)"] = 0.25 * np.pi * cup.washer_diameter**2 * cup.bolts
     return sizes
+
+
+def _growth(design: DriveDesign) -> dict[str, float]:
+    """Radial growth of bodies, were they free; none of those that do not grow."""
+    radii: dict[str, float] = {name: design.teeth(name).r_pitch for name in design.gears}
+    radii |= {"housing": design.geometry.gears["ring_gear"].outer_radius}
+    radii |= {"bearing": design.inner_radius}
+    places = {"housing": "bore of the housing", "bearing": "outer surface of the race"}
+    values = {}
+    for body, growth in growths(design).items():
+        place = places.get(body, f"pitch circle of the {body.replace('_', ' ')}")
+        values[f"free radial growth, {place} (µm)"] = 1e3 * growth.across * radii[body]
+    values["radial growth of the cam, major axis (µm)"] = (
+        1e3 * cam_strain(design) * design.major_semi_axis
+    )
+    values["radial growth of the frame (µm)"] = (
+        1e3 * frame_growth(design).across * design.geometry.outer_radius
+    )
+    return {name: value for name, value in values.items() if value}
 
 
 def _dynamic_spline(design: DriveDesign) -> dict[str, float]:

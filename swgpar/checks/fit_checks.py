@@ -10,6 +10,7 @@ from swgpar.checks.cam_checks import check_cam, check_outline
 from swgpar.checks.cup_checks import check_cup
 from swgpar.checks.deviation_checks import check_deviations
 from swgpar.checks.frequency_checks import check_frequencies
+from swgpar.checks.growth_checks import check_growth
 from swgpar.checks.program_checks import check_program
 from swgpar.checks.tooth_checks import check_teeth
 from swgpar.checks.torque_checks import check_torques
@@ -49,6 +50,7 @@ def check_fit(design: DriveDesign) -> None:
         check_deviations(design, design.deviations)
     if design.bearing is not None:
         check_bearing(design)
+    check_growth(design)
     if design.frequencies is not None:
         check_frequencies(design)
 

@@ -4,6 +4,7 @@ torques that are too small to be resolved, plastics."""
 from __future__ import annotations
 
 from swgpar.checks.clearance import clearances
+from swgpar.checks.growth_checks import growth_remarks
 from swgpar.checks.tooth_checks import tooth_remarks
 from swgpar.design.drive_design import DriveDesign
 
@@ -22,7 +23,7 @@ def remarks(design: DriveDesign) -> list[str]:
             f"{100 * stretch:.3g} %, which alone is a hoop stress of {hoop:.4g} MPa in the "
             f"flexible spline; a smaller minor axis shortens the cam"
         )
-    sentences += tooth_remarks(design)
+    sentences += [*tooth_remarks(design), *growth_remarks(design)]
     torque, negligible = design.load.torque, design.negligible_torque
     if 0.0 < 1000.0 * torque <= negligible:
         sentences.append(

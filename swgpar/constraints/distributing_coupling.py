@@ -21,6 +21,7 @@ from mpi4py import MPI
 
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import Partition
+from swgpar.materials import NO_GROWTH, Growth
 
 X, Y, Z, TILT_X, TILT_Y, ROTATION = range(6)
 """Coupled quantities: displacements along x, y and z, tilts about x and y, rotation about z."""
@@ -216,11 +217,14 @@ class RadialGuide:
     Stiff radial springs, as hard as contact; the nodes are free along the circle and the axis.
 
     coupling : of the outer surface;  area : mm², of the modelled surface;  penalty : MPa / mm
+    growth : of the rigid ring
     """
 
-    def __init__(self, coupling: NodeMeans, area: float, penalty: float) -> None:
+    def __init__(
+        self, coupling: NodeMeans, area: float, penalty: float, growth: Growth = NO_GROWTH
+    ) -> None:
         self.nodes, self.position = coupling.nodes, coupling.undeformed[:, :2]
-        self.radius = np.hypot(*self.position.T)
+        self.radius = (1.0 + growth.across) * np.hypot(*self.position.T)
         self.stiffness = penalty * area * coupling.weight
 
     def _radial(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

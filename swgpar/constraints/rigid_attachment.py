@@ -5,9 +5,10 @@ with the stiffness of a contact, per area, no stiffer than what the elements res
 
     E = k / 2 sum a |x - R(phi) X - offset|^2,   phi = atan2(sum a (X x x)_z, sum a (X . x)),
 
-with the areas a of the nodes. phi makes E the least: the bedding is free of moment, and a torque
-with the potential -T phi is work-conjugate to phi. The tangent is k a on the nodes less one rank, k
-|sum a R X . x| grad phi grad phi^T.
+with the areas a of the nodes, and their places X on the flange, which grows as the body does.
+Growth leaves its axis and its middle plane where they are. phi makes E the least: the bedding is
+free of moment, and a torque with the potential -T phi is work-conjugate to phi. The tangent is k a
+on the nodes less one rank, k |sum a R X . x| grad phi grad phi^T.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ from swgpar.constraints.distributing_coupling import (
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import Partition
 from swgpar.geometry.rotation import rotated
+from swgpar.materials import NO_GROWTH, Growth
 from swgpar.meshing.sector import SectorMesh
 
 POINTS = 16
@@ -79,7 +81,7 @@ class RigidAttachment(NodeMeans):
     body : elements of the body on this rank;  surface : name of its plane faces
     inside : which points of them are attached;  width : mm, of the attached area across its
     narrowest place
-    penalty : MPa / mm;  images : the model holds half a turn
+    penalty : MPa / mm;  images : the model holds half a turn;  growth : of the flange
     """
 
     def __init__(
@@ -92,6 +94,7 @@ class RigidAttachment(NodeMeans):
         *,
         penalty: float,
         images: bool,
+        growth: Growth = NO_GROWTH,
     ) -> None:
         layout, mesh = body.layout, body.layout.mesh
         angles = layout.sector_angle(layout.first_tooth + body.sectors[body.owned])
@@ -115,6 +118,7 @@ class RigidAttachment(NodeMeans):
             fixed_axis=True,
         )
         self.stiffness = penalty * self.total * self.weight
+        self.on_flange = self.undeformed + growth.of(self.arm)
         self.active = np.arange(N_COUPLED) == ROTATION
 
     def supports(self) -> np.ndarray:
@@ -130,8 +134,8 @@ class RigidAttachment(NodeMeans):
         shift = np.tile(offset[[X, Y, Z]], (len(self.nodes), 1))
         tilt = np.array([offset[TILT_X], offset[TILT_Y], 0.0])
         moved = self.undeformed + u[self.nodes]
-        moved[:, :2] -= rotated(self.undeformed[:, :2], rotation)
-        moved[:, 2] -= self.undeformed[:, 2]
+        moved[:, :2] -= rotated(self.on_flange[:, :2], rotation)
+        moved[:, 2] -= self.on_flange[:, 2]
         return moved - shift - np.cross(tilt, self.arm)
 
     def add_forces(self, u: np.ndarray, offset: np.ndarray, residual: np.ndarray) -> None:
@@ -145,7 +149,7 @@ class RigidAttachment(NodeMeans):
     def free_rotation(self, u: np.ndarray) -> np.ndarray:
         """Vector B (n, 3) of the part -B B^T of the tangent: the flange rotates freely."""
         moved = self.undeformed[:, :2] + u[self.nodes, :2]
-        x, y = self.undeformed[:, :2].T
+        x, y = self.on_flange[:, :2].T
         parts = np.column_stack(
             [x * moved[:, 1] - y * moved[:, 0], x * moved[:, 0] + y * moved[:, 1]]
         )

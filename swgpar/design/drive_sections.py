@@ -20,7 +20,6 @@ from swgpar.design.sections import (
     Fatigue,
     Gear,
     GearName,
-    Housing,
     InternalGear,
     Load,
     Losses,
@@ -29,6 +28,7 @@ from swgpar.design.sections import (
     Solver,
     Steps,
 )
+from swgpar.design.surroundings import Housing
 from swgpar.geometry.cams import Bearing, WaveGenerator
 from swgpar.geometry.profiles import Teeth
 from swgpar.input.design import Design

@@ -8,10 +8,12 @@ import numpy as np
 
 from swgpar.design.linear_solvers import LINEAR_SOLVERS, LinearSolverName
 from swgpar.design.program_sections import ProgramStage
+from swgpar.design.surroundings import Frame, Housing
 from swgpar.geometry.profiles import ExternalProfile, InternalProfile, Points, Teeth
 from swgpar.geometry.profiles.flank_points import heights
 from swgpar.input.quantities import Section, quantity
 from swgpar.materials import OptionalMaterial
+from swgpar.materials.temperature import temperature
 
 GearName = Literal["flexible_spline", "ring_gear", "dynamic_spline"]
 """Name of a gear: its section in the design file, and its body in meshes and results."""
@@ -104,6 +106,7 @@ class Gear(Section):
     tip_relief_height: float = quantity(
         0.2, unit="modules", text="height of the relieved part of the flank", gt=0.0, le=2.0
     )
+    temperature: float | None = temperature("the gear")
     material: OptionalMaterial = None
 
 
@@ -113,22 +116,12 @@ class ExternalGear(Gear):
     profile: ExternalProfile
 
 
-class Housing(Section):
-    """Section [ring_gear.housing]: an elastic ring around the ring gear and bonded to it, as wide
-    as the gear."""
-
-    thickness: float = quantity(unit="mm", text="radial thickness", gt=0.0)
-    outside: Literal["free", "held"] = quantity(
-        "free", text="outer surface: free, with its mean motion held, or held by a rigid frame"
-    )
-    material: OptionalMaterial = None
-
-
 class InternalGear(Gear):
     """Section [ring_gear]."""
 
     profile: InternalProfile
     housing: Housing | None = None
+    frame: Frame = Frame()
 
 
 class DynamicSpline(Gear):
@@ -175,6 +168,9 @@ class Load(Section):
     )
     input_speed: float = quantity(
         2000.0, unit="1/min", text="speed of the input, for sliding speeds", gt=0.0, le=1e6
+    )
+    reference_temperature: float = quantity(
+        20.0, unit="°C", text="temperature at which all sizes hold", ge=-273.15, le=1000.0
     )
     program: list[ProgramStage] = quantity(
         [], text="stages of a load program, which takes the place of torque and rotation"

@@ -32,6 +32,14 @@ class HousingStresses(AnswerGroup):
         "µm",
     )
 
+    fit_tension_MPa: float | None = answer(
+        "housing.fit_tension",
+        "largest tension between ring gear and housing under load, mean of a tooth sector; below 0 "
+        "where the fit presses all round",
+        "MPa",
+        default=None,
+    )
+
     TITLE = "housing under load"
     ASKED_BY = "[ring_gear.housing]"
     SECTION = "housing"
@@ -43,7 +51,7 @@ def housing_values(model: DriveModel, stresses: Mapping[str, float]) -> dict[str
     stresses : of the housing, MPa, as `DriveModel.stresses` names them
 
     `bulge_um` is the largest radial displacement, outwards, of the surface between ring gear and
-    housing.
+    housing. `fit_tension_MPa` is by the forces on the housing there.
     """
     body = model.elements.bodies[RING_GEAR]
     mesh = body.layout.mesh
@@ -51,9 +59,14 @@ def housing_values(model: DriveModel, stresses: Mapping[str, float]) -> dict[str
     before = body.positions()[body.owned][:, nodes, :2]
     after = before + body.displacement(model.problem.displacement())[body.owned][:, nodes, :2]
     moved = np.linalg.norm(after, axis=-1) - np.linalg.norm(before, axis=-1)
+    radius = float(np.hypot(*mesh.coords[nodes[0], :2]))
+    forces = body.part_forces(model.problem.displacement(), 1)[:, nodes, :2]
+    pressing = np.sum(forces * before / radius, axis=(1, 2))
+    area = 2.0 * np.pi * radius / mesh.n_sectors * model.design.drive.face_width
     return {
         **{f"{name.removeprefix('housing_')}_MPa": value for name, value in stresses.items()},
         "bulge_um": MICROMETRES * largest(model.comm, float(moved.max(initial=-np.inf))),
+        "fit_tension_MPa": largest(model.comm, -float(pressing.min(initial=np.inf)) / area),
     }
 
 

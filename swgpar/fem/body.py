@@ -9,7 +9,7 @@ import numpy as np
 
 from swgpar.fem.element_matrices import element_matrices
 from swgpar.kernel import ReferenceElements
-from swgpar.materials import Material
+from swgpar.materials import NO_GROWTH, Growth, Material
 from swgpar.materials.material import IN_PLANE
 from swgpar.meshing.sector import SectorMesh
 
@@ -35,12 +35,14 @@ class Body:
     materials : of the parts of the mesh (`SectorMesh.parts`): of a gear, and of the housing around
     it
     thickness : mm, of the plane model
+    growths : strains without stress of the parts of the mesh; without them none
     incompatible : whether the elements have incompatible modes; without them for comparison only
     """
 
     mesh: SectorMesh
     materials: tuple[Material, ...]
     thickness: float
+    growths: tuple[Growth, ...] = ()
     incompatible: bool = True
 
     @property
@@ -56,14 +58,23 @@ class Body:
     @cached_property
     def elements(self) -> ReferenceElements:
         """Matrices of the elements of the sector."""
-        mesh, first = self.mesh, self.materials[0]
-        coords = mesh.coords[mesh.elements]
-        elements = element_matrices(coords, first, self.thickness, self.incompatible)
-        for part, material in zip(mesh.parts[1:], self.materials[1:], strict=True):
-            others = element_matrices(coords[part], material, self.thickness, self.incompatible)
-            for matrices, other in zip(elements, others):
-                matrices[part] = other
-        return elements
+        coords = self.mesh.coords[self.mesh.elements]
+        elements = self._grown(coords, 0)
+        for k, part in enumerate(self.mesh.parts[1:], start=1):
+            for matrices, others in zip(elements, self._grown(coords[part], k)):
+                matrices[part] = others
+        return elements._replace(coords=coords)
+
+    def _grown(self, coords: np.ndarray, part: int) -> ReferenceElements:
+        """Matrices of elements (n, m, 3) mm of the material of a part, as large as they are free of
+        stress."""
+        growth = self.growths[part] if self.growths else NO_GROWTH
+        return element_matrices(
+            coords + growth.of(coords),
+            self.materials[part],
+            (1.0 + growth.along) * self.thickness,
+            self.incompatible,
+        )
 
     @property
     def in_plane_elasticity(self) -> np.ndarray:

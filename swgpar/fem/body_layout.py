@@ -16,7 +16,8 @@ import numpy as np
 
 from swgpar.fem.body import Body
 from swgpar.fem.condensed_parts import CondensedPart
-from swgpar.geometry.rotation import sixths_of_turn
+from swgpar.geometry.rotation import rotated, sixths_of_turn
+from swgpar.materials import NO_GROWTH, Growth
 from swgpar.meshing.sector import SectorMesh
 
 
@@ -51,7 +52,8 @@ class BodyLayout:
     closed : the chain closes on itself, with a rotation by its own length where the model is a part
     of the drive
     copies : how many times the model makes the whole: 1, 2 or 3
-    fixed : (n_fixed,) local nodes that do not move
+    fixed : (n_fixed,) local nodes that what holds them moves, and nothing else
+    held : growth of what holds them
     condensed : the sector as one element, whose inner nodes have no unknowns; None where they have
     tooth : the tooth as one element, where nothing touches its flanks; None where it is not used
     """
@@ -62,6 +64,7 @@ class BodyLayout:
     closed: bool
     copies: int
     fixed: np.ndarray
+    held: Growth = NO_GROWTH
     condensed: CondensedPart | None = None
     tooth: CondensedPart | None = None
 
@@ -117,12 +120,18 @@ class BodyLayout:
         return np.where(rest < self.count, rest, -1), sixths_of_turn(self.copies, periods)
 
     def with_inner_nodes(self, sectors: np.ndarray, field: np.ndarray) -> np.ndarray:
-        """Displacement with the values at the inner nodes of condensed sectors recovered.
+        """Displacement with the values at nodes without unknowns: fixed ones, and inner ones of
+        condensed sectors.
 
         sectors : (n,) indices in the chain;  field : (n, n_node, 3) mm, overwritten at these nodes
         """
+        angle = self.sector_angle(self.first_tooth + sectors)
+        if self.held:
+            nodes, lower = self.fixed, self.mesh.lower_nodes
+            if lower is not None:
+                nodes = np.flatnonzero(np.isin(lower, nodes))
+            field[:, nodes] = rotated(self.held.of(self.mesh.coords[nodes]), angle[:, None])
         if self.condensed is not None:
-            angle = self.sector_angle(self.first_tooth + sectors)
             outer = field[:, self.condensed.outer]
             field[:, self.condensed.inner] = self.condensed.inner_displacement(angle, outer)
             if self.mesh.lower_nodes is not None:

@@ -27,8 +27,8 @@ from swgpar.meshing.sector import SectorMesh
 class CondensedPart:
     """Elements of a sector as one.
 
-    outer : (m,) nodes that keep their unknowns;  inner : (k,) nodes that are eliminated;
-    inner_coords : (k, 3) mm
+    outer : (m,) nodes that keep their unknowns;  inner : (k,) nodes that are eliminated
+    inner_coords, inner_free : (k, 3) mm, undeformed and without stress
     reference : the part as an element of m nodes, without recovery of stress
     modes : (3 k, 3 m) constraint modes in that frame: displacement of inner by that of outer nodes
     """
@@ -36,6 +36,7 @@ class CondensedPart:
     outer: np.ndarray
     inner: np.ndarray
     inner_coords: np.ndarray
+    inner_free: np.ndarray
     reference: ReferenceElements
     modes: np.ndarray
 
@@ -45,7 +46,7 @@ class CondensedPart:
         angle : (n,) rad, of the sectors;  u : (n, m, 3) mm
         """
         coords, gradient = self.reference.coords[0], self.reference.gradient[0]
-        middle = coords.mean(axis=0)
+        middle, free = coords.mean(axis=0), self.reference.stress_free[0]
         outer, inner = coords - middle, self.inner_coords - middle
         mean, turn = u.mean(axis=1, keepdims=True), angle[:, None]
         position = rotated(outer, turn) + u - mean
@@ -54,9 +55,11 @@ class CondensedPart:
             stretch[:, 2, 2] = 1.0
         left, _, right = np.linalg.svd(stretch)
         frame = left @ right
-        deformed = (position @ frame - outer).reshape(len(u), outer.size) @ self.modes.T
+        stretched = position @ frame - (free - free.mean(axis=0))
+        deformed = stretched.reshape(len(u), outer.size) @ self.modes.T
         frame = frame.transpose(0, 2, 1)
-        moved = (inner + deformed.reshape(len(u), *inner.shape)) @ frame
+        inner_free = self.inner_free - free.mean(axis=0)
+        moved = (inner_free + deformed.reshape(len(u), *inner.shape)) @ frame
         return moved - rotated(inner, turn) + mean
 
 
@@ -99,7 +102,8 @@ def condense_tooth(mesh: SectorMesh, elements: ReferenceElements) -> CondensedPa
 def _condense(
     mesh: SectorMesh, elements: ReferenceElements, part: np.ndarray, outer: np.ndarray
 ) -> CondensedPart:
-    """Eliminate all nodes but `outer` from the stiffness of the elements `part` of a sector."""
+    """Eliminate all nodes but `outer` from the stiffness of the elements `part` of a sector, which
+    grow alike."""
     conn, dims = mesh.elements[part], 2 if mesh.plane else 3
     inner = np.setdiff1d(conn, outer)
     n, m, k = len(mesh.coords), len(outer), len(inner)
@@ -122,7 +126,8 @@ def _condense(
     condensed = stiffness[at_outer][:, at_outer].toarray() + coupling.T @ solved
     modes[:, :dims, :, :dims] = solved.reshape(k, dims, m, dims)
     reduced[:, :dims, :, :dims] = (0.5 * (condensed + condensed.T)).reshape(m, dims, m, dims)
-    coords = mesh.coords[outer]
+    coords, free = mesh.coords[outer], mesh.coords.copy()
+    free[conn] = elements.stress_free[part]
     # the frame follows the least-squares gradient of the outer nodes' motion
     about = (coords - coords.mean(axis=0))[:, :dims]
     gradient = np.zeros((m, 3))
@@ -132,6 +137,8 @@ def _condense(
         np.zeros((1, 0, 3 * m)),
         gradient[None],
         coords[None],
+        free[outer][None],
         elements.volume[part].sum(keepdims=True),
     )
-    return CondensedPart(outer, inner, mesh.coords[inner], reference, modes.reshape(3 * k, 3 * m))
+    places = mesh.coords[inner], free[inner]
+    return CondensedPart(outer, inner, *places, reference, modes.reshape(3 * k, 3 * m))

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.local_nodes import LocalNodes
 from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows
@@ -59,6 +60,16 @@ def sectors_seen(partition: Partition, body: str) -> np.ndarray:
     return sectors if layout.closed else sectors[(sectors >= 0) & (sectors < layout.count)]
 
 
+def _held(layout: BodyLayout, matrices: ReferenceElements, nodes: np.ndarray) -> ReferenceElements:
+    """Matrices of elements of nodes (n, m) with the fixed nodes where they are held: the kernels
+    take their displacement as zero."""
+    if not layout.held:
+        return matrices
+    coords, fixed = matrices.coords.copy(), np.isin(nodes, layout.fixed)
+    coords[fixed] += layout.held.of(coords[fixed])
+    return matrices._replace(coords=coords)
+
+
 class BodyElements:
     """The elements of one body as one rank sees them. A condensed sector is a single element.
 
@@ -85,6 +96,7 @@ class BodyElements:
             self._kinds = [(condensed.reference, condensed.outer[None])]
         elif layout.tooth is not None:
             self._kinds.append((layout.tooth.reference, layout.tooth.outer[None]))
+        self._kinds = [(_held(layout, *kind), kind[1]) for kind in self._kinds]
         first, end = partition.owned_sectors(body)
         sectors = sectors_seen(partition, body)
         self.sectors = sectors
@@ -159,6 +171,19 @@ class BodyElements:
         """Undeformed positions of all nodes of the sectors seen; (n_sectors, n_node, 3) mm."""
         angle = self.layout.sector_angle(self.layout.first_tooth + self.sectors)
         return rotated(self.layout.mesh.coords, angle[:, None])
+
+    def part_forces(self, u: np.ndarray, part: int) -> np.ndarray:
+        """Forces (n_owned, n_node, 3) N on the nodes of each owned sector by what is around a part.
+
+        u : (n_local, 3) mm;  part : of the mesh, see `SectorMesh.parts`
+        """
+        indices = np.ascontiguousarray(self.layout.mesh.parts[part])
+        elements, field = self.layout.mesh.elements[indices], self.displacement(u)[self.owned]
+        forces, no_image = np.zeros_like(field), np.zeros(elements.shape, dtype=np.uint8)
+        for k, rotation in enumerate(self.sector_rotation[self.owned]):
+            frames = indices, np.tile(rotation, (len(indices), 1)), elements, no_image
+            assemble_elements(self.reference, *frames, field[k], forces[k], None, None)
+        return forces
 
     def nodal_stress(self, u: np.ndarray, part: int = 0) -> np.ndarray:
         """Stress at the nodes of the owned sectors: extrapolated, averaged over elements of a part.

@@ -55,8 +55,8 @@ class Partition:
 
     @property
     def has_multipliers(self) -> bool:
-        """Whether the rows of the multipliers are on this rank, the last one."""
-        return self.comm.rank == self.comm.size - 1
+        """Whether the rows of the multipliers are on this rank: the last one, if there are any."""
+        return self.n_multipliers > 0 and self.comm.rank == self.comm.size - 1
 
     def owns(self, number: np.ndarray) -> np.ndarray:
         """Whether this rank owns the nodes of global numbers; any shape."""

@@ -83,6 +83,6 @@ def write_field(partition: Partition, body: str, values: np.ndarray, vector: PET
 def read_multipliers(partition: Partition, vector: PETSc.Vec) -> np.ndarray:
     """The multiplier entries of a full-length vector, on every rank."""
     comm, last, n = partition.comm, partition.comm.size - 1, partition.n_multipliers
-    values = vector.array_r[-n:].copy() if comm.rank == last else np.empty(n)
+    values = vector.array_r[-n:].copy() if partition.has_multipliers else np.empty(n)
     comm.Bcast(values, root=last)
     return values

@@ -57,6 +57,21 @@ class TwoDiscSurface:
 CamSurface = WaveGeneratorSurface | TwoDiscSurface
 
 
+class GrownSurface:
+    """Level function of a surface that has grown alike in all directions.
+
+    surface : before;  strain : of its growth
+    """
+
+    def __init__(self, surface: CamSurface, strain: float) -> None:
+        self.surface, self.factor = surface, 1.0 + strain
+
+    def evaluate(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Level h (n,) mm, gradient (n, 3), Hessian (n, 3, 3) 1/mm at points (n, 3) mm."""
+        level, gradient, hessian = self.surface.evaluate(xyz / self.factor)
+        return level * self.factor, gradient, hessian / self.factor
+
+
 def cam_surface(
     keys: WaveGenerator, cam: Cam, crowned: float, slope: float, shape: str
 ) -> CamSurface:

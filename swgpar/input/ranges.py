@@ -38,6 +38,8 @@ SMALLEST_AND_LARGEST = {
     "rad/s": (1e-9, 1e9),
     "cycles": (1e-9, 1e3),
     "kg/m³": (1e-3, 1e6),
+    "°C": (1e-6, 1e4),
+    "1/K": (1e-9, 1e-2),
     "km/h": (1e-6, 1e5),
     "N·√s": (1e-12, 1e9),
 }

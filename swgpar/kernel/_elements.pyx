@@ -15,6 +15,7 @@ cdef extern from "element_batch.hpp" namespace "swgpar" nogil:
         const double* stiffness
         const double* gradient
         const double* coords
+        const double* stress_free
         const int32_t* ref_of
         const double* rotation
         const int32_t* conn
@@ -39,7 +40,8 @@ class ReferenceElements(NamedTuple):
     """Matrices of undeformed elements of m nodes (8, or 4 in the plane), shared by all congruent ones.
 
     stiffness : (n, 3 m, 3 m) N/mm;  recovery : (n, 6 m, 3 m) MPa/mm, row 6 * node + component
-    gradient : (n, m, 3) 1/mm, at the centre;  coords : (n, m, 3) mm;  volume : (n,) mm^3
+    gradient : (n, m, 3) 1/mm, at the centre;  volume : (n,) mm^3
+    coords : (n, m, 3) mm, from which displacements count;  stress_free : (n, m, 3) mm, nodes of the stress-free element
     Condensed parts have more nodes, no rows of `recovery`, and the least-squares gradient of their nodes.
     """
 
@@ -47,6 +49,7 @@ class ReferenceElements(NamedTuple):
     recovery: np.ndarray
     gradient: np.ndarray
     coords: np.ndarray
+    stress_free: np.ndarray
     volume: np.ndarray
 
 
@@ -70,7 +73,7 @@ def reference_elements(coords, elasticity, double thickness=0.0, bint incompatib
     if m == 4 and not thickness > 0.0:
         raise ValueError(f"{name}: thickness is {thickness}; expected a thickness above 0 of quadrilaterals")
     out = ReferenceElements(np.empty((n, 3 * m, 3 * m)), np.empty((n, 6 * m, 3 * m)), np.empty((n, m, 3)),
-                            coords, np.empty(n))
+                            coords, coords, np.empty(n))
     if n == 0:
         return out
     cdef double[:, :, ::1] k = out.stiffness, s = out.recovery, g = out.gradient
@@ -96,9 +99,11 @@ cdef ElementBatch batch(str function, ref, ref_of, rotation, conn, sixths, nodes
     cdef int64_t n_ref = stiffness.shape[0]
     cdef const double[:, :, ::1] gradient = checked(function, "ref.gradient", ref.gradient, DOUBLE, (n_ref, m, 3))
     cdef const double[:, :, ::1] coords = checked(function, "ref.coords", ref.coords, DOUBLE, (n_ref, m, 3))
+    cdef const double[:, :, ::1] free = checked(function, "ref.stress_free", ref.stress_free, DOUBLE, (n_ref, m, 3))
     cdef const int32_t[::1] row = indices(function, "ref_of", ref_of, INT32, (n,), 0, n_ref)
     return ElementBatch(
-        n, m, &stiffness[0, 0, 0], &gradient[0, 0, 0], &coords[0, 0, 0], &row[0], &turn[0, 0], &node[0, 0], &image[0, 0]
+        n, m, &stiffness[0, 0, 0], &gradient[0, 0, 0], &coords[0, 0, 0], &free[0, 0, 0], &row[0], &turn[0, 0],
+        &node[0, 0], &image[0, 0]
     )
 
 

@@ -3,9 +3,10 @@
 // derivatives.
 //
 // R: polar rotation of F = sum_a x_a g_a^T (g_a: shape gradients at the centre);  y_a = R^T (x_a -
-// mean), d = y - X. With v = R^T dx, U = R^T F, G = tr(U) 1 - U:  spin theta = Q v, Q = G^-1 [
-// [g_a]x ], dd = P v, P = 1 + Y Q, Y_a = [y_a]x;  f0 = K0 d, m = sum y_a x f0_a, r = f0 - Q^T m,
-// f_a = R r_a.
+// mean), d = y - X, X: stress-free nodes, which may be others than those from which displacements
+// count. R does not depend on X, so that d varies with y alone. With v = R^T dx, U = R^T F, G =
+// tr(U) 1 - U:  spin theta = Q v, Q = G^-1 [ [g_a]x ], dd = P v, P = 1 + Y Q, Y_a = [y_a]x;  f0 =
+// K0 d, m = sum y_a x f0_a, r = f0 - Q^T m, f_a = R r_a.
 #pragma once
 
 #include "hex8i.hpp"
@@ -68,9 +69,9 @@ struct CorotatedElement {
   Rows q;
   bool valid = true;
 
-  // small: X_a - mean(X), rotated: the same at the sector's angle, u: displacements. The
-  // displacement in the element frame is R^T (rotated + u - mean u) - small, formed from small
-  // numbers only.
+  // small: X_a - mean(X), stress-free, rotated: undeformed nodes from their mean at the sector's
+  // angle, u: displacements. The displacement in the element frame is R^T (rotated + u - mean u) -
+  // small, formed from small numbers only.
   CorotatedElement(const Nodes& small, const Nodes& rotated, const Nodes& u, const Nodes& g,
                    const double* stiffness) {
     const Eigen::RowVector3d mean = u.colwise().mean();

@@ -14,7 +14,8 @@ struct ElementBatch {  // N nodes each: 8; 4 in the plane; those of a condensed 
   std::int64_t n, nodes;
   const double* stiffness;     // (n_ref, 3 N, 3 N)
   const double* gradient;      // (n_ref, N, 3)
-  const double* coords;        // (n_ref, N, 3)
+  const double* coords;        // (n_ref, N, 3), from which displacements count
+  const double* stress_free;   // (n_ref, N, 3)
   const std::int32_t* ref_of;  // (n)
   const double* rotation;      // (n, 2) cosine and sine of the sector's angle
   const std::int32_t* conn;    // (n, N), -1: fixed
@@ -35,14 +36,17 @@ inline CorotatedElement<N> state(const ElementBatch& e, std::int64_t k, const do
   const std::int64_t ref = e.ref_of[k], m = count<N>(e);
   g = Eigen::Map<const RowNodes<N>>(e.gradient + 3 * m * ref, m, 3);
   Eigen::Matrix<double, N, 3> x = Eigen::Map<const RowNodes<N>>(e.coords + 3 * m * ref, m, 3);
+  Eigen::Matrix<double, N, 3> small =
+      Eigen::Map<const RowNodes<N>>(e.stress_free + 3 * m * ref, m, 3);
   x.rowwise() -= x.colwise().mean().eval();
+  small.rowwise() -= small.colwise().mean().eval();
   const double c = e.rotation[2 * k], s = e.rotation[2 * k + 1];
   Eigen::Matrix<double, N, 3> rotated = x, v(m, 3);
   rotated.col(0) = c * x.col(0) - s * x.col(1);
   rotated.col(1) = s * x.col(0) + c * x.col(1);
   for (int a = 0; a < m; ++a)
     v.row(a) = nodal(u, e.conn[m * k + a], e.sixths[m * k + a]).transpose();
-  return CorotatedElement<N>(x, rotated, v, g, e.stiffness + 9 * m * m * ref);
+  return CorotatedElement<N>(small, rotated, v, g, e.stiffness + 9 * m * m * ref);
 }
 
 // Adds forces and tangent blocks; returns the index of a collapsed element or -1.

@@ -3,6 +3,7 @@
 To add a law, see docs/howto/own_material.md.
 """
 
+from swgpar.materials.growth import NO_GROWTH, Growth
 from swgpar.materials.isotropic import Isotropic
 from swgpar.materials.laws import ChosenMaterial, OptionalMaterial
 from swgpar.materials.library import LIBRARY
@@ -11,7 +12,9 @@ from swgpar.materials.transversely_isotropic import TransverselyIsotropic
 
 __all__ = [
     "LIBRARY",
+    "NO_GROWTH",
     "ChosenMaterial",
+    "Growth",
     "Isotropic",
     "Material",
     "OptionalMaterial",

@@ -17,7 +17,9 @@ class Isotropic(Material):
 
     type: Literal["isotropic"] = quantity("isotropic", text="law of the material")
     name: Literal[tuple(LIBRARY)] | None = quantity(  # type: ignore[valid-type]
-        None, text="material of the library, which gives E, nu and density where they are missing"
+        None,
+        text="material of the library, which gives E, nu, density and expansion where they are "
+        "missing",
     )
     E: float = quantity(unit="MPa", text="modulus of elasticity", gt=0.0)
     nu: float = quantity(text="Poisson's ratio", ge=0.0, le=0.499)
@@ -28,7 +30,8 @@ class Isotropic(Material):
         named = LIBRARY.get(str(keys.get("name"))) if isinstance(keys, dict) else None
         if named is None:
             return keys
-        return {"E": named.E, "nu": named.nu, "density": named.density, **keys}
+        of_library = {key: getattr(named, key) for key in ("E", "nu", "density", "expansion")}
+        return {**of_library, **keys}
 
     @property
     def creeps(self) -> bool:

@@ -10,6 +10,7 @@ from pydantic import model_validator
 from pydantic_core import PydanticCustomError
 
 from swgpar.input.quantities import WHOLE_SECTION, Section, quantity
+from swgpar.materials.growth import Growth
 
 IN_PLANE = [0, 1, 3]
 """Components xx, yy and xy among xx, yy, zz, xy, yz, zx."""
@@ -24,6 +25,9 @@ class Material(Section):
     """
 
     density: float | None = quantity(None, unit="kg/m³", text="density", ge=100.0, le=30e3)
+    expansion: float | None = quantity(
+        None, unit="1/K", text="coefficient of thermal expansion", ge=0.0, le=1e-3
+    )
 
     @model_validator(mode="after")
     def _is_stable(self) -> Self:
@@ -46,6 +50,11 @@ class Material(Section):
         """Stresses xx, yy, xy by these strains where zz, yz and zx are free of stress, (3, 3)
         MPa."""
         return _inverse(self.compliance()[np.ix_(IN_PLANE, IN_PLANE)])
+
+    def thermal_growth(self, rise: float) -> Growth | None:
+        """Growth of a free body by a rise of its temperature (K); None where `expansion` is not
+        known."""
+        return None if self.expansion is None else Growth(*2 * (self.expansion * rise,))
 
     @property
     def creeps(self) -> bool:

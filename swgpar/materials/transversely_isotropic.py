@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 
 from swgpar.input.quantities import quantity
+from swgpar.materials.growth import Growth
 from swgpar.materials.material import Material
 
 
@@ -25,6 +26,20 @@ class TransverselyIsotropic(Material):
         lt=1.0,
     )
     G_z: float = quantity(unit="MPa", text="shear modulus of the planes yz and zx", gt=0.0)
+    expansion_z: float | None = quantity(
+        None,
+        unit="1/K",
+        text="coefficient of thermal expansion along z; without it expansion",
+        ge=0.0,
+        le=1e-3,
+    )
+
+    def thermal_growth(self, rise: float) -> Growth | None:
+        """Growth of a free body by a rise of its temperature (K), which differs along z."""
+        if self.expansion is None:
+            return None
+        along = self.expansion if self.expansion_z is None else self.expansion_z
+        return Growth(self.expansion * rise, along * rise)
 
     def compliance(self) -> np.ndarray:
         """Strains by stresses, (6, 6) 1/MPa."""

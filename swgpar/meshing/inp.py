@@ -75,6 +75,17 @@ def _density(material: Material) -> str:
     return "" if material.density is None else f"*DENSITY\n{1e-12 * material.density:.12g}\n"
 
 
+def _expansion(material: Material) -> str:
+    """Lines of the thermal expansion, 1/K; empty where it is not given."""
+    growth = material.thermal_growth(1.0)
+    if growth is None:
+        return ""
+    if growth.across == growth.along:
+        return f"*EXPANSION\n{growth.across:.12g}\n"
+    across = f"{growth.across:.12g}"
+    return f"*EXPANSION, TYPE=ORTHO\n{across}, {across}, {growth.along:.12g}\n"
+
+
 def write_inp(
     path: Path,
     drive: meshio.Mesh,
@@ -126,7 +137,7 @@ def write_inp(
             file.write(
                 f"*MATERIAL, NAME={body.upper()}_MATERIAL\n"
                 f"*ELASTIC{_constants(materials[body], plane_stress)}\n"
-                f"{_density(materials[body])}"
+                f"{_density(materials[body])}{_expansion(materials[body])}"
             )
         for body in drive.cell_sets:
             file.write(f"*SOLID SECTION, ELSET={body.upper()}, MATERIAL={body.upper()}_MATERIAL\n")

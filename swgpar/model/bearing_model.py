@@ -3,8 +3,6 @@ race's support."""
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans
@@ -14,10 +12,10 @@ from swgpar.contact.point_contact import ball_spring
 from swgpar.contact.race_contact import RaceContact
 from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.growth import ball_clearance, grown_ball_lines, growths
 from swgpar.fem.body import FLEXIBLE_SPLINE, OUTER_RACE, Body
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
-from swgpar.geometry.bearing import ball_lines
 from swgpar.geometry.micro_geometry import crowning
 from swgpar.materials import contact_modulus
 from swgpar.meshing.race_sector import opposite_cells, race_grid, race_sector
@@ -33,7 +31,8 @@ def build_race(design: DriveDesign, spline: SectorMesh) -> Body:
     mesh = race_sector(
         spline, design.inner_radius, design.bearing.race_thickness, design.race_width, RADIAL
     )
-    return Body(mesh, (design.materials["bearing"],), design.race_width)
+    materials, grown = (design.materials["bearing"],), (growths(design)["bearing"],)
+    return Body(mesh, materials, design.race_width, grown)
 
 
 def build_balls(design: DriveDesign) -> BallSet:
@@ -42,10 +41,10 @@ def build_balls(design: DriveDesign) -> BallSet:
     return BallSet(
         number=bearing.balls,
         diameter=bearing.ball_diameter,
-        clearance=bearing.clearance,
+        clearance=ball_clearance(design),
         first_angle=float(np.radians(bearing.first_ball)),
         cage_speed=design.cage_speed,
-        lines=partial(ball_lines, design.cam(), sizes.centre_depth),
+        lines=grown_ball_lines(design),
         spring=ball_spring(
             bearing.ball_diameter,
             sizes.inner_groove,
@@ -86,9 +85,9 @@ def build_bearing_contacts(
     micro = design.micro_geometry
 
     def relief(z: np.ndarray) -> np.ndarray:
-        return crowning(
-            micro.wg_crowning, z, design.wave_generator.face_width, micro.crowning_shape
-        )[0]
+        width = design.wave_generator.face_width
+        removed = crowning(micro.wg_crowning, z, width, micro.crowning_shape)[0]
+        return removed - 0.5 * design.bearing.race_interference
 
     column, layer = opposite_cells(spline.layout.mesh, race.layout.mesh)
     contact = RaceContact(

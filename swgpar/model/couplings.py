@@ -10,12 +10,13 @@ from swgpar.design.cup_section import Cup
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import Partition
 from swgpar.log import logger
+from swgpar.materials import NO_GROWTH, Growth
 
 
 def spline_attachment(
     partition: Partition, spline: BodyElements, cup: Cup, penalty: float, images: bool
 ) -> RigidAttachment:
-    """Attachment of closed end or flange, which is clamped or bolted.
+    """Attachment of closed end or flange, which is clamped or bolted to a flange that grows as it.
 
     penalty : MPa / mm;  images : whether the model is a part of the drive
     """
@@ -35,17 +36,22 @@ def spline_attachment(
         cup.attached_width,
         penalty=penalty,
         images=images,
+        growth=spline.layout.body.growths[0] if spline.layout.body.growths else NO_GROWTH,
     )
 
 
 def ring_guide(
-    coupling: NodeMeans, ends: tuple[float, float], copies: int, penalty: float
+    coupling: NodeMeans,
+    ends: tuple[float, float],
+    copies: int,
+    penalty: float,
+    growth: Growth = NO_GROWTH,
 ) -> RadialGuide:
     """Guide around a rotating ring gear.
 
     ends : mm, of its teeth along z;  copies : how many times the model makes the whole drive
-    penalty : MPa / mm
+    penalty : MPa / mm;  growth : of the guide
     """
     outer = float(np.hypot(*coupling.undeformed[:, :2].T).max(initial=0.0))
     area = 2.0 * np.pi * outer * (ends[1] - ends[0]) / copies
-    return RadialGuide(coupling, area, penalty)
+    return RadialGuide(coupling, area, penalty, growth)

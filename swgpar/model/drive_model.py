@@ -24,6 +24,7 @@ from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
 from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.growth import frame_growth, grown_cam_surface, growths
 from swgpar.design.sections import Contact, Solver
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.body_layout import BodyLayout
@@ -193,9 +194,7 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
             condensed_teeth=design.condenses_teeth,
         ),
         module=design.drive.module,
-        ring_sectors=RingSectors(partition.layouts[RING_GEAR].count)
-        if design.leaves_out_sectors
-        else None,
+        ring_sectors=ring_sectors(design, partition.layouts[RING_GEAR]),
         whole_teeth=[
             WholeTeeth(layout.count, layout.name) for layout in layouts if layout.tooth is not None
         ],
@@ -218,14 +217,23 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
     )
 
 
+def ring_sectors(design: DriveDesign, ring: BodyLayout) -> RingSectors | None:
+    """What chooses the sectors of the ring gear that are modelled; None where all are, also where
+    its growth or that of its frame stresses it all round."""
+    pressed = any(ring.body.growths) or bool(ring.held)
+    return RingSectors(ring.count) if design.leaves_out_sectors and not pressed else None
+
+
 def build_layouts(design: DriveDesign, meshes: Mapping[str, SectorMesh]) -> list[BodyLayout]:
     """Modelled sectors of the gears and of the outer race."""
     held = design.kinematics.standing_gear if design.frame_is_rigid else None
+    grown = growths(design)
     layouts = [
         build_layout(
-            build_gear(mesh, design.materials, design.drive.face_width),
+            build_gear(mesh, design.materials, design.drive.face_width, grown),
             copies=design.copies,
             clamped=name == held != FLEXIBLE_SPLINE,
+            held=frame_growth(design),
             condensed_sectors=design.solver.condensed_sectors,
             condensed_teeth=design.condenses_teeth,
         )
@@ -258,9 +266,8 @@ def build_supports(design: DriveDesign, partition: Partition, elements: Elements
         couplings.append(ring_coupling)
         if design.frame_is_rigid:
             ends = design.axial_range(design.kinematics.output_gear)
-            guide = ring_guide(
-                ring_coupling, ends, copies, design.penalty(design.kinematics.output_gear)
-            )
+            penalty = design.penalty(design.kinematics.output_gear)
+            guide = ring_guide(ring_coupling, ends, copies, penalty, frame_growth(design))
     scale = design.modulus_of("flexible_spline") * design.drive.module
     race = None if design.bearing is None else race_coupling(partition, elements, couplings[0])
     spline_ratio = None
@@ -283,7 +290,7 @@ def rigid_contacts(design: DriveDesign) -> Callable[[BodyElements], WaveGenerato
     spline."""
     contact = partial(
         RigidContact,
-        surface=design.cam_surface(),
+        surface=grown_cam_surface(design),
         radius=design.inner_radius,
         half_width=0.5 * design.wave_generator.width * EDGE,
         n_quadrature=design.contact.wg_quadrature,

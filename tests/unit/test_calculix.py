@@ -121,6 +121,7 @@ def test_forces_have_the_torque_of_the_design(tmp_path: Path) -> None:
         ("deviations.flexible_spline.eccentricity=0.01", "[deviations] is not available"),
         ("stiffness.torque=0.2", "[stiffness] is not available"),
         ("ratcheting.increment=0.1", "[ratcheting] is not available"),
+        ("ring_gear.frame.interference=0.01", "a temperature or a press fit is not available"),
     ],
 )
 def test_what_the_job_does_not_carry(

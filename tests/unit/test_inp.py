@@ -27,7 +27,7 @@ needs_calculix = pytest.mark.skipif(
 
 HOUSING = (
     "ring_gear.housing.thickness=3",
-    "ring_gear.housing.material={E=70e3, nu=0.33, density=2700.0}",
+    "ring_gear.housing.material={E=70e3, nu=0.33, density=2700.0, expansion=2.3e-5}",
 )
 
 
@@ -91,9 +91,10 @@ def test_surfaces_are_faces_of_one_element_each(
             f"*SURFACE, NAME={name.upper()}, TYPE=ELEMENT\n{pairs[0, 0] + 1}, S{pairs[0, 1] + 1}\n"
             in text
         )
-    assert ("NAME=HOUSING_MATERIAL\n*ELASTIC\n70000, 0.33\n*DENSITY\n2.7e-09\n" in text) == bool(
-        housing
-    )
+    assert (
+        "NAME=HOUSING_MATERIAL\n*ELASTIC\n70000, 0.33\n*DENSITY\n2.7e-09\n*EXPANSION\n2.3e-05\n"
+        in text
+    ) == bool(housing)
     assert ("ELSET=HOUSING, MATERIAL=HOUSING_MATERIAL" in text) == bool(housing)
 
 

@@ -171,7 +171,8 @@ def elements(*more: str) -> Values:
     mesh = box()
     ref_of, rotation, conn, sixths = mesh.arrays
     read = {
-        name: getattr(mesh.reference, name) for name in ("stiffness", "gradient", "coords", *more)
+        name: getattr(mesh.reference, name)
+        for name in ("stiffness", "gradient", "coords", "stress_free", *more)
     }
     return {
         "ref": SimpleNamespace(**read),

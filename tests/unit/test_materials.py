@@ -139,10 +139,16 @@ def test_plastics_are_known_to_creep() -> None:
 
 def test_the_page_has_the_library() -> None:
     lines = PAGE.read_text(encoding="utf-8").splitlines()
-    first = lines.index("| name | material | E (MPa) | nu | density (kg/m³) | source |") + 2
+    first = (
+        lines.index(
+            "| name | material | E (MPa) | nu | density (kg/m³) | expansion (1/K) | source |"
+        )
+        + 2
+    )
     assert lines[first : first + len(LIBRARY) + 1] == [
         *(
-            f"| `{name}` | {m.text} | {m.E:g} | {m.nu:g} | {m.density:g} | {m.source} |"
+            f"| `{name}` | {m.text} | {m.E:g} | {m.nu:g} | {m.density:g} | "
+            f"{m.expansion:g} | {m.source} |"
             for name, m in LIBRARY.items()
         ),
         "",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from swgpar.input.quantities import Section, quantity
 from swgpar.materials import OptionalMaterial
+from swgpar.materials.temperature import temperature
 
 
 class Bearing(Section):
@@ -42,6 +43,13 @@ class Bearing(Section):
     stiffness_factor: float = quantity(
         1.0, text="factor on the stiffness of the ball contacts; 1: Hertz", gt=0.0, le=1e6
     )
+    race_interference: float = quantity(
+        0.0,
+        unit="mm",
+        text="by how much the outer diameter of the outer race exceeds the bore of the flexible "
+        "spline; below 0 a clearance",
+    )
+    temperature: float | None = temperature("outer race and balls")
     material: OptionalMaterial = None
     load_rating: float | None = quantity(
         None, unit="N", text="basic dynamic load rating; without it that of ISO 281", gt=0.0

@@ -8,6 +8,7 @@ from pydantic import BeforeValidator, Field, field_validator
 
 from swgpar.geometry.cams.bearing_keys import Bearing
 from swgpar.input.quantities import Section, default_type, quantity
+from swgpar.materials.temperature import temperature
 
 
 def _pins(default: float) -> float:
@@ -35,6 +36,14 @@ class _WaveGenerator(Section):
     # Pins begin where they first touch. Flat or rotated parabolas touch beside the major axis, as
     # far as 30 degrees from it, and rollers wherever they are: the pins have to reach that far.
     pin_half_angle: float = _pins(60.0)
+    temperature: float | None = temperature("the rigid cam and an inner race on it")
+    expansion: float | None = quantity(
+        None,
+        unit="1/K",
+        text="coefficient of thermal expansion of the cam; without it material.expansion",
+        ge=0.0,
+        le=1e-3,
+    )
     bearing: Bearing | None = None
 
     @property
