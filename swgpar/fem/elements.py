@@ -284,11 +284,15 @@ class Elements:
         nodes = local.row_start + np.flatnonzero(touched)
         if local.n_own and local.row_start + local.n_own == partition.n_global:
             nodes = np.union1d(nodes, multipliers)
-        keys = [*(block.ravel() for block in blocks), nodes * (partition.n_global + 1)]
-        keys = np.unique(np.concatenate(keys))
-        keys = keys[keys >= 0]
-        block_indices = [np.where(own >= 0, np.searchsorted(keys, own), -1) for own in blocks]
-        return TangentPattern(keys, block_indices, np.flatnonzero(~touched))
+        owned = [block >= 0 for block in blocks]
+        keys = [block[own] for block, own in zip(blocks, owned)]
+        every = np.unique(np.concatenate([*keys, nodes * (partition.n_global + 1)]))
+        block_indices = []
+        for own, of_blocks in zip(owned, keys):
+            index = np.full(own.shape, -1)
+            index[own] = np.searchsorted(every, of_blocks)
+            block_indices.append(index)
+        return TangentPattern(every, block_indices, np.flatnonzero(~touched))
 
     def block_keys(self, conn: np.ndarray) -> np.ndarray:
         """Keys row * n_global + column (n, m * m) of owned blocks, else -1, of elements (n, m)."""

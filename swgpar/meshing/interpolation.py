@@ -52,14 +52,16 @@ def _cells(mesh: Delaunay, known: np.ndarray, sought: np.ndarray) -> np.ndarray:
     cell = mesh.find_simplex(sought, tol=1e-9)
     volume = np.abs(np.linalg.det(known[mesh.simplices[:, 1:]] - known[mesh.simplices[:, :1]]))
     usable = volume > FLAT * np.median(volume)
-    at_node: list[list[int]] = [[] for _ in known]
-    for k in np.flatnonzero(usable):
-        for node in mesh.simplices[k]:
-            at_node[node].append(k)
+    of_cells = mesh.simplices[usable]
+    order = np.argsort(of_cells, axis=None, kind="stable")
+    at_node = np.repeat(np.flatnonzero(usable), of_cells.shape[1])[order]
+    start = np.searchsorted(of_cells.ravel()[order], np.arange(len(known) + 1))
     outside = np.flatnonzero((cell < 0) | ~usable[cell])
     _, nearest = cKDTree(known).query(sought[outside], k=NEIGHBOURS)
     for k, neighbours in zip(outside, nearest):
-        choice = np.unique(np.concatenate([at_node[node] for node in neighbours]).astype(np.int64))
+        choice = np.unique(
+            np.concatenate([at_node[start[node] : start[node + 1]] for node in neighbours])
+        )
         weight = _barycentric(mesh, choice, np.repeat(sought[k : k + 1], len(choice), axis=0))
         cell[k] = choice[weight.min(axis=1).argmax()]
     return cell
