@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebvander
 
 from swgpar.geometry.micro_geometry import crowning
 from swgpar.geometry.rotation import MIRROR
@@ -13,6 +14,9 @@ from swgpar.meshing.sector import FlankGrid, SectorMesh
 SAMPLES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(5) + 0.5) / 5)
 """Positions per direction, in [0, 1], at which the exact surface is sampled; it is interpolated by
 polynomials."""
+
+OF_SAMPLES = np.linalg.inv(chebvander(1.0 - 2.0 * SAMPLES, len(SAMPLES) - 1))
+"""Chebyshev coefficients (n, n) of the polynomials that are one at one of `SAMPLES`."""
 
 
 @dataclass(frozen=True)
@@ -76,9 +80,4 @@ def bilinear(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 def lagrange(t: np.ndarray) -> np.ndarray:
     """Polynomials (..., n) that are one at one of `SAMPLES` and zero at the others, at t (...)."""
-    factors = np.subtract.outer(t, SAMPLES)
-    values = np.empty_like(factors)
-    for k, sample in enumerate(SAMPLES):
-        others = np.delete(np.arange(len(SAMPLES)), k)
-        values[..., k] = np.prod(factors[..., others] / (sample - SAMPLES[others]), axis=-1)
-    return values
+    return chebvander(1.0 - 2.0 * t, len(SAMPLES) - 1) @ OF_SAMPLES

@@ -83,9 +83,7 @@ class PlacedFaces:
         chosen : (n,) faces;  a, b : (n, n_q) places on them;  share : (n, n_q) of their area
         """
         area = self.size[chosen, 0] * self.size[chosen, 1]
-        offset = np.einsum(
-            "fij,fqi,fqj->fq", self.offset[chosen], lagrange(a), lagrange(b), optimize=True
-        )
+        offset = np.sum(lagrange(a) @ self.offset[chosen] * lagrange(b), axis=2)
         return Faces(
             self.conn[chosen],
             self.sixths[chosen],
@@ -93,7 +91,7 @@ class PlacedFaces:
             self.normal[chosen],
             bilinear(a, b),
             area[:, None] * share,
-            np.ascontiguousarray(offset),  # NumPy 2 may return another order
+            offset,
             self.patch[chosen],
         )
 
@@ -197,16 +195,10 @@ class FlankPairs:
             conn=np.zeros((n_pair, *grid.nodes.shape), dtype=np.int32),
             sixths=np.zeros((n_pair, *grid.nodes.shape), dtype=np.uint8),
         )
-        profile = self.ring.layout.mesh.profile
+        curves = {side: self._curve(grid) for side, grid in grids.items()}
         for k, p in enumerate(self.pairs):
             grid = grids[-p.side]
-            mirror = MIRROR if grid.side < 0 else np.ones(2)
-            tangent = profile.tangent(grid.s) * mirror
-            flanks.point[k], flanks.tangent[k] = profile.point(grid.s) * mirror, tangent
-            # tangent (T to R) x z points to the right of the tangent: compare with the outward
-            # normal
-            right = np.column_stack([tangent[:, 1], -tangent[:, 0]])
-            flanks.orientation[k] = np.sign(np.sum(right * profile.normal(grid.s) * mirror))
+            flanks.point[k], flanks.tangent[k], flanks.orientation[k] = curves[-p.side]
             angle = self.ring.layout.sector_angle(np.array(p.ring_tooth))
             flanks.rotation[k] = np.cos(angle), np.sin(angle)
             number, sixths = self.partition.node_numbers(
@@ -217,6 +209,16 @@ class FlankPairs:
                 grid.nodes.shape
             )
         return flanks
+
+    def _curve(self, grid: FlankGrid) -> tuple[np.ndarray, np.ndarray, float]:
+        """Points and tangents (n_s, 2) of a flank of the ring gear, mm, and its orientation."""
+        profile, mirror = self.ring.layout.mesh.profile, MIRROR if grid.side < 0 else np.ones(2)
+        point, tangent, normal = (
+            along(grid.s) * mirror for along in (profile.point, profile.tangent, profile.normal)
+        )
+        # tangent (T to R) x z points to the right of the tangent: compare with the outward normal
+        right = np.column_stack([tangent[:, 1], -tangent[:, 0]])
+        return point, tangent, float(np.sign(np.sum(right * normal)))
 
     def _placed(self, slave: FlankFaces, pair: FlankPair, patch: int) -> PlacedFaces:
         layout = self.spline.layout
