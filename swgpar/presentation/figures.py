@@ -53,6 +53,7 @@ class DriveFigures(FigureSet):
     def __init__(self, result: DriveData, comm: MPI.Comm, *, gathered: bool) -> None:
         super().__init__(comm, gathered=gathered)
         self._result = result
+        self._drawn: dict[int, list[pyvista.UnstructuredGrid]] = {}
 
     @property
     def drawings(self) -> Drawings:
@@ -334,9 +335,13 @@ class DriveFigures(FigureSet):
         return self._result.summary.design.geometry
 
     def _grids(self, increment: int) -> list[pyvista.UnstructuredGrid]:
-        """Both whole bodies with their fields; collective where these are gathered. What follows is
-        not."""
-        return [self._result.grid(increment, body, whole=True) for body in self._result.gears]
+        """Both whole bodies with their fields, kept for the next figure; collective where these are
+        gathered. What follows is not."""
+        if increment not in self._drawn:
+            bodies = self._result.gears
+            grids = [self._result.grid(increment, body, whole=True) for body in bodies]
+            self._drawn = {increment: grids}
+        return self._drawn[increment]
 
     def _row(self, increment: int) -> int:
         """Row of the history, from 0, of an increment with fields."""
