@@ -288,9 +288,9 @@ class Elements:
         keys = [block[own] for block, own in zip(blocks, owned)]
         every = np.unique(np.concatenate([*keys, nodes * (partition.n_global + 1)]))
         block_indices = []
-        for own, of_blocks in zip(owned, keys):
-            index = np.full(own.shape, -1)
-            index[own] = np.searchsorted(every, of_blocks)
+        for present, of_blocks in zip(owned, keys):
+            index = np.full(present.shape, -1)
+            index[present] = np.searchsorted(every, of_blocks)
             block_indices.append(index)
         return TangentPattern(every, block_indices, np.flatnonzero(~touched))
 

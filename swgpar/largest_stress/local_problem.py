@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from swgpar.constraints.boundary_conditions import DeadLoad, PrescribedDisplacement
 from swgpar.constraints.distributing_coupling import node_weights
@@ -117,6 +118,16 @@ def window_mesh(
     return trimmed(mesh, mesh.coords[mesh.hexes, 2].min(axis=1) < end)
 
 
+def meshed(model: DriveModel, recipe: MeshRecipe, gear: str) -> tuple[SectorMesh, csr_matrix]:
+    """Sector of a window of a gear and the interpolation to it, made once for all windows of a
+    model."""
+    known = model.window_meshes
+    if (gear, recipe) not in known:
+        mesh = window_mesh(model.geometry, recipe, gear)
+        known[gear, recipe] = mesh, interpolation(model.partition.layouts[gear].mesh, mesh)
+    return known[gear, recipe]
+
+
 def tooth_nodes(mesh: SectorMesh, geometry: DriveGeometry, ends: bool) -> np.ndarray:
     """Nodes (n,) of the toothed part at the ends of its face width, or between them. The plane has
     no ends.
@@ -164,7 +175,7 @@ class LocalProblem:
         self.gear = gear
         count = sectors_of(gear)
         first = tooth - count // 2
-        mesh = window_mesh(geometry, recipe, gear)
+        mesh, self._from_drive = meshed(model, recipe, gear)
         layout = model.partition.layouts[gear]
         self.layout = BodyLayout(
             body=replace(layout.body, mesh=mesh),
@@ -204,7 +215,9 @@ class LocalProblem:
             ),
         )
         self.problem = problem
-        begin = displacement if coarser is None else self._interpolated(coarser)
+        begin = displacement
+        if coarser is not None:
+            begin = self._interpolated(coarser.displacement, interpolation(coarser.mesh, mesh))
         own = begin[self.partition.owned_indices(gear)]
         write_field(self.partition, gear, own, problem.x)
 
@@ -214,14 +227,13 @@ class LocalProblem:
         model = self.model
         coarse = model.partition.layouts[self.gear]
         field = read_field(model.partition, self.gear, teeth - coarse.first_tooth, model.problem.x)
-        return self._interpolated(WindowState(coarse.mesh, field))
+        return self._interpolated(field, self._from_drive)
 
-    def _interpolated(self, coarse: WindowState) -> np.ndarray:
-        """Displacement (n_teeth, n_node, 3) mm at the nodes of this window from those of another
-        mesh of its teeth."""
+    def _interpolated(self, field: np.ndarray, matrix: csr_matrix) -> np.ndarray:
+        """Displacement (n_teeth, n_node, 3) mm at the nodes of this window from that on another
+        mesh of its teeth. matrix : of `interpolation`"""
         angle = self.layout.sector_angle(self.layout.first_tooth + np.arange(self.layout.count))
-        local = rotated(coarse.displacement, -angle[:, None])
-        matrix = interpolation(coarse.mesh, self.layout.mesh)
+        local = rotated(field, -angle[:, None])
         return rotated(np.stack([matrix @ sector for sector in local]), angle[:, None])
 
     def equilibrium(self) -> WindowState:

@@ -4,12 +4,13 @@ factories."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 from mpi4py import MPI
+from scipy.sparse import csr_matrix
 
 from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans
 from swgpar.constraints.supports import (
@@ -64,6 +65,7 @@ class DriveModel:
     problem, solver : discrete problem and its Newton solver
     rigid_contacts : makes the contacts of cam and pins on another mesh of the flexible spline
     phases : wall seconds
+    window_meshes : sectors of windows and the interpolation to them, by gear and recipe
     """
 
     design: DriveDesign
@@ -76,6 +78,9 @@ class DriveModel:
     solver: NewtonSolver
     rigid_contacts: Callable[[BodyElements], WaveGeneratorContacts]
     phases: PhaseTimes
+    window_meshes: dict[tuple[str, MeshRecipe], tuple[SectorMesh, csr_matrix]] = field(
+        default_factory=dict
+    )
 
     def destroy(self) -> None:
         """Release the solver and its factor; collective. PETSc's objects refer to each other, so
