@@ -4,7 +4,7 @@ the cup."""
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Union
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from swgpar.geometry.disc_surface import CamSurface
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.presentation.off_screen import off_screen_plotter, without_margin
+from swgpar.presentation.sections import COLOURS, Box, PlaneBody, Section, section_of_cut
 
 if TYPE_CHECKING:
     import pyvista
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
 PERCENTILE = 99.9
 """Of the von Mises stress of the nodes: the end of the colour range."""
 
-COLOURS = "turbo"
-
 CAM_COLOUR = "#d9d9d9"
 
 PITCHES = 2.2
@@ -31,8 +30,8 @@ PITCHES = 2.2
 CAM_GRID = 400
 """Points along each side of the close-up in which the distance from the cam is evaluated."""
 
-Box = tuple[float, float, float, float]
-"""Lowest and largest value along both axes of a figure, mm."""
+Body = Union["pyvista.UnstructuredGrid", PlaneBody]
+"""A whole body with its stress: a mesh that is not deformed yet, or a deformed one in the plane."""
 
 
 def colour_limit(*stresses: np.ndarray) -> float:
@@ -40,8 +39,10 @@ def colour_limit(*stresses: np.ndarray) -> float:
     return float(np.percentile(np.concatenate(stresses), PERCENTILE)) or 1.0
 
 
-def _limit(grids: Sequence[pyvista.UnstructuredGrid]) -> float:
-    return colour_limit(*(grid.point_data["vm"] for grid in grids))
+def _limit(bodies: Sequence[Body]) -> float:
+    return colour_limit(
+        *(one.mises if isinstance(one, PlaneBody) else one.point_data["vm"] for one in bodies)
+    )
 
 
 def deformed(
@@ -54,10 +55,8 @@ def deformed(
     return moved
 
 
-def draw_deformed(
-    grids: Sequence[pyvista.UnstructuredGrid], factor: float, *, plane: bool, title: str
-) -> Figure:
-    """Both deformed gears: seen from the open end of the cup, a plane model along its axis.
+def draw_deformed(grids: Sequence[pyvista.UnstructuredGrid], factor: float, title: str) -> Figure:
+    """Both deformed gears, seen from the open end of the cup.
 
     factor : magnification of the displacements;  title : where in the run this is
     """
@@ -67,18 +66,30 @@ def draw_deformed(
     for grid in deformed(grids, factor):
         surface = grid.extract_surface(algorithm="dataset_surface")
         plotter.add_mesh(surface, smooth_shading=False, **colours)
-    if plane:
-        plotter.enable_parallel_projection()
-        plotter.view_xy()
-        plotter.camera.tight(padding=0.03, adjust_render_window=False)
-    else:
-        plotter.camera_position = [(60.0, 60.0, -170.0), (0.0, 0.0, 10.0), (0.0, 1.0, 0.0)]
-        plotter.reset_camera()
-        plotter.camera.zoom(1.3)
+    plotter.camera_position = [(60.0, 60.0, -170.0), (0.0, 0.0, 10.0), (0.0, 1.0, 0.0)]
+    plotter.reset_camera()
+    plotter.camera.zoom(1.3)
     picture = without_margin(plotter.screenshot(return_img=True))
     plotter.close()
     figure, axes = _figure(1, (9.0, 8.0))
     axes[0].imshow(picture)
+    return _finish_deformed(figure, axes, title, factor, limit)
+
+
+def draw_plane_deformed(bodies: Sequence[PlaneBody], factor: float, title: str) -> Figure:
+    """Both deformed gears of a plane drive, see `draw_deformed`. bodies : deformed by `factor`"""
+    limit = _limit(bodies)
+    figure, axes = _figure(1, (9.0, 8.0))
+    axes[0].margins(0.0)
+    for body in bodies:
+        triangles = np.concatenate([body.quads[:, [0, 1, 2]], body.quads[:, [0, 2, 3]]])
+        Section(body.points, triangles, body.mises, np.zeros((0, 2, 2))).draw(axes[0], limit)
+    return _finish_deformed(figure, axes, title, factor, limit)
+
+
+def _finish_deformed(
+    figure: Figure, axes: Sequence[Axes], title: str, factor: float, limit: float
+) -> Figure:
     axes[0].set_axis_off()
     scale = f"displacements x {factor:g}, bodies may seem to cross"
     _finish(figure, axes, title, "true to scale" if factor == 1.0 else scale, limit)
@@ -86,7 +97,7 @@ def draw_deformed(
 
 
 def draw_loaded_teeth(
-    grids: Sequence[pyvista.UnstructuredGrid],
+    bodies: Sequence[Body],
     geometry: DriveGeometry,
     cam: CamSurface | None,
     wg_angle: float,
@@ -101,17 +112,18 @@ def draw_loaded_teeth(
     counter-clockwise
     z : mm, of the section;  title : where in the run this is
     """
-    limit, pitch, ring_gear = _limit(grids), np.pi * geometry.module, geometry.gears["ring_gear"]
+    limit, pitch, ring_gear = _limit(bodies), np.pi * geometry.module, geometry.gears["ring_gear"]
     half, low = PITCHES * pitch, geometry.inner_radius - 0.5 * pitch
     high = ring_gear.profile.r_root_circle + min(ring_gear.rim, 0.5 * pitch)
     box = (-half, half, low, high)
     figure, (axes,) = _figure(1, (9.0, 1.6 + 7.0 * (high - low) / (2.0 * half)))
     if cam is not None:
         _draw_cam(axes, cam, wg_angle - angle, z, box)
-    for grid in deformed(grids, 1.0):
-        cut = grid.slice(normal="z", origin=(0.0, 0.0, z))
-        at = rotated(np.asarray(cut.points)[:, :2], -angle)
-        _draw_cut(axes, cut, at, limit, box)
+    axes.set(xlim=box[:2], ylim=box[2:])
+    for body in bodies:
+        section = _across(body, angle, z, box)
+        if section is not None:
+            section.draw(axes, limit)
     axes.set(xlabel="mm, along the circumference", ylabel="radius (mm)")
     ring = "ring gear" if geometry.model != "pancake" or z < 0.0 else "dynamic spline"
     axes.text(0.0, high - 0.15 * pitch, ring, color="w", ha="center", va="top")
@@ -121,6 +133,16 @@ def draw_loaded_teeth(
     where = place if geometry.model == "plane" else f"{place}, section at z {z:.2f} mm"
     _finish(figure, [axes], f"{title}; {where}", "true to scale", limit)
     return figure
+
+
+def _across(body: Body, angle: float, z: float, box: Box) -> Section | None:
+    """Section of a deformed body across the axis at z (mm), in a box whose upward axis is at an
+    angle (rad) from +y."""
+    if isinstance(body, PlaneBody):
+        return body.section(angle, box)
+    (grid,) = deformed([body], 1.0)
+    cut = grid.slice(normal="z", origin=(0.0, 0.0, z))
+    return section_of_cut(cut, rotated(np.asarray(cut.points)[:, :2], -angle), box)
 
 
 def draw_cup_section(
@@ -148,7 +170,10 @@ def draw_cup_section(
         for grid in bodies:
             cut = grid.slice(normal=(np.cos(angle), np.sin(angle), 0.0), origin=(0.0, 0.0, 0.0))
             points = np.asarray(cut.points)
-            _draw_cut(axes, cut, np.column_stack([points[:, 2], points @ axis]), limit, box)
+            section = section_of_cut(cut, np.column_stack([points[:, 2], points @ axis]), box)
+            if section is not None:
+                section.draw(axes, limit)
+        axes.set(xlim=box[:2], ylim=box[2:])
         axes.set(xlabel="z (mm), open end at negative z", title=f"through the {name}")
     panels[0].set_ylabel("radius (mm)")
     _finish(figure, panels, title, "true to scale", limit)
@@ -175,34 +200,6 @@ def _finish(figure: Figure, axes: Sequence[Axes], when: str, what: str, limit: f
     colours = ScalarMappable(Normalize(0.0, limit), COLOURS)
     label = "von Mises stress (MPa), nodal averages"
     figure.colorbar(colours, ax=list(axes), extend="max", shrink=0.8, label=label)
-
-
-def _draw_cut(axes: Axes, cut: pyvista.PolyData, at: np.ndarray, limit: float, box: Box) -> None:
-    """Draw a plane cut through a body with its outline. at : (n, 2) mm, places of its points in the
-    figure"""
-    from matplotlib.collections import LineCollection
-    from matplotlib.tri import Triangulation
-
-    axes.set(xlim=box[:2], ylim=box[2:])
-    if not cut.n_points:
-        return
-    flat = cut.copy()
-    flat.points = np.column_stack([at, np.zeros(len(at))])
-    inside = flat.clip_box((*box, -1.0, 1.0), invert=False)
-    flat = inside.extract_surface(algorithm="dataset_surface").triangulate()
-    if not flat.n_cells:
-        return
-    # sectors have nodes of their own where they meet
-    flat = flat.clean(tolerance=1e-5, absolute=True)
-    x, y, _ = np.asarray(flat.points).T
-    triangles = Triangulation(x, y, flat.regular_faces)
-    picture = axes.tripcolor(triangles, flat.point_data["vm"], shading="gouraud", cmap=COLOURS)
-    picture.set(clim=(0.0, limit), rasterized=True)
-    edges = flat.extract_feature_edges(
-        boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False
-    )
-    lines = np.asarray(edges.points)[edges.lines.reshape(-1, 3)[:, 1:], :2]
-    axes.add_collection(LineCollection(list(lines), colors="#222", linewidths=0.5))
 
 
 def _draw_cam(axes: Axes, cam: CamSurface, turn: float, z: float, box: Box) -> None:

@@ -23,9 +23,15 @@ from swgpar.presentation.contact_figures import (
     draw_load_sharing,
     draw_pairs,
 )
-from swgpar.presentation.deformed_figures import draw_cup_section, draw_deformed, draw_loaded_teeth
+from swgpar.presentation.deformed_figures import (
+    draw_cup_section,
+    draw_deformed,
+    draw_loaded_teeth,
+    draw_plane_deformed,
+)
 from swgpar.presentation.fatigue_figures import draw_haigh, sector_picture
 from swgpar.presentation.program_figures import torque_against_rotation
+from swgpar.presentation.sections import PlaneBody
 from swgpar.results.field_sources import chosen_increment
 from swgpar.results.figure_set import Drawings, FigureSet, panels
 from swgpar.results.history import COLUMNS
@@ -267,8 +273,11 @@ class DriveFigures(FigureSet):
         increment : as in `DriveData.field`;  magnification : of the displacements; above 1 bodies
         may seem to cross
         """
-        grids, when = self._grids(increment), self._when(increment)
-        return draw_deformed(grids, magnification, plane=self._result.is_plane, title=when)
+        when = self._when(increment)
+        if self._result.is_plane:
+            bodies = self._plane_bodies(increment, magnification)
+            return draw_plane_deformed(bodies, magnification, when)
+        return draw_deformed(self._grids(increment), magnification, when)
 
     def loaded_teeth(self, increment: int = -1) -> Figure:
         """Close-up of the pair of flanks with the largest force and the cam below it, by von Mises
@@ -287,8 +296,9 @@ class DriveFigures(FigureSet):
             z = float(np.nan_to_num(pairs["z_mm"][largest]))
         summary = self._result.summary
         cam = summary.design.cam_surface() if summary.bearing is None else None
-        grids, when = self._grids(increment), self._when(increment)
-        return draw_loaded_teeth(grids, self._geometry, cam, cam_angle, angle, z, when)
+        when, plane = self._when(increment), self._result.is_plane
+        bodies = self._plane_bodies(increment) if plane else self._grids(increment)
+        return draw_loaded_teeth(bodies, self._geometry, cam, cam_angle, angle, z, when)
 
     def cup_section(self, increment: int = -1) -> Figure:
         """Sections of the deformed cup along its axis, through the major and the minor axis, by von
@@ -342,6 +352,16 @@ class DriveFigures(FigureSet):
             grids = [self._result.grid(increment, body, whole=True) for body in bodies]
             self._drawn = {increment: grids}
         return self._drawn[increment]
+
+    def _plane_bodies(self, increment: int, factor: float = 1.0) -> list[PlaneBody]:
+        """The same of a plane drive, deformed. factor : magnification of the displacements"""
+        result, bodies = self._result, []
+        for body in result.gears:
+            points, cells = result.mesh(body)
+            moved = points + factor * result.field("displacement", increment, body)
+            mises = result.field("vm", increment, body)
+            bodies.append(PlaneBody.of(moved, cells, mises, result.summary.copies))
+        return bodies
 
     def _row(self, increment: int) -> int:
         """Row of the history, from 0, of an increment with fields."""
