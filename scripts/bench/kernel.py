@@ -36,10 +36,10 @@ def main() -> None:
     model = build_drive_model(design, load_recipe(arguments.mesh), comm=MPI.COMM_SELF)
     problem, local, elements = model.problem, model.problem.local_nodes, model.elements
     problem.set_pattern(np.zeros(0, dtype=np.int64))
-    rows, blocks, matrix = problem.rows, problem.block_indices, problem.matrix
+    rows, blocks, matrix = problem.blocks.rows, problem.blocks.block_indices, problem.blocks.matrix
 
     def insert() -> None:
-        fill_matrix(matrix, rows, problem.matrix_rows)
+        fill_matrix(matrix, rows, problem.blocks.matrix_rows)
 
     # every element turned and strained a little, so that none takes a short way
     u = np.random.default_rng(1).uniform(-1e-3, 1e-3, (len(local), 3))

@@ -49,7 +49,11 @@ def measure(mesh: str, linear: str) -> None:
     tangent = timed(lambda: problem.tangent(u, state))
     border, rows = problem.supports.border(u, state)
     system.set_system(
-        problem.matrix, problem.matrix_rows.active, problem.supports.grounding(u), border, rows
+        problem.blocks.matrix,
+        problem.blocks.matrix_rows.active,
+        problem.supports.grounding(u),
+        border,
+        rows,
     )
     row = {
         "mesh": mesh,
@@ -57,14 +61,14 @@ def measure(mesh: str, linear: str) -> None:
         "ranks": comm.size,
         "unknowns": sum(b["dofs"] for b in model.counts().values()),
     }
-    solver, active = system.solver, problem.matrix_rows.active
+    solver, active = system.solver, problem.blocks.matrix_rows.active
 
     def prepare() -> None:
-        solver.prepare(problem.matrix, active)
+        solver.prepare(problem.blocks.matrix, active)
 
     row |= {"assembly_s": residual + tangent, "setup_s": timed(prepare)}
     if linear == "direct":  # without the analysis of the pattern, which is done once
-        problem.matrix.stateIncrease()
+        problem.blocks.matrix.stateIncrease()
         row["factor_s"] = timed(prepare)
     row["solve_s"] = timed(lambda: system.solve_grounded(right, x))
     row["product_s"] = timed(lambda: system.multiply(x, product))

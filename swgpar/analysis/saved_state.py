@@ -29,7 +29,7 @@ class SolvedState:
     """What a state has beside its rows.
 
     multipliers : of the constraints
-    modelled_sectors : as `DiscreteProblem.modelled_sectors` gives them
+    modelled_sectors : as `ModelledSectors.chosen` gives them
     """
 
     multipliers: list[float]
@@ -38,7 +38,7 @@ class SolvedState:
     @classmethod
     def of(cls, model: DriveModel) -> SolvedState:
         """Of the model's present state; collective."""
-        return cls(model.problem.multipliers().tolist(), model.problem.modelled_sectors())
+        return cls(model.problem.multipliers().tolist(), model.problem.modelled.chosen())
 
 
 def state_rows(

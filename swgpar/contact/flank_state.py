@@ -37,3 +37,17 @@ class SearchRange:
     near: float
     reach: float
     touch: float
+
+
+@dataclass(frozen=True)
+class ContactSearch:
+    """How far the contact search of the flanks looks.
+
+    tip_margin : mm, radial distance of a tooth's tip inside the ring gear's tip circle up to which
+    its flanks are followed
+    distances : of the faces;  outer_radius : mm, no tooth is farther out
+    """
+
+    tip_margin: float
+    distances: SearchRange
+    outer_radius: float

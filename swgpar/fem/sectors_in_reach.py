@@ -10,6 +10,7 @@ has no rows of the nodes inside of them either; their displacement follows from 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -97,3 +98,52 @@ class WholeTeeth(SectorsInReach):
     def _apply(self, elements: Elements) -> None:
         body = elements.bodies[self.body]
         body.condense_teeth(~self._seen(body))
+
+
+class ModelledSectors:
+    """What of a drive is modelled in full.
+
+    elements : of the drive
+    ring_sectors : of the ring gear that are modelled; None where all are
+    whole_teeth : teeth of bodies that are not one element; none where all are
+    """
+
+    def __init__(
+        self,
+        elements: Elements,
+        ring_sectors: RingSectors | None = None,
+        whole_teeth: Sequence[WholeTeeth] = (),
+    ) -> None:
+        self.elements, self.ring_sectors, self.whole_teeth = elements, ring_sectors, whole_teeth
+        self.choices: list[SectorsInReach] = [*whole_teeth]
+        if ring_sectors is not None:
+            self.choices.append(ring_sectors)
+
+    def update(self, within: Mapping[str, np.ndarray], near: Mapping[str, np.ndarray]) -> bool:
+        """Choose anew by the sectors (n,) of each body within reach, and those of ring gears near
+        others; returns whether the elements have changed."""
+        changed = [teeth.update(within[teeth.body], self.elements) for teeth in self.whole_teeth]
+        if self.ring_sectors is not None:
+            changed.append(self.ring_sectors.update(near[RING_GEAR], self.elements))
+        if any(changed):
+            self.elements.renew_pattern()
+        return any(changed)
+
+    def resume(self, chosen: Sequence[list[int]]) -> None:
+        """Take choices as `chosen` gave them."""
+        for choice, active in zip(self.choices, chosen):
+            choice.resume(active, self.elements)
+        self.elements.renew_pattern()
+
+    def chosen(self) -> list[list[int]]:
+        """Which teeth and sectors are modelled in full, for `resume`."""
+        return [choice.chosen() for choice in self.choices]
+
+    def complete(self, u: np.ndarray, x: np.ndarray) -> None:
+        """Let the inside of condensed teeth follow their rims.
+
+        u : (n_local, 3) mm, of the nodes that this rank sees;  x : (n_own, 3) mm, of its own nodes
+        """
+        for teeth in self.whole_teeth:
+            nodes, values = self.elements.bodies[teeth.body].inside_of_teeth(u)
+            x[nodes] = values

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from swgpar.contact.flank_state import SearchRange
-from swgpar.solve.discrete_problem import ContactSearch
+from swgpar.contact.flank_state import ContactSearch, SearchRange
 
 NEAR = 0.25
 REACH = 0.1

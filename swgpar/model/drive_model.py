@@ -32,7 +32,7 @@ from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.condensed_parts import relative_end_rotation
 from swgpar.fem.elements import BodyElements, Elements
 from swgpar.fem.partition import Partition
-from swgpar.fem.sectors_in_reach import RingSectors, WholeTeeth
+from swgpar.fem.sectors_in_reach import ModelledSectors, RingSectors, WholeTeeth
 from swgpar.fem.stress import body_fields, part_maxima
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
@@ -183,6 +183,11 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
         wave_generator = on_spline(elements.bodies[FLEXIBLE_SPLINE])
     else:
         wave_generator = build_bearing_contacts(design, elements, PRESSURE_LIMIT, EDGE)
+    modelled = ModelledSectors(
+        elements,
+        ring_sectors(design, partition.layouts[RING_GEAR]),
+        [WholeTeeth(layout.count, layout.name) for layout in layouts if layout.tooth is not None],
+    )
     problem = DiscreteProblem(
         partition=partition,
         elements=elements,
@@ -199,10 +204,7 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
             condensed_teeth=design.condenses_teeth,
         ),
         module=design.drive.module,
-        ring_sectors=ring_sectors(design, partition.layouts[RING_GEAR]),
-        whole_teeth=[
-            WholeTeeth(layout.count, layout.name) for layout in layouts if layout.tooth is not None
-        ],
+        modelled=modelled,
         phases=phases,
     )
     solver = NewtonSolver(

@@ -21,7 +21,7 @@ from swgpar.contact.contact import (
     PressureContact,
     largest,
 )
-from swgpar.contact.flank_state import SearchRange
+from swgpar.contact.flank_state import ContactSearch
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.friction import CellTractions, PairKey
 from swgpar.contact.frozen_cells import FrozenCells
@@ -30,38 +30,21 @@ from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
-from swgpar.fem.sectors_in_reach import RingSectors, SectorsInReach, WholeTeeth
+from swgpar.fem.sectors_in_reach import ModelledSectors
 from swgpar.fem.sparse import (
     BlockRows,
-    MatrixRows,
     add_unit_diagonal,
-    create_matrix,
-    fill_matrix,
-    matrix_rows,
 )
 from swgpar.fem.vectors import Exchange, create_vector, read_multipliers
 from swgpar.geometry.rotation import to_owners
 from swgpar.load.load_states import LoadState
 from swgpar.log import PhaseTimes
 from swgpar.petsc import PETSc
+from swgpar.solve.tangent_matrix import TangentMatrix
 from swgpar.solve.torque_control import TorqueControl
 
 FORCE_FLOOR = 1e-6
 """Contact force, over E times the module squared, below which no residual is judged by it."""
-
-
-@dataclass(frozen=True)
-class ContactSearch:
-    """How far the contact search of the flanks looks.
-
-    tip_margin : mm, radial distance of a tooth's tip inside the ring gear's tip circle up to which
-    its flanks are followed
-    distances : of the faces;  outer_radius : mm, no tooth is farther out
-    """
-
-    tip_margin: float
-    distances: SearchRange
-    outer_radius: float
 
 
 @dataclass(frozen=True)
@@ -86,9 +69,7 @@ class DiscreteProblem:
     none and None for a body without teeth
     boundary_terms : what holds and loads a part that is cut out
     module : mm, length that bounds and floors refer to
-    ring_sectors : ring-gear sectors that are modelled; None where all are
-    whole_teeth : teeth of the flexible spline and of the ring gear that are not one element; none
-    where all are
+    modelled : what of the drive is modelled in full; None where all is
     phases : wall seconds
 
     Attributes:
@@ -97,8 +78,7 @@ class DiscreteProblem:
     cells : freezing of the flanks' cells;  torque_control : of the output's motion
     x : state vector: displacements (mm) and multipliers;  accepted : the last state found in
     equilibrium
-    matrix : the tangent of the last `tangent`;  rows : its blocks on this rank;  matrix_rows :
-    which of them it has
+    blocks : of the last `tangent`, and their matrix
     round_off : N, of the last `tangent`, largest force by a last-digit error of the positions
     """
 
@@ -113,8 +93,7 @@ class DiscreteProblem:
         contact_search: ContactSearch | None = None,
         boundary_terms: Sequence[ForceTerm] = (),
         module: float,
-        ring_sectors: RingSectors | None = None,
-        whole_teeth: Sequence[WholeTeeth] = (),
+        modelled: ModelledSectors | None = None,
         phases: PhaseTimes,
     ) -> None:
         self.partition = partition
@@ -136,17 +115,13 @@ class DiscreteProblem:
         ]
         self.torque_control = TorqueControl(supports, clearances)
         self.module = module
-        self.ring_sectors, self.whole_teeth = ring_sectors, whole_teeth
+        self.modelled = modelled or ModelledSectors(elements)
         self.scale = supports.scale
         self.coupling_keys = self.wave_generator.block_keys(elements)
         self.x, self.accepted = create_vector(partition), create_vector(partition)
         self.local_nodes = elements.local
         self.exchange = Exchange(partition, self.local_nodes.number)
-        self.pattern: np.ndarray | None = None
-        self.rows: BlockRows | None = None
-        self.matrix_rows: MatrixRows | None = None
-        self.block_indices: list[np.ndarray] = []
-        self.matrix: PETSc.Mat | None = None
+        self.blocks = TangentMatrix(elements)
         self._extent = largest(partition.comm, float(np.abs(self.positions()).max(initial=0.0)))
         self.round_off = 0.0
         self._searched = self.x.array_r.copy()
@@ -154,8 +129,7 @@ class DiscreteProblem:
     def destroy(self) -> None:
         """Release the tangent and the exchange of ghost values; collective."""
         self.exchange.destroy()
-        if self.matrix is not None:
-            self.matrix.destroy()
+        self.blocks.destroy()
 
     @property
     def symmetric(self) -> bool:
@@ -231,11 +205,8 @@ class DiscreteProblem:
 
     def complete(self) -> None:
         """Let the inside of condensed teeth follow their rims; collective."""
-        if self.whole_teeth:
-            u, x = self.displacement(), self.x.array.reshape(-1, 3)
-            for teeth in self.whole_teeth:
-                nodes, values = self.elements.bodies[teeth.body].inside_of_teeth(u)
-                x[nodes] = values
+        if self.modelled.whole_teeth:
+            self.modelled.complete(self.displacement(), self.x.array.reshape(-1, 3))
 
     def reset_contacts(self) -> None:
         """Begin all contacts anew with the pairs and faces of the last search."""
@@ -263,24 +234,18 @@ class DiscreteProblem:
 
     def _choose_modelled_sectors(self) -> None:
         """Leave out ring-gear sectors, and condense teeth, that are out of reach; collective."""
-        within: dict[str, list[np.ndarray]] = {}
+        within: dict[str, np.ndarray] = {}
         near: dict[str, np.ndarray] = {}
+        splines = []
         for flanks in self.flanks:
             parts = self.partition.comm.allgather(flanks.sectors_in_reach())
             name = flanks.ring.layout.name
-            spline, ring, near[name] = (np.concatenate(part) for part in zip(*parts))
-            within.setdefault(FLEXIBLE_SPLINE, []).append(spline)
-            within[name] = [ring]
-        changed = [
-            teeth.update(np.concatenate(within[teeth.body]), self.elements)
-            for teeth in self.whole_teeth
-        ]
-        if self.ring_sectors is not None:
-            changed.append(self.ring_sectors.update(near[RING_GEAR], self.elements))
-        if any(changed):
-            self.elements.renew_pattern()
-            self.pattern = None
-        if changed:
+            spline, within[name], near[name] = (np.concatenate(part) for part in zip(*parts))
+            splines.append(spline)
+        within[FLEXIBLE_SPLINE] = np.concatenate(splines)
+        if self.modelled.update(within, near):
+            self.blocks.pattern = None
+        if self.modelled.choices:
             self.x.array.reshape(-1, 3)[self.elements.pattern.nodes_without_elements] = 0.0
             self.complete()
 
@@ -300,22 +265,11 @@ class DiscreteProblem:
     def set_pattern(self, pattern: np.ndarray) -> None:
         """Make room in the tangent for contact blocks, keys row * n_global + column (n,)."""
         with self.phases("pattern"):
-            changed = self.pattern is None or not np.array_equal(pattern, self.pattern)
-            if not self.partition.comm.allreduce(int(changed), op=MPI.MAX):
-                self.rows.number = self.local_nodes.number
-                return
-            self.pattern = pattern
-            self.rows, self.block_indices = self.elements.rows(pattern, self.local_nodes.number)
-            if self.matrix is not None:
-                self.matrix.destroy()
-            work = self.x.duplicate()
-            self.matrix_rows = matrix_rows(self.rows, self.local_nodes, self.exchange, work)
-            work.destroy()
-            self.matrix = create_matrix(self.partition, self.rows, self.matrix_rows)
+            self.blocks.make_room(pattern, self.local_nodes, self.exchange)
 
     def extend_pattern(self, missing: np.ndarray) -> None:
         """Make room for further contact blocks, keys (n,) that `tangent` returned; collective."""
-        self.set_pattern(np.union1d(self.pattern, missing))
+        self.set_pattern(np.union1d(self.blocks.pattern, missing))
 
     # -- residual and tangent ----------------------------------------------------------------------
 
@@ -348,7 +302,7 @@ class DiscreteProblem:
         return ResidualInfo(float(contact_force), collapsed)
 
     def tangent(self, u: np.ndarray, state: LoadState) -> np.ndarray:
-        """Fill `matrix`, the grounded tangent K' = K + B B^T, at u (n_local, 3) mm; collective.
+        """Fill `blocks`, the grounded tangent K' = K + B B^T, at u (n_local, 3) mm; collective.
 
         Symmetric: without friction, where residual and tangent are derivatives of a potential
         (`symmetric`). With it all blocks are stored, also where nothing slips.
@@ -367,34 +321,26 @@ class DiscreteProblem:
         Returns keys (n,) of contact blocks on this rank that have no room in it.
         """
         with self.phases("tangent"):
-            self.rows.values[:] = 0.0
-            self.elements.assemble(u, None, self.rows, self.block_indices)
-            missing = self._evaluate_terms(u, state, None, self.rows)
-            self.supports.add_blocks(u, self.rows)
-            add_unit_diagonal(self.rows, self.partition, self.scale)
-        self.round_off = self._round_off()
+            rows = self.blocks.rows
+            rows.values[:] = 0.0
+            self.elements.assemble(u, None, rows, self.blocks.block_indices)
+            missing = self._evaluate_terms(u, state, None, rows)
+            self.supports.add_blocks(u, rows)
+            add_unit_diagonal(rows, self.partition, self.scale)
+        # of the forces that follow from a last-digit error of every position
+        eps = float(np.finfo(float).eps)
+        self.round_off = eps * self._extent * self.blocks.norm_of_diagonal()
         with self.phases("insert"):
-            fill_matrix(self.matrix, self.rows, self.matrix_rows)
+            self.blocks.fill()
         return missing
 
     def complete_tangent(self, u: np.ndarray, state: LoadState) -> None:
-        """Fill `matrix` with the tangent at u (n_local, 3) mm, with room for all of its blocks;
+        """Fill `blocks` with the tangent at u (n_local, 3) mm, with room for all of its blocks;
         collective."""
         missing = self.tangent(u, state)
         if self.partition.comm.allreduce(len(missing), op=MPI.MAX):
             self.extend_pattern(missing)
             self.tangent(u, state)
-
-    def _round_off(self) -> float:
-        """Norm (N) of the forces that follow from a last-digit error of every position."""
-        own = np.arange(self.partition.row_start, self.partition.row_start + self.partition.n_own)
-        keys = np.delete(
-            own * self.partition.n_global + own, self.elements.pattern.nodes_without_elements
-        )
-        diagonal = self.rows.values[np.searchsorted(self.rows.keys, keys)]
-        squares = float(np.einsum("nkk,nkk->", diagonal, diagonal))
-        squares = self.partition.comm.allreduce(squares, op=MPI.SUM)
-        return float(np.finfo(float).eps * self._extent * np.sqrt(squares))
 
     def closing_rotation(self, state: LoadState) -> float:
         """Rotation (rad) of the output that brings flanks together, after a search; collective."""
@@ -437,20 +383,10 @@ class DiscreteProblem:
         for flanks in self.flanks:
             flanks.accept()
 
-    @property
-    def _in_reach(self) -> list[SectorsInReach]:
-        return [*self.whole_teeth, *([] if self.ring_sectors is None else [self.ring_sectors])]
-
-    def modelled_sectors(self) -> list[list[int]]:
-        """Which teeth and sectors are modelled in full, for `resume_sectors`."""
-        return [choice.chosen() for choice in self._in_reach]
-
     def resume_sectors(self, chosen: list[list[int]]) -> None:
         """Model these in full, as a run did that is continued; before the search. Collective."""
-        for choice, active in zip(self._in_reach, chosen):
-            choice.resume(active, self.elements)
-        self.elements.renew_pattern()
-        self.pattern = None
+        self.modelled.resume(chosen)
+        self.blocks.pattern = None
 
     def resume(self, tractions: dict[PairKey, CellTractions]) -> None:
         """Take x and these tractions of the flanks of the ring gear as an accepted state."""

@@ -156,8 +156,8 @@ class NewtonSolver:
         p.stateIncrease()
         bound = problem.torque_control.output_step_bound(state.load_state)
         border, rows = problem.supports.border(u, state.load_state)
-        grounding, active = problem.supports.grounding(u), problem.matrix_rows.active
-        self.system.set_system(problem.matrix, active, grounding, border, rows, bound)
+        grounding, active = problem.supports.grounding(u), problem.blocks.matrix_rows.active
+        self.system.set_system(problem.blocks.matrix, active, grounding, border, rows, bound)
 
     def factorise_tangent(self, state: LoadState) -> None:
         """Make the factor of the tangent in the equilibrium x under a load state, for
@@ -166,8 +166,8 @@ class NewtonSolver:
         problem.complete_tangent(u, state)
         border, rows = problem.supports.border(u, state)
         bound = np.inf if state.control == "torque" else None
-        grounding, active = problem.supports.grounding(u), problem.matrix_rows.active
-        self.system.set_system(problem.matrix, active, grounding, border, rows, bound)
+        grounding, active = problem.supports.grounding(u), problem.blocks.matrix_rows.active
+        self.system.set_system(problem.blocks.matrix, active, grounding, border, rows, bound)
         self.system.factorise()
 
     def _test_convergence(

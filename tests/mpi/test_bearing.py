@@ -175,10 +175,10 @@ def test_tangent() -> None:
     race.multiplier = race.multiplier + 1.0  # all touch
     for contact in (race, problem.wave_generator.balls):
         contact.evaluate(u, state, None, None)
-        problem.rows.values[:] = 0.0
-        contact.evaluate(u, state, None, problem.rows)
-        rows = np.repeat(np.arange(problem.rows.n_own), np.diff(problem.rows.start))
-        columns, blocks = problem.rows.column, problem.rows.values
+        problem.blocks.rows.values[:] = 0.0
+        contact.evaluate(u, state, None, problem.blocks.rows)
+        rows = np.repeat(np.arange(problem.blocks.rows.n_own), np.diff(problem.blocks.rows.start))
+        columns, blocks = problem.blocks.rows.column, problem.blocks.rows.values
         product = np.zeros_like(u)
         np.add.at(product, rows, np.einsum("plk,pl->pk", blocks, along[columns]))
         below = rows != columns

@@ -54,8 +54,8 @@ def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.
     border, rows = problem.supports.border(u, state)
     bound = problem.torque_control.output_step_bound(state)
     model.solver.system.set_system(
-        problem.matrix,
-        problem.matrix_rows.active,
+        problem.blocks.matrix,
+        problem.blocks.matrix_rows.active,
         problem.supports.grounding(u),
         border,
         rows,
@@ -64,7 +64,7 @@ def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.
     right, size = create_vector(partition), (partition.n_global, 3)
     values = np.random.default_rng(1).standard_normal(size)
     values[: partition.multiplier_nodes[0], partition.dims :] = 0.0
-    rows = problem.matrix_rows.active
+    rows = problem.blocks.matrix_rows.active
     right.array.reshape(-1, 3)[rows] = values[partition.row_start + rows]
     return model, right
 
@@ -93,7 +93,11 @@ def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
         border = bordered(model, linear, f"test_{linear}_")
         solved = solver.system
         border.set_system(
-            problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows
+            problem.blocks.matrix,
+            problem.blocks.matrix_rows.active,
+            solved.grounding,
+            solved.border,
+            solved.rows,
         )
         pc = solver.snes.getKSP().getPC()
         border.setUp(pc)
@@ -119,7 +123,11 @@ def test_mumps_out_of_memory(option: str, value: int, word: str) -> None:
     border = bordered(model, "direct", f"short_{option}_")
     solved, pc = solver.system, solver.snes.getKSP().getPC()
     border.set_system(
-        problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows
+        problem.blocks.matrix,
+        problem.blocks.matrix_rows.active,
+        solved.grounding,
+        solved.border,
+        solved.rows,
     )
     x = create_vector(partition)
     with Messages() as said:
@@ -137,12 +145,16 @@ def test_a_factor_that_is_singular_twice() -> None:
     problem, solved = model.problem, model.solver.system
     border, x = bordered(model, "direct", "singular_"), create_vector(model.partition)
     border.set_system(
-        problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows
+        problem.blocks.matrix,
+        problem.blocks.matrix_rows.active,
+        solved.grounding,
+        solved.border,
+        solved.rows,
     )
-    values, norms = problem.rows.values.copy(), []
+    values, norms = problem.blocks.rows.values.copy(), []
     for share in (1.0, 0.0, 0.0, 1.0):
-        problem.rows.values[:] = share * values
-        fill_matrix(problem.matrix, problem.rows, problem.matrix_rows)
+        problem.blocks.rows.values[:] = share * values
+        fill_matrix(problem.blocks.matrix, problem.blocks.rows, problem.blocks.matrix_rows)
         border.setUp(None)
         border.apply(None, right, x)
         norms.append(x.norm())
@@ -199,8 +211,8 @@ def test_options_of_petsc_solve_or_end_in_a_sentence(linear: str) -> None:
     problem, solved, comm = model.problem, model.solver.system, model.partition.comm
     reference = create_vector(model.partition)
     arguments = (
-        problem.matrix,
-        problem.matrix_rows.active,
+        problem.blocks.matrix,
+        problem.blocks.matrix_rows.active,
         solved.grounding,
         solved.border,
         solved.rows,
@@ -268,7 +280,12 @@ def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
     def step(border: list[PETSc.Vec], rows: list[int], bound: float | None) -> PETSc.Vec:
         test = bordered(model, "direct", "test_")
         test.set_system(
-            problem.matrix, problem.matrix_rows.active, solved.grounding, border, rows, bound
+            problem.blocks.matrix,
+            problem.blocks.matrix_rows.active,
+            solved.grounding,
+            border,
+            rows,
+            bound,
         )
         test.setUp(pc)
         x = create_vector(partition)

@@ -173,8 +173,8 @@ def test_far_teeth_change_little() -> None:
     many = ("drive.teeth_fs=80", "drive.teeth_rg=82", *PLANE, "solver.keep_factor=false")
     _, all_teeth = rotated("solver.far_teeth=modelled", *many)
     stepper, near_teeth = rotated(*many)
-    print(f"{stepper.problem.ring_sectors.active.sum()} of 41 ring-gear sectors")
-    assert stepper.problem.ring_sectors.active.sum() < 38
+    print(f"{stepper.problem.modelled.ring_sectors.active.sum()} of 41 ring-gear sectors")
+    assert stepper.problem.modelled.ring_sectors.active.sum() < 38
     assert_same(near_teeth, all_teeth, 1e-6)
 
 
@@ -186,10 +186,10 @@ def test_condensed_teeth_change_little(overrides: tuple[str, ...]) -> None:
     compression there."""
     plain_stepper, plain = rotated(*PLAIN, *overrides)
     stepper, row = rotated("solver.keep_factor=false", *overrides)
-    whole = [int(teeth.active.sum()) for teeth in stepper.problem.whole_teeth]
+    whole = [int(teeth.active.sum()) for teeth in stepper.problem.modelled.whole_teeth]
     print(f"{whole} whole teeth")
-    assert not plain_stepper.problem.whole_teeth and max(whole) < 12
-    rows, all_rows = (one.problem.matrix.getSize()[0] for one in (stepper, plain_stepper))
+    assert not plain_stepper.problem.modelled.whole_teeth and max(whole) < 12
+    rows, all_rows = (one.problem.blocks.matrix.getSize()[0] for one in (stepper, plain_stepper))
     print(f"{rows} of {all_rows} rows")
     assert rows < 0.9 * all_rows
     assert_same(row, plain, 1e-3)
