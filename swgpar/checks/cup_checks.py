@@ -12,11 +12,16 @@ from swgpar.design.cup_section import Cup
 from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
+from swgpar.geometry.cup_wall import WallPoint
 from swgpar.input.require import require, require_available
 from swgpar.meshing.drive_geometry import THICK_CUP
 
 THINNEST = 0.1
 """Thickness of a wall over that of the rim, at least."""
+
+SHORTEST_WALL = 0.6
+"""Length of the wall between the teeth and its turn in modules, at least: behind the teeth the
+elements' columns become radial, and in a shorter wall they would be folded."""
 
 SMALLEST_FILLET = 1.05
 """Radius of the fillet over the thicknesses beside it, at least: its other side is an arc of the
@@ -29,6 +34,14 @@ limit with a sharper one."""
 NARROWEST = 0.1
 """Width of the attached area over the thickness of closed end or flange, at least: points on it are
 counted."""
+
+STEEP, STEEPEST = 45.0, 80.0
+"""Slope (degrees) of a surface, at most: with both corners of a point at the same distance, and
+with a corner outside of its own."""
+
+LARGEST_LEAN = 50.0
+"""Angle (degrees) of the line between both corners of a point from square to the wall, at most:
+elements have these lines as sides."""
 
 KEYS = (
     ("shape", "cup", ("inner_radius",)),
@@ -50,11 +63,16 @@ def check_cup(design: DriveDesign) -> None:
     require(not condensed, "solver.condensed_sectors", condensed, allowed)
     if cup is None:
         raise InputError('cup is missing: allowed only with drive.model = "plane"')
+    _check_corners(cup)
     sizes, rim = design.cup_sizes, design.flexible_spline.rim
     reach = cup.length - sizes.wall_length
     by = "cup.fillet_radius" if reach == cup.fillet_radius else "end_thickness and inside_radius"
-    allowed = f"above {reach:g} mm ({by})"
-    require(cup.length > reach, "cup.length", cup.length, allowed)
+    least = reach + SHORTEST_WALL * design.drive.module
+    allowed = (
+        f"{least:.6g} mm and more ({SHORTEST_WALL:g} modules, {by}): teeth end before the wall "
+        "turns into the closed end or flange, which a smaller drive.face_width leaves room for"
+    )
+    require(cup.length * ROUND_OFF >= least, "cup.length", cup.length, allowed)
     _check_shape(cup)
     _check_contour(sizes, rim)
     _check_end(sizes, rim)
@@ -82,23 +100,43 @@ def _check_shape(cup: Cup) -> None:
                 )
 
 
+def _check_corners(cup: Cup) -> None:
+    """A point has a thickness or a corner outside."""
+    for k, point in enumerate(cup.contour, 1):
+        key = f"cup.contour.{k}"
+        if point.outer_radius is None:
+            if point.thickness is None:
+                raise InputError(f"{key}.thickness is missing: it is needed without outer_radius")
+            allowed = "only with outer_radius"
+            require(
+                point.outer_distance is None, f"{key}.outer_distance", point.outer_distance, allowed
+            )
+        else:
+            allowed = "only without outer_radius"
+            require(point.thickness is None, f"{key}.thickness", point.thickness, allowed)
+
+
 def _check_contour(sizes: CupSizes, rim: float) -> None:
-    """Every point lies behind the one before, and no surface is steeper than 45 degrees."""
+    """Every point lies behind the one before, and no surface is too steep."""
     cup, wall, points = sizes.section, sizes.wall, sizes.points
     length, least = sizes.wall_length, THINNEST * rim
     for k, (point, before) in enumerate(zip(cup.contour, points, strict=False), 1):
-        key, (start, inner, thickness, _) = f"cup.contour.{k}", before
-        first, at = start + least, point.distance
+        key, at = f"cup.contour.{k}", point.distance
+        first = before.distance + least
         allowed = f"{first:g} ({THINNEST:g} rims behind the point before) to {length:g} mm"
         behind = first <= at * ROUND_OFF and at <= length * ROUND_OFF
         require(behind, f"{key}.distance", at, f"{allowed} (the fillet)")
-        step, radius = (at - start) * ROUND_OFF, points[k][1]
-        steep = f"no steeper than 45 degrees from {start:g} mm on"
-        allowed = f"{max(inner - step, 0.0):.5g} to {inner + step:.5g} mm ({steep})"
-        require(abs(radius - inner) <= step, f"{key}.radius", radius, allowed)
-        low, high = max(inner + thickness - step - radius, least), inner + thickness + step - radius
-        allowed = f"{low:.5g} to {high:.5g} mm ({steep}, {THINNEST:g} rims)"
-        require(low <= point.thickness <= high, f"{key}.thickness", point.thickness, allowed)
+        corner = points[k]
+        if point.outer_radius is None and before.outer_distance == before.distance:
+            _check_slopes(f"{key}", corner, before, STEEP, least)
+        else:
+            _check_slopes(f"{key}", corner, before, STEEPEST, least)
+            _check_outside(f"{key}", corner, before, length, least)
+    for k, (point, (before, corner, after)) in enumerate(
+        zip(cup.contour, _neighbours(points), strict=False), 1
+    ):
+        if point.outer_radius is not None:
+            _check_lean(f"cup.contour.{k}", before, corner, after)
     most = np.minimum(wall.inner.largest_rounding(), wall.outer.largest_rounding())
     # the last point may be where the fillet begins
     limits = [*most.tolist(), 0.0]
@@ -108,6 +146,74 @@ def _check_contour(sizes: CupSizes, rim: float) -> None:
         require(fits, f"cup.contour.{k}.rounding", point.rounding, allowed)
 
 
+def _neighbours(points: list[WallPoint]) -> list[tuple[WallPoint, WallPoint, WallPoint]]:
+    """Every point behind the first one, between those beside it; the last one has itself."""
+    return list(zip(points, points[1:], [*points[2:], points[-1]], strict=False))
+
+
+def _check_slopes(
+    key: str, point: WallPoint, before: WallPoint, degrees: float, least: float
+) -> None:
+    """Both surfaces between two points. degrees : of the steepest;  least : mm, thickness"""
+    steep = float(np.tan(np.radians(degrees))) * ROUND_OFF
+    step = (point.distance - before.distance) * steep
+    more = "" if degrees == STEEPEST else f", {STEEPEST:g} with outer_distance and outer_radius"
+    words = f"no steeper than {degrees:g} degrees from {before.distance:g} mm on{more}"
+    low, high = max(before.radius - step, 0.0), before.radius + step
+    fits = abs(point.radius - before.radius) <= step
+    require(fits, f"{key}.radius", point.radius, f"{low:.5g} to {high:.5g} mm ({words})")
+    if degrees == STEEPEST:
+        return
+    thickness, outer = point.outer_radius - point.radius, before.outer_radius
+    low, high = max(outer - step - point.radius, least), outer + step - point.radius
+    allowed = f"{low:.5g} to {high:.5g} mm ({words}, {THINNEST:g} rims)"
+    require(
+        low <= thickness * ROUND_OFF and thickness <= high, f"{key}.thickness", thickness, allowed
+    )
+
+
+def _check_outside(
+    key: str, point: WallPoint, before: WallPoint, length: float, least: float
+) -> None:
+    """The corner outside. length : mm, of the wall;  least : mm, thickness and distance"""
+    at, first = point.outer_distance, before.outer_distance + least
+    last = length if point.distance < length else point.distance
+    low = last if point.distance >= length else first
+    fits = low <= at * ROUND_OFF and at <= last * ROUND_OFF
+    allowed = f"{low:g} to {last:g} mm (behind the point before, as far as the fillet)"
+    require(fits, f"{key}.outer_distance", at, allowed)
+    step = (at - before.outer_distance) * float(np.tan(np.radians(STEEPEST))) * ROUND_OFF
+    low, high = before.outer_radius - step, before.outer_radius + step
+    allowed = f"{low:.5g} to {high:.5g} mm (no steeper than {STEEPEST:g} degrees)"
+    fits = low <= point.outer_radius <= high
+    require(fits, f"{key}.outer_radius", point.outer_radius, allowed)
+    reach = float(np.hypot(*point.across))
+    allowed = f"a corner {least:g} mm ({THINNEST:g} rims) or more from that inside"
+    require(reach * ROUND_OFF >= least, f"{key}.outer_radius", point.outer_radius, allowed)
+
+
+def _check_lean(key: str, before: WallPoint, point: WallPoint, after: WallPoint) -> None:
+    """The line between both corners is about square to the wall on both sides of it."""
+    across = complex(*point.across)
+    for other, way in ((before, 1.0), (after, -1.0)):
+        for wall in (
+            complex(point.distance - other.distance, point.radius - other.radius),
+            complex(
+                point.outer_distance - other.outer_distance,
+                point.outer_radius - other.outer_radius,
+            ),
+        ):
+            if wall == 0.0:
+                continue
+            lean = 90.0 - float(np.degrees(np.angle(across / (way * wall))))
+            if abs(lean) > LARGEST_LEAN:
+                raise InputError(
+                    f"{key}: the line between its corners leans by {abs(lean):.3g} degrees from "
+                    f"square to the wall beside it: allowed up to {LARGEST_LEAN:g} degrees, by "
+                    "outer_distance and outer_radius on the bisector of both sides"
+                )
+
+
 def _check_end(sizes: CupSizes, rim: float) -> None:
     """Fillet and closed end or flange."""
     cup, wall = sizes.section, sizes.wall
@@ -115,12 +221,16 @@ def _check_end(sizes: CupSizes, rim: float) -> None:
     least = THINNEST * rim
     if cup.inside_radius is None:
         smallest = SMALLEST_FILLET * wall.thickness
-        allowed = f"{smallest:g} ({SMALLEST_FILLET:g} times the cup's thickness) to inf mm"
+        allowed = (
+            f"{smallest:g} ({SMALLEST_FILLET:g} times the cup's thickness) to inf mm, and smaller "
+            "ones with cup.inside_radius"
+        )
         require(fillet * ROUND_OFF >= smallest, "cup.fillet_radius", fillet, allowed)
         most = fillet / SMALLEST_FILLET
         allowed = f"{least:g} ({THINNEST:g} rims) to {most:g} mm (cup.fillet_radius over "
         fits = least <= end <= most * ROUND_OFF
-        require(fits, "cup.end_thickness", end, f"{allowed}{SMALLEST_FILLET:g})")
+        allowed += f"{SMALLEST_FILLET:g}), and thicker ones with cup.inside_radius"
+        require(fits, "cup.end_thickness", end, allowed)
     else:
         _check_corner(sizes, least)
     if wall.outwards:

@@ -8,6 +8,7 @@ from swgpar.checks.clearance import WORDS, Clearance, clearances
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.growth import cam_strain, frame_growth, growths
 from swgpar.geometry.cams import Cam, OffsetCam, PolarCam, pin_travel, taut_length
+from swgpar.geometry.cup_wall import thicknesses
 from swgpar.geometry.profiles import Points
 from swgpar.geometry.profiles.from_points import fitted_flank
 from swgpar.geometry.profiles.rigid_teeth import RigidMesh
@@ -119,7 +120,7 @@ def _cup(design: DriveDesign) -> dict[str, float]:
         return {}
     cup, of_cup = design.cup, design.cup_sizes
     end = "flange" if cup.shape == "hat" else "closed end"
-    thinnest = min(thickness for _, _, thickness, _ in of_cup.points)
+    thinnest = min(thicknesses(of_cup.points))
     sizes = {"cup thickness (mm)": of_cup.thickness}
     if thinnest != of_cup.thickness:
         sizes["thinnest place of the wall (mm)"] = thinnest

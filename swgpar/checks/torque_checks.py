@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.cup_wall import thicknesses
 from swgpar.input.require import require
 
 LARGEST_SHEAR = 0.01
@@ -20,7 +21,8 @@ def check_torques(design: DriveDesign) -> None:
     weakest, of = design.inner_radius**2 * design.flexible_spline.rim, "rim"
     if design.has_cup:
         points = design.cup_sizes.points
-        weakest, of = min(radius**2 * thickness for _, radius, thickness, _ in points), "cup's wall"
+        sections = (p.radius**2 * t for p, t in zip(points, thicknesses(points), strict=True))
+        weakest, of = min(sections), "cup's wall"
     most = 0.001 * LARGEST_SHEAR * shear_modulus * 2.0 * np.pi * weakest
     torques = {"load.torque": design.load.torque}
     for k, stage in enumerate(design.load.program, 1):

@@ -12,13 +12,24 @@ from swgpar.input.quantities import Section, quantity
 
 
 class ContourPoint(Section):
-    """One table [[cup.contour]]: a point of the wall's section. Between points its surfaces are
-    straight."""
+    """One table [[cup.contour]]: a corner of the wall's section on its inner surface, and that on
+    the outer one. Between corners both surfaces are straight."""
 
     distance: float = quantity(unit="mm", text="from the back of the teeth along the axis", gt=0.0)
-    thickness: float = quantity(unit="mm", text="thickness of the wall, across the axis", gt=0.0)
+    thickness: float | None = quantity(
+        None,
+        unit="mm",
+        text="thickness of the wall, across the axis; needed without outer_radius",
+        gt=0.0,
+    )
     radius: float | None = quantity(
         None, unit="mm", text="inner radius of the wall; default that below the teeth", gt=0.0
+    )
+    outer_distance: float | None = quantity(
+        None, unit="mm", text="distance of the corner outside; default distance", gt=0.0
+    )
+    outer_radius: float | None = quantity(
+        None, unit="mm", text="radius of the corner outside, in place of thickness", gt=0.0
     )
     rounding: float = quantity(
         0.0, unit="mm", text="radius that rounds the corners at this point", ge=0.0

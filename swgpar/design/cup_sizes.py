@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from swgpar.design.cup_section import Cup
-from swgpar.geometry.cup_wall import CupWall, end_reach, rounded_lines
+from swgpar.geometry.cup_wall import CupWall, WallPoint, end_reach, rounded_lines
 from swgpar.meshing.drive_geometry import CupGeometry
 
 
@@ -28,24 +28,26 @@ class CupSizes:
         return self.section.thickness_coef * self.rim
 
     @property
-    def points(self) -> list[tuple[float, float, float, float]]:
-        """Points of the wall: distance from the back of the teeth, inner radius, thickness and
-        rounding, mm."""
-        cup = self.section
-        points = [(0.0, self.inner_radius, self.thickness, 0.0)]
-        points += [
-            (p.distance, p.radius or self.inner_radius, p.thickness, p.rounding)
-            for p in cup.contour
-        ]
-        (last, radius, thickness, _), length = points[-1], self.wall_length
-        return points if last >= length else [*points, (length, radius, thickness, 0.0)]
+    def points(self) -> list[WallPoint]:
+        """Points of the wall, from the back of the teeth to the fillet."""
+        inner, length = self.inner_radius, self.wall_length
+        points = [WallPoint(0.0, inner, 0.0, inner + self.thickness, 0.0)]
+        for p in self.section.contour:
+            radius = p.radius or inner
+            outer = p.outer_radius or radius + p.thickness
+            along = p.outer_distance or p.distance
+            points.append(WallPoint(p.distance, radius, along, outer, p.rounding))
+        last = points[-1]
+        if last.distance >= length:
+            return points
+        return [*points, WallPoint(length, last.radius, length, last.outer_radius, 0.0)]
 
     @property
     def end_thickness(self) -> float:
         """Thickness of the closed end or flange, mm."""
         cup = self.section
         last = cup.contour[-1].thickness if cup.contour else self.thickness
-        return cup.end_thickness or last
+        return cup.end_thickness or last or self.thickness
 
     @property
     def wall_length(self) -> float:

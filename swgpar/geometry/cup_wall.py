@@ -20,8 +20,29 @@ SAME = 1e-7
 SHARP = 0.25
 """Radius over the thickness up to which a corner outside has a station of its own."""
 
+BISECTIONS = 52
+"""Halvings of the wall's length: to round-off."""
+
 STRAIGHT = 1e-9
 """rad, by which a line turns at most at a point where it counts as straight."""
+
+
+class WallPoint(NamedTuple):
+    """Corners of both surfaces: distances from the back of the teeth, radii, and the radius that
+    rounds both corners; mm."""
+
+    distance: float
+    radius: float
+    outer_distance: float
+    outer_radius: float
+    rounding: float
+
+    @property
+    def across(self) -> Floats:
+        """Way (2,) mm from the corner inside to that outside: along the axis, and out from it."""
+        return np.array(
+            [self.outer_distance - self.distance, self.outer_radius - self.radius], dtype=float
+        )
 
 
 class Arc(NamedTuple):
@@ -146,7 +167,8 @@ class Turn:
 class CupWall:
     """The section of the wall.
 
-    inner, outer : lines over the distance from the back of the teeth, as far as the fillet
+    inner, outer : lines over the distance from the back of the teeth, as far as the fillet, with
+        as many points; places of the wall are counted by the distance on the inner line
     back, end : mm, z of the back of the teeth and of the far face of the closed end or flange
     fillet : mm, radius between wall and end on the outer side (closed end) or inner side (flange)
     inside : mm, radius of the fillet in the corner on the other side; None: a quarter of an ellipse
@@ -174,6 +196,42 @@ class CupWall:
     def thickness(self) -> float:
         """Thickness (mm) of the wall where the fillet begins."""
         return float(self.outer.points[-1, 1] - self.inner.points[-1, 1])
+
+    def outer_distance(self, s: Floats) -> Floats:
+        """Distances (n,) mm on the outer line of places s (n,) mm of the wall: points of both lines
+        belong together, and shares of the way between them."""
+        return np.interp(s, self.inner.points[:, 0], self.outer.points[:, 0])
+
+    def places(self, r: Floats, s: Floats) -> Floats:
+        """Places (n,) mm of the wall for points at radii r and distances s (n,) mm in it."""
+        if np.array_equal(self.inner.points[:, 0], self.outer.points[:, 0]):
+            return np.clip(s, 0.0, self.length)
+        low, high = np.zeros_like(s), np.full_like(s, self.length)
+        for _ in range(BISECTIONS):
+            place = 0.5 * (low + high)
+            outer = self.outer_distance(place)
+            inside, outside = self.inner.radius(place), self.outer.radius(outer)
+            # which side of the line between both surfaces the point is on
+            beyond = (s - place) * (outside - inside) - (r - inside) * (outer - place) > 0.0
+            low, high = np.where(beyond, place, low), np.where(beyond, high, place)
+        return 0.5 * (low + high)
+
+    @property
+    def _arcs(self) -> tuple[Floats, Floats]:
+        """Places (n,) mm of the points and lengths (n,) mm along the middle of the wall."""
+        middle = 0.5 * (self.inner.points + self.outer.points)
+        steps = np.linalg.norm(np.diff(middle, axis=0), axis=1)
+        return self.inner.points[:, 0], np.append(0.0, np.cumsum(steps))
+
+    def along(self, s: Floats) -> Floats:
+        """Lengths (n,) mm along the middle of the wall as far as places s (n,) mm."""
+        return np.interp(s, *self._arcs)
+
+    def at_length(self, length: Floats) -> Floats:
+        """Places (n,) mm at lengths (n,) mm along the middle of the wall."""
+        if not (self.inner.corners().size or self.outer.corners().size):
+            return length
+        return np.interp(length, *self._arcs[::-1])
 
     @property
     def center(self) -> tuple[float, float]:
@@ -225,13 +283,17 @@ class CupWall:
         return (self.end, near) if self.outwards else (near, self.end)
 
     def stations(self, usual: Floats, first: float) -> Floats:
-        """Distances (n,) mm of stations, among them the corners and the ends of their arcs.
+        """Places (n,) mm of stations, among them the corners and the ends of their arcs.
 
         usual : (m,) mm, from 0 to `length`;  first : mm, as far as which they stay
         """
-        corners = np.union1d(self.inner.corners(), self.outer.corners())
-        arcs = [*self.inner.arcs(), *self.outer.arcs()]
-        ends = np.array([point[0] for arc in arcs for point in (arc.start, arc.end)])
+        places = self.inner.points[:, 0], self.outer.points[:, 0]
+        corners = np.union1d(self.inner.corners(), np.interp(self.outer.corners(), *places[::-1]))
+        inner, outer = (
+            np.array([point[0] for arc in line.arcs() for point in (arc.start, arc.end)])
+            for line in (self.inner, self.outer)
+        )
+        ends = np.append(inner, np.interp(outer, *places[::-1]))
         keep = np.concatenate([usual[usual <= first], usual[-1:], corners])
         stations = usual
         # all of them: between two that are close the wall may change its thickness
@@ -264,11 +326,30 @@ def with_station(stations: Floats, at: float, keep: Floats, room: float = 0.25) 
     return moved
 
 
-def rounded_lines(
-    points: Sequence[tuple[float, float, float, float]],
-) -> tuple[RoundedLine, RoundedLine]:
-    """Inner and outer line through points: distance, inner radius, thickness and rounding, mm."""
-    distance, radius, thickness, rounding = np.array(points).T
-    lines = (radius, radius + thickness)
-    inner, outer = (RoundedLine(np.column_stack([distance, line]), rounding) for line in lines)
-    return inner, outer
+def thicknesses(points: Sequence[WallPoint]) -> list[float]:
+    """Thicknesses (mm) of the wall at points: across the axis where both corners are at the same
+    distance, else across the thinner of the pieces beside it."""
+    found = []
+    for k, point in enumerate(points):
+        along, across = point.across
+        if along == 0.0:
+            found.append(float(across))
+            continue
+        beside = (*points[:k][-1:], *points[k + 1 : k + 2])
+        sides = [
+            np.array([other.distance - point.distance, other.radius - point.radius])
+            for other in beside
+        ]
+        found.append(
+            min(abs(float(x * across - y * along)) / float(np.hypot(x, y)) for x, y in sides)
+        )
+    return found
+
+
+def rounded_lines(points: Sequence[WallPoint]) -> tuple[RoundedLine, RoundedLine]:
+    """Inner and outer line through points."""
+    s, r, outer_s, outer_r, rounding = np.array(points).T
+    return (
+        RoundedLine(np.column_stack([s, r]), rounding),
+        RoundedLine(np.column_stack([outer_s, outer_r]), rounding),
+    )

@@ -14,6 +14,10 @@ from swgpar.meshing.recipe import CupRecipe, MeshRecipe
 from swgpar.meshing.spacing import polar
 from swgpar.meshing.sweep import grid_quads, sweep_line, sweep_quads, symmetric_steps
 
+SHORTEST = 0.25
+"""Mean length of the elements of the cylinder over its thickness, at least: a short wall has fewer
+elements."""
+
 GROWTH = 1.6
 """Ratio of the lengths of successive elements behind the fillet at the back of the teeth."""
 
@@ -71,9 +75,11 @@ def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
     """
     wall, back_fillet = cup.wall, cup.back_fillet
     r_center, _ = wall.center
-    s = wall.stations(
-        cylinder_stations(wall.length, recipe, back_fillet, layers), back_fillet * (1.0 + 1e-9)
-    )
+    length = float(wall.along(np.array([wall.length]))[0])
+    elements = int(np.clip(np.ceil(length / (SHORTEST * wall.thickness)), 1, recipe.cylinder))
+    recipe = recipe.model_copy(update={"cylinder": elements})
+    usual = wall.at_length(cylinder_stations(length, recipe, back_fillet, layers))
+    s = wall.stations(usual, back_fillet * (1.0 + 1e-9))
     angle = wall.turn_angles(recipe.fillet)[1:]
     share = symmetric_steps(recipe.closed_end, recipe.end_ratio)
     if cup.clamping_radius is not None:  # a clamped ring is not bent: one element
@@ -85,15 +91,17 @@ def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
 def section_lines(cup: CupGeometry, s: Floats, angle: Floats, r: Floats) -> Meridian:
     """Stations of the wall's section.
 
-    s : (n,) mm, from the back of the teeth to the fillet;  angle : (m,) rad along the fillet, above
-    0;  r : (k,) mm, radii on closed end or flange, without that of the fillet
+    s : (n,) mm, places from the back of the teeth to the fillet
+    angle : (m,) rad along the fillet, above 0
+    r : (k,) mm, radii on closed end or flange, without that of the fillet
     """
     wall, back_fillet = cup.wall, cup.back_fillet
     side = -1.0 if wall.outwards else 1.0
     lines = []
     for line, turn, face in zip((wall.inner, wall.outer), wall.turns, wall.faces, strict=True):
-        radius = line.radius(s)
-        cylinder = np.stack((radius, wall.back + s), axis=-1)
+        distance = s if line is wall.inner else wall.outer_distance(s)
+        radius = line.radius(distance)
+        cylinder = np.stack((radius, wall.back + distance), axis=-1)
         if line is wall.outer and back_fillet:
             on = s <= back_fillet * (1.0 + 1e-9)
             up, along = fillet_points(-s[on] / back_fillet, back_fillet)

@@ -93,7 +93,9 @@ def graded_section(geometry: DriveGeometry, counts: WallCounts, start: float) ->
     wall: CupWall = geometry.cup.wall
     arc = 0.5 * np.pi * wall.arm / counts.fillet
     longest = counts.limit(geometry.inner_radius, wall.thickness)
-    usual = wall.length - graded_line(wall.length - start, arc, longest, longest)[::-1]
+    first, length = wall.along(np.array([start, wall.length]))
+    usual = wall.at_length(length - graded_line(length - first, arc, longest, longest)[::-1])
+    usual[0] = start
     angle = wall.turn_angles(counts.fillet)[1:]
     return section_lines(
         geometry.cup, wall.stations(usual, start), angle, flat_radii(geometry.cup, counts, arc)
@@ -107,9 +109,12 @@ def section_parameters(cup: CupGeometry, points: Floats) -> tuple[Floats, Floats
     r, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
     r_center, z_center = wall.center
     x, y = np.abs(r - r_center), np.maximum(z - z_center, 0.0)
-    s = np.clip(z - wall.back, 0.0, wall.length)
-    inner = wall.inner.radius(s)
-    depth = (r - inner) / (wall.outer.radius(s) - inner)
+    s = wall.places(r, z - wall.back)
+    beside = wall.outer_distance(s)
+    inner, ahead = wall.inner.radius(s), beside - s
+    up = wall.outer.radius(beside) - inner
+    on_line = np.clip(z - wall.back, 0.0, wall.length) - s
+    depth = (on_line * ahead + (r - inner) * up) / (ahead**2 + up**2)
     along = s.copy()
     near, far = wall.faces
     beyond = (r >= r_center) == wall.outwards

@@ -17,6 +17,7 @@ import numpy as np
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS, GearName
 from swgpar.geometry.cams import cam_outlines
+from swgpar.geometry.cup_wall import thicknesses
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing.cup import meridian
@@ -263,7 +264,7 @@ def _meridian(design: DriveDesign) -> Sheet:
     sheet.upright(0.0, bore, -back, 40.0, f"r {bore:.4g}", "start")
     if cup.attachment != "edge":
         _draw_attachment(sheet, design)
-    lowest = min(radius for _, radius, _, _ in design.cup_sizes.points)
+    lowest = min(point.radius for point in design.cup_sizes.points)
     x, y = sheet.at(back + 0.5 * cup.length, lowest)
     inside = "" if cup.inside_radius is None else f", inside r {cup.inside_radius:g}"
     wall_text = f"wall {_thicknesses(design)}, fillet r {cup.fillet_radius:g}{inside}"
@@ -282,7 +283,7 @@ def _thicknesses(design: DriveDesign) -> str:
     """Thickness of the wall in words: where it changes from place to place, with that of the closed
     end or flange."""
     sizes = design.cup_sizes
-    along = [thickness for _, _, thickness, _ in sizes.points]
+    along = thicknesses(sizes.points)
     wall = " / ".join(f"{thickness:.3g}" for thickness, _ in groupby(along))
     if sizes.end_thickness == along[-1]:
         return wall

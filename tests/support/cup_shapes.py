@@ -26,6 +26,27 @@ CONTOUR: Changes = {
 HAT: Changes = {"shape": "hat", "inner_radius": None, "flange_radius": 26.0, "end_thickness": 0.8}
 SHORT: Changes = {"length": 6.0}
 
+
+def cone(degrees: float, thickness: float = 0.48, rounding: float = 0.0) -> Changes:
+    """A wall with a cone of this slope between two cylinders, all equally thick."""
+    slope = np.radians(degrees)
+    # from the corner inside to that outside, on the bisector
+    along = thickness * float(np.tan(0.5 * slope))
+    last = 4.0 + 5.0 / float(np.tan(slope))
+    corners = [(4.0, 18.6), (last, 13.6)]
+    contour: list[dict[str, float]] = [
+        {
+            "distance": distance,
+            "radius": radius,
+            "outer_distance": distance + along,
+            "outer_radius": radius + thickness,
+            "rounding": rounding,
+        }
+        for distance, radius in corners
+    ]
+    return {"length": 14.0, "contour": contour}
+
+
 SHAPES: dict[str, Changes] = {
     "contour": CONTOUR,
     "hat": HAT,
@@ -35,6 +56,13 @@ SHAPES: dict[str, Changes] = {
     "rounded end": {"fillet_radius": 0.7, "inside_radius": 0.4, "end_thickness": 1.0},
     "sharp hat": HAT | {"fillet_radius": 0.0, "inside_radius": 0.5, "end_thickness": 1.2},
 }
+
+
+SHORT_WALL: Changes = {"length": 2.6}
+"""Teeth up to 0.6 modules before the fillet."""
+
+WALLS: dict[str, Changes] = SHAPES | {"cone": cone(79.0, rounding=0.5)}
+"""The start that bends with the cam has a jump where the plate of a narrow end begins."""
 
 
 def shaped(changes: Changes, *overrides: str) -> DriveDesign:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from support.cup_shapes import HAT_CLAMPED, SHAPES, shaped, wall_volume
+from support.cup_shapes import HAT_CLAMPED, WALLS, shaped, wall_volume
 from swgpar.design.drive_design import DriveDesign
 from swgpar.meshing.quality import hex_volumes
 from swgpar.meshing.wall_sector import WallCounts, graded_line, section_parameters, wall_sector
 
-CASES = {**SHAPES, "cup": {}, "clamped hat": HAT_CLAMPED}
+CASES = {**WALLS, "cup": {}, "clamped hat": HAT_CLAMPED}
 every_shape = pytest.mark.parametrize("shape", list(CASES))
 
 

@@ -129,7 +129,7 @@ class _Ends:
     def tip(self, radius: float) -> tuple[float, list[FlankSegment]]:
         """Where the curve begins, mm, and the arc before it."""
         circle = self.curve.r_tip_circle
-        if radius == 0.0 and self.above(0.0, 0.0, circle) < -SAME * self.module:
+        if self.above(0.0, 0.0, circle) < -SAME * self.module:
             reached = abs(self.at(0.0)[0])
             raise InputError(
                 f"{self.name}: the flank ends at a radius of {reached:.6g} mm, the addendum circle "

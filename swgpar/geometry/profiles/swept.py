@@ -310,6 +310,12 @@ class SweptArea:
                 f"{self.name}: the other gear's teeth leave no boundary between these teeth: "
                 "allowed are other profiles of the other gear, and lower teeth"
             )
+        if known[0] > 0:
+            raise InputError(
+                f"{self.name}: these tips, at a radius of {self.tip:.6g} mm, reach into the "
+                f"fillets of the other gear, which leave a flank from {radii[known[0]]:.6g} mm on: "
+                "allowed are smaller addenda, and a smaller root radius of the other gear"
+            )
         usual = np.maximum(np.abs(places.psi_rate[1:]), np.abs(places.psi_rate[:-1]))
         jump = np.abs(np.diff(places.psi)) > JUMP + 3.0 * usual * np.abs(np.diff(radii))
         ends = known[1:][((np.diff(best) != 0) | jump)[known[:-1]]]
