@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.checks.clearance import WORDS, Clearance, clearances
+from swgpar.checks.inertia import negligible_speeds
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.growth import cam_strain, frame_growth, growths
 from swgpar.geometry.cams import Cam, OffsetCam, PolarCam, pin_travel, taut_length
@@ -73,6 +74,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         "tips at the minor axis (mm)": ring.r_tip_circle - spline.r_tip_circle - valley,
         **_clearance(every[0]),
         **_growth(design),
+        **negligible_speeds(design),
         **_dynamic_spline(design),
         **_clearance(*every[1:]),
         **_rigid_contact(design.rigid_teeth().mesh()),

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from swgpar.checks.clearance import clearances
 from swgpar.checks.growth_checks import growth_remarks
+from swgpar.checks.inertia import inertia_remarks
 from swgpar.checks.tooth_checks import tooth_remarks
 from swgpar.design.drive_design import DriveDesign
 
@@ -23,7 +24,7 @@ def remarks(design: DriveDesign) -> list[str]:
             f"{100 * stretch:.3g} %, which alone is a hoop stress of {hoop:.4g} MPa in the "
             f"flexible spline; a smaller minor axis shortens the cam"
         )
-    sentences += [*tooth_remarks(design), *growth_remarks(design)]
+    sentences += [*tooth_remarks(design), *growth_remarks(design), *inertia_remarks(design)]
     torque, negligible = design.load.torque, design.negligible_torque
     if 0.0 < 1000.0 * torque <= negligible:
         sentences.append(

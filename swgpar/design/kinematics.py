@@ -57,6 +57,14 @@ class Kinematics:
         return 0.0 if self.output_gear == "ring_gear" else 1.0 / self.ratio
 
     @property
+    def speeds_in_space(self) -> tuple[float, float]:
+        """Speeds of the flexible spline and of the wave generator in space over that of the
+        input."""
+        if self.wave_generator_is_fixed:
+            return 1.0 - self.spline_speed, 0.0
+        return self.spline_speed, 1.0
+
+    @property
     def period_angle(self) -> float:
         """Period of the motion, rad of the wave generator against the standing gear: one pitch
         angle of that gear."""

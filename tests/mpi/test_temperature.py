@@ -5,7 +5,9 @@ from __future__ import annotations
 import pytest
 from mpi4py import MPI
 
-from support.stepping import assert_agree, loaded, small
+from support.cup_shapes import ATTACHMENTS, shaped
+from support.stepping import assert_agree, load_stepper, loaded, row, small
+from swgpar.load.load_states import LoadState, Stage
 
 RISE, EXPANSION = 60.0, 12e-6
 PHYSICAL = (
@@ -93,3 +95,16 @@ def test_condensed_teeth_and_whole_ones_give_the_same() -> None:
     _, condensed = loaded(small("cup", *DIFFERENT))
     _, whole = loaded(small("cup", *DIFFERENT, "solver.far_teeth=modelled"))
     assert_agree(condensed, whole, PHYSICAL, 1e-3)
+
+
+@pytest.mark.parametrize("name", ["edge", *ATTACHMENTS])
+def test_a_warm_cup_alone_has_no_stress(name: str) -> None:
+    """Its flange grows with it, from the axis and its own middle plane: E alpha dT are 151 MPa."""
+    design = shaped(ATTACHMENTS.get(name, {})).with_values(
+        {"material.expansion": EXPANSION, "flexible_spline.temperature": WARM}
+    )
+    stepper = load_stepper(design)
+    assert stepper.solver.solve(LoadState(Stage.ENGAGE, 2)).converged
+    values = row(stepper)
+    print(f"{name}: {values['fs_vm']:.1e} MPa")
+    assert values["fs_vm"] < 1e-3 and values["rg_vm"] < 1e-9

@@ -1,0 +1,71 @@
+"""Input speeds up to which the inertia of the rim of the flexible spline is negligible."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.rim_inertia import RimInertia
+
+NEGLIGIBLE = 0.01
+"""Share of the bending up to which inertia is negligible."""
+
+PER_MINUTE = np.pi / 30.0
+"""A turn per minute in rad/s."""
+
+ROUND_OFF = 1e-12
+"""Share, at 1 rad/s, below which inertia is none."""
+
+
+def rim_inertia(design: DriveDesign) -> RimInertia | None:
+    """The rim of the flexible spline with half of the mass of full teeth; None without a density.
+
+    The wall of a cup is left out: it makes the rim stiffer, and the speeds higher.
+    """
+    material, teeth = design.materials["flexible_spline"], design.teeth("flexible_spline")
+    if material.density is None:
+        return None
+    rim = design.flexible_spline.rim
+    return RimInertia(
+        radius=design.inner_radius + 0.5 * rim,
+        thickness=rim,
+        mass_thickness=rim + 0.5 * (teeth.addendum + teeth.dedendum),
+        modulus=material.modulus,
+        density=material.density,
+        lobes=design.wave_generator.lobes,
+        amplitude=0.5 * design.deflection,
+    )
+
+
+def negligible_speeds(design: DriveDesign) -> dict[str, float]:
+    """Input speeds (1/min) up to which inertia is negligible, by their meaning; none without a
+    density. Speeds that nothing depends on are left out."""
+    rim, (spline, wave) = rim_inertia(design), design.kinematics.speeds_in_space
+    if rim is None:
+        return {}
+    shares = {
+        "inertia of the deflected rim, a ring alone, is 1 % of the forces that bend it": abs(
+            rim.share_of_bending(spline, wave)
+        ),
+        "rotation stretches the rim by 1 % of its bending stress": rim.hoop_stress(spline)
+        / rim.bending_stress,
+    }
+    return {
+        f"input speed at which {name} (1/min)": float(np.sqrt(NEGLIGIBLE / share)) / PER_MINUTE
+        for name, share in shares.items()
+        if share > ROUND_OFF
+    }
+
+
+def inertia_remarks(design: DriveDesign) -> list[str]:
+    """A sentence where the rim rotates so fast that the stress of its rotation counts."""
+    rim, (spline, _) = rim_inertia(design), design.kinematics.speeds_in_space
+    if rim is None or "input_speed" not in design.load.model_fields_set:
+        return []
+    stress = rim.hoop_stress(spline * PER_MINUTE * design.load.input_speed)
+    if stress <= NEGLIGIBLE * rim.bending_stress:
+        return []
+    return [
+        f"load.input_speed = {design.load.input_speed:g} 1/min rotates the flexible spline so fast "
+        f"that its rim has a further hoop stress of {stress:.3g} MPa: the model leaves it out"
+    ]

@@ -1,0 +1,76 @@
+"""Inertia of the rim: natural frequencies of rings, rings that flow along their own curve, and what
+`swgpar check` says of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from support.paths import DESIGN
+from swgpar.checks.design_file import load_design
+from swgpar.checks.inertia import inertia_remarks, negligible_speeds
+from swgpar.geometry.rim_inertia import RimInertia
+
+DENSE = "material.density=7850.0"
+
+
+def rim(lobes: int = 2) -> RimInertia:
+    return RimInertia(58.0, 1.0, 1.0, 210e3, 7850.0, lobes, 1.0)
+
+
+@pytest.mark.parametrize("lobes", [2, 3])
+def test_a_wave_at_the_natural_frequency_of_a_ring_at_rest_needs_no_force(lobes: int) -> None:
+    """Hoppe's ring: p² = n² (n² - 1)² / (n² + 1) E I / (rho A R⁴)."""
+    n, radius = lobes, 0.058
+    stiff = 210e9 * 1e-6 / 12.0 / (7850.0 * radius**4)
+    frequency = np.sqrt(n**2 * (n**2 - 1) ** 2 / (n**2 + 1) * stiff)
+    assert rim(lobes).share_of_bending(0.0, frequency / n) == pytest.approx(1.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("lobes", [2, 3])
+@pytest.mark.parametrize("speed", [10.0, 500.0])
+def test_a_rim_that_flows_along_a_standing_wave_has_no_inertia(lobes: int, speed: float) -> None:
+    one = rim(lobes)
+    assert abs(one.share_of_bending(speed, 0.0)) < 1e-12 * one.share_of_bending(0.0, speed)
+    assert one.hoop_stress(speed) == pytest.approx(1e-6 * 7850.0 * (0.058 * speed) ** 2)
+
+
+def test_a_ring_by_its_lagrangian() -> None:
+    """Both speeds at once: the kinetic energy of a ring that bends without extension, by
+    quadrature."""
+    n, radius, amplitude, spin, wave = 2, 58.0, 0.01, 300.0, 120.0
+    angle = 2.0 * np.pi * np.arange(4000) / 4000
+    passing = wave - spin
+
+    def energy(u: float) -> float:
+        outward = u * np.cos(n * angle) - (n**2 - 1) ** 2 * u**2 / (4 * n**2 * radius)
+        along = -u / n * np.sin(n * angle)
+        fast_outward = u * n * passing * np.sin(n * angle)
+        fast_along = u * passing * np.cos(n * angle)
+        # the second order along the rim makes its second order outward the same all round
+        around = fast_along + spin * (radius + outward)
+        return float(((fast_outward - spin * along) ** 2 + around**2).mean())
+
+    found = (energy(amplitude) + energy(-amplitude) - 2.0 * energy(0.0)) / (2.0 * amplitude**2)
+    one = rim()
+    stiffness = 210e3 / 12.0 * (n**2 - 1) ** 2 / radius**4 / (1e-12 * 7850.0)
+    assert one.share_of_bending(spin, wave) == pytest.approx(2.0 * found / stiffness, rel=1e-6)
+
+
+def test_speeds_follow_from_the_layout() -> None:
+    fixed = negligible_speeds(load_design(DESIGN, [DENSE]))
+    turning = negligible_speeds(load_design(DESIGN, [DENSE, "drive.layout=wave_generator_fixed"]))
+    assert not negligible_speeds(load_design(DESIGN))
+    assert len(fixed) == 2 and len(turning) == 1
+    of_rotation = next(name for name in fixed if "rotation" in name)
+    # the rim turns 21 times as fast as with the ring gear fixed
+    assert fixed[of_rotation] == pytest.approx(21.0 * turning[of_rotation])
+
+
+def test_a_fast_input_is_said() -> None:
+    turning = [DENSE, "drive.layout=wave_generator_fixed"]
+    (least,) = negligible_speeds(load_design(DESIGN, turning)).values()
+    for factor, count in ((0.99, 0), (1.01, 1)):
+        design = load_design(DESIGN, [*turning, f"load.input_speed={factor * least}"])
+        assert len(inertia_remarks(design)) == count
+    assert not inertia_remarks(load_design(DESIGN, [DENSE, f"load.input_speed={least}"]))
