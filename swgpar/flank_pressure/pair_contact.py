@@ -16,7 +16,6 @@ from functools import cache, partial
 from typing import Any
 
 import numpy as np
-from scipy.integrate import trapezoid
 
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.pressed_lines import PressedLine
@@ -29,6 +28,7 @@ from swgpar.flank_pressure.flank_loads import (
     forces_on_teeth,
     line_loads,
     nodal_flank_forces,
+    tributary,
 )
 from swgpar.flank_pressure.moved_pairs import FlankGap, Neighbours, moved_teeth
 from swgpar.flank_pressure.patch_contact import CELLS_ACROSS, PatchContact, patch_contact
@@ -211,7 +211,7 @@ def _carried(
                 flank="clockwise" if pair.side > 0 else "counter-clockwise",
                 ring_tooth=pair.ring_tooth % ring.mesh.n_sectors,
                 angle_deg=float(np.degrees(np.arctan2(np.sin(place), np.cos(place)))),
-                force_N=float(trapezoid(load.load @ load.direction, load.z)),
+                force_N=float(load.load @ load.direction @ tributary(load.z)),
                 force_share=np.nan,
                 torque_Nmm=float(x @ force[:, 1] - y @ force[:, 0]),
                 ring=name,
@@ -326,11 +326,11 @@ def _sliding(
 
 def _patch(model: DriveModel, gap: FlankGap, load: LineLoad, modulus: float) -> PatchContact:
     """Contact of a pair in space. load : of the pressures on the mesh"""
-    along = load.load @ load.direction
-    force = float(trapezoid(along, load.z))
+    along, share = load.load @ load.direction, tributary(load.z)
+    force = float(along @ share)
     # the ring gears of a pancake drive are narrower than the flexible spline
     low, high = gap.facing.ends
     ends = max(float(load.z[0]), low), min(float(load.z[-1]), high)
-    place = float(trapezoid(along * load.z, load.z)) / force
+    place = float(along * load.z @ share) / force
     width = WIDTH * model.design.drive.module
     return patch_contact(gap, gap.least_at, ends, width, force=force, place=place, modulus=modulus)
