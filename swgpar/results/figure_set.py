@@ -24,6 +24,9 @@ FOLDER = "figures"
 
 DOTS_PER_INCH = 150
 
+COMPRESSION = 3
+"""Level of PNG files: the usual one, 6, takes half as long again for files smaller by a tenth."""
+
 Drawings = Mapping[str, "Callable[[], Figure]"]
 """Name of a figure, without suffix that of its file -> function that draws it."""
 
@@ -133,7 +136,7 @@ def _write(figure: Figure, path: Path, dots_per_inch: float) -> None:
     if engine is not None:
         engine.execute(figure)
         figure.set_layout_engine(None)
-    figure.savefig(path, dpi=dots_per_inch)
+    figure.savefig(path, dpi=dots_per_inch, pil_kwargs={"compress_level": COMPRESSION})
 
 
 class NamedFigures(FigureSet):
