@@ -9,10 +9,13 @@ import numpy as np
 from swgpar.contact.search import FlankPair
 
 RISES = 1.01
-"""Pressure of the outermost cell over that of the next one from which it rises to the end."""
+"""Pressure of a cell over that of the next one inwards from which it rises to the end."""
 
-FEWEST = 4
-"""Cells of a contact that show where its pressure rises."""
+RISING = 4
+"""Cells at an end over which the pressure rises to an edge."""
+
+ROUND_OFF = 1e-9
+"""Distance of two cells over the length of their line below which they touch."""
 
 
 @dataclass(frozen=True)
@@ -55,11 +58,10 @@ class PressedLine:
     @property
     def ends_on_tips(self) -> tuple[bool, bool]:
         """Whether the contact ends on the tip of the flexible spline, of the ring gear: the
-        pressure rises to a sharp edge, and falls to 0 where smooth flanks part."""
-        if len(self.pressure) < FEWEST:
-            return False, False
-        low, high = self.pressure[[0, -1]] > RISES * self.pressure[[1, -2]]
-        return bool(low), bool(high)
+        pressure rises to a sharp edge, where it is largest, and falls to 0 where smooth flanks
+        part."""
+        gaps = (self.low[1:] - self.high[:-1]) / (self.high[-1] - self.low[0])
+        return _rises(self.pressure, gaps), _rises(self.pressure[::-1], gaps[::-1])
 
     def strips(self, number: int) -> np.ndarray:
         """Mean pressures (number,) MPa on equal strips between the ends of the contact."""
@@ -68,6 +70,15 @@ class PressedLine:
         steps = np.zeros(len(places))
         steps[1::2] = self.pressure * (self.high - self.low)
         return np.diff(np.interp(ends, places, np.cumsum(steps))) / np.diff(ends)
+
+
+def _rises(pressure: np.ndarray, gaps: np.ndarray) -> bool:
+    """Whether the pressure (n,) of cells from an end inwards is largest in the first one and falls
+    over `RISING` cells of one contact. gaps : (n - 1,) between cells, over the length of all"""
+    outer = pressure[:RISING]
+    if len(outer) < RISING or outer[0] < pressure.max() or gaps[: RISING - 1].max() > ROUND_OFF:
+        return False
+    return bool((outer[:-1] > RISES * outer[1:]).all())
 
 
 def contact_end(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from swgpar.contact.pressed_lines import PressedLine
@@ -26,6 +28,17 @@ def test_a_punch_ends_on_its_edges() -> None:
     assert line(1.0 / np.sqrt(1.0 - x**2)).ends_on_tips == (True, True)
     assert line(np.sqrt((1.0 + x) / (1.0 - x))).ends_on_tips == (False, True)
     assert line(np.sqrt((1.0 - x) / (1.0 + x))).ends_on_tips == (True, False)
+
+
+def test_two_contacts_on_a_line_show_no_edge() -> None:
+    """The outer one of both is small, and has two cells."""
+    small = line(np.concatenate([[10.0, 7.0], np.linspace(20.0, 100.0, 8), [50.0, 10.0]]))
+    assert small.ends_on_tips == (False, False)
+    falling = np.array([90.0, 80.0, 70.0, 60.0, 50.0, 40.0])
+    assert line(falling).ends_on_tips == (True, False)
+    ends = np.array([0.0, 0.1, 0.5, 0.6, 0.7, 0.8])
+    apart = replace(line(falling), low=ends, high=ends + 0.1)
+    assert apart.ends_on_tips == (False, False)
 
 
 def test_few_cells_show_no_edge() -> None:
