@@ -11,7 +11,6 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.growth import grown_cam_surface
 from swgpar.fem.body import FLEXIBLE_SPLINE, OUTER_RACE
 from swgpar.fem.vectors import write_field
 from swgpar.geometry.neutral_line import bent_ring
@@ -46,7 +45,7 @@ class BentSpline:
         self.order = float(design.wave_generator.lobes) * np.arange(len(self.amplitudes))
         self.half = 0.5 * design.wave_generator.width
         self.end = design.cup_sizes.rest_plane if design.has_cup else 0.5 * design.drive.face_width
-        self.surface = grown_cam_surface(design)
+        self.surface = design.grown_cam_surface()
 
     def displacement(self, points: np.ndarray) -> np.ndarray:
         """Displacement (n, 3) mm of points (n, 3) mm of the undeformed spline."""

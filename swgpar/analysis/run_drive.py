@@ -106,7 +106,7 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
         elif not resumed:
             way = "taking over loaded states" if kept.found(comm) else "starting from the beginning"
             logger.info("no increment was saved: %s", way)
-        what = identity(design, recipe, options.accuracy)
+        what = identity(design.decisive_keys, recipe, options.accuracy)
         chosen = None
         if options.accuracy is not None:
             if resumed:

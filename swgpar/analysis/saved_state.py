@@ -99,7 +99,8 @@ class StartStates:
         # a state with friction depends on the path to it
         if self.folder is None or model.design.contact.friction:
             return None
-        return self.folder / START_STATES.replace("*", identity(model.design, recipe, None)[:12])
+        what = identity(model.design.decisive_keys, recipe, None)
+        return self.folder / START_STATES.replace("*", what[:12])
 
     def save(self, model: DriveModel, recipe: MeshRecipe) -> None:
         """Write the model's present state; collective. Raises OutputError."""

@@ -7,7 +7,6 @@ import numpy as np
 from swgpar.checks.clearance import WORDS, Clearance, clearances
 from swgpar.checks.inertia import negligible_speeds
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.growth import cam_strain, frame_growth, growths
 from swgpar.geometry.cams import Cam, OffsetCam, PolarCam, pin_travel, taut_length
 from swgpar.geometry.cup_wall import thicknesses
 from swgpar.geometry.profiles import Points
@@ -142,14 +141,14 @@ def _growth(design: DriveDesign) -> dict[str, float]:
     radii |= {"bearing": design.inner_radius}
     places = {"housing": "bore of the housing", "bearing": "outer surface of the race"}
     values = {}
-    for body, growth in growths(design).items():
+    for body, growth in design.growths.items():
         place = places.get(body, f"pitch circle of the {body.replace('_', ' ')}")
         values[f"free radial growth, {place} (µm)"] = 1e3 * growth.across * radii[body]
     values["radial growth of the cam, major axis (µm)"] = (
-        1e3 * cam_strain(design) * design.major_semi_axis
+        1e3 * design.cam_strain * design.major_semi_axis
     )
     values["radial growth of the frame (µm)"] = (
-        1e3 * frame_growth(design).across * design.geometry.outer_radius
+        1e3 * design.frame_growth.across * design.geometry.outer_radius
     )
     return {name: value for name, value in values.items() if value}
 

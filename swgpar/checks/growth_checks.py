@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from typing import Any
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.growth import cam_strain, frame_growth, growths, temperature_rises
 from swgpar.errors import InputError
 from swgpar.input.require import require, require_available
 
@@ -24,7 +23,7 @@ pressure that makes some 20 MPa."""
 
 def check_growth(design: DriveDesign) -> None:
     """Raise InputError for the first temperature or fit that does not fit the design."""
-    rises, frame = temperature_rises(design), design.ring_gear.frame
+    rises, frame = design.temperature_rises, design.ring_gear.frame
     for key, where, known in _expansions(design):
         if rises[key] and not known:
             raise InputError(f"{where} is missing: {key}.temperature needs it")
@@ -35,15 +34,15 @@ def check_growth(design: DriveDesign) -> None:
         'ring_gear.housing.outside = "free"',
         'with "held", or without a housing',
     )
-    strains = {SECTIONS.get(body, body): one.largest for body, one in growths(design).items()}
-    strains["ring_gear.frame"] = frame_growth(design).largest
-    strains["wave_generator"] = abs(cam_strain(design))
+    strains = {SECTIONS.get(body, body): one.largest for body, one in design.growths.items()}
+    strains["ring_gear.frame"] = design.frame_growth.largest
+    strains["wave_generator"] = abs(design.cam_strain)
     for key, strain in strains.items():
         allowed = f"temperatures and fits with strains up to {LARGEST:g}, which are small"
         require(strain <= LARGEST, f"strain of the growth of {key}", strain, allowed)
     _check_race(design)
     condensed = design.solver.condensed_sectors and design.housing is not None
-    alike = condensed and growths(design)["housing"] == growths(design)["ring_gear"]
+    alike = condensed and design.growths["housing"] == design.growths["ring_gear"]
     require_available(
         not condensed or alike,
         "solver.condensed_sectors = true",
@@ -81,7 +80,7 @@ def growth_remarks(design: DriveDesign) -> list[str]:
     if not design.frame_is_rigid:
         return []
     held = "ring_gear" if design.housing is None else "housing"
-    difference = growths(design)[held].across - frame_growth(design).across
+    difference = design.growths[held].across - design.frame_growth.across
     if abs(difference) <= PRESSED:
         return []
     does, name = "presses" if difference > 0.0 else "pulls", held.replace("_", " ")

@@ -1,6 +1,11 @@
-"""The validated design of a drive: its sections and the sizes derived from them (section 3.2)."""
+"""The validated design of a drive: its sections, and the sizes and growths derived from them
+(section 3.2)."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -8,10 +13,10 @@ from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.drive_sections import DriveSections
 from swgpar.design.negligible_torque import negligible_torque
 from swgpar.design.sections import OMITTED_BENDING, ExternalGear, GearName, InternalGear
-from swgpar.geometry.bearing import BearingSizes
+from swgpar.geometry.bearing import BearingSizes, ball_lines
 from swgpar.geometry.cams import Cam, make_cam
 from swgpar.geometry.cams.semi_axes import minor_semi_axis, radial_deflection
-from swgpar.geometry.disc_surface import CamSurface, cam_surface
+from swgpar.geometry.disc_surface import CamSurface, GrownSurface, cam_surface
 from swgpar.geometry.neutral_line import neutral_line
 from swgpar.geometry.profiles import (
     Conjugate,
@@ -25,7 +30,22 @@ from swgpar.geometry.profiles import (
 from swgpar.geometry.profiles.rigid_teeth import RigidTeeth
 from swgpar.geometry.profiles.tip_relief import relieved
 from swgpar.geometry.rim_motion import axial_travel, omitted_bending
+from swgpar.materials import NO_GROWTH, Growth
 from swgpar.meshing.drive_geometry import DriveGeometry, FlankCrowning, GearGeometry
+
+BallLines = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
+"""Gives centres (n, 2) mm, groove normals (n, 2) in the cam's frame and curvatures (n,) 1/mm of the
+centres' curve at angles (n,) rad from the major axis."""
+
+SOLVER_CHOICES = {
+    "linear",
+    "keep_factor",
+    "far_teeth",
+    "iteration_limit",
+    "time_limit",
+    "memory_limit",
+}
+"""Keys of [solver] that a restart may change: they are about how systems are solved, and limits."""
 
 
 class DriveDesign(DriveSections):
@@ -216,3 +236,67 @@ class DriveDesign(DriveSections):
         micro = self.micro_geometry
         modified = micro.wg_crowning, micro.wg_slope, micro.crowning_shape
         return cam_surface(self.wave_generator, self.cam(), *modified)
+
+    @property
+    def growths(self) -> dict[str, Growth]:
+        """Growth without stress of the gears, of the housing and of the bearing, by the names of
+        `materials`.
+
+        A body of one material at one temperature grows alike everywhere. What it touches or is
+        bonded to makes the stress. An interference is a smaller bore: the housing, were it free,
+        would be smaller across the axis by the interference over the diameter of the fit. A check
+        has refused temperatures of materials whose expansion is not known.
+        """
+        rises, every = self.temperature_rises, {}
+        sections = {"housing": "ring_gear.housing", "bearing": "wave_generator.bearing"}
+        for body, material in self.materials.items():
+            every[body] = material.thermal_growth(rises[sections.get(body, body)]) or NO_GROWTH
+        if self.housing is not None:
+            fit = 2.0 * self.geometry.gears["ring_gear"].outer_radius
+            every["housing"] += Growth(across=-self.housing.interference / fit)
+        return every
+
+    @property
+    def frame_growth(self) -> Growth:
+        """Growth of the bore of the rigid frame; an interference makes it smaller."""
+        frame = self.ring_gear.frame
+        thermal = (frame.expansion or 0.0) * self.temperature_rises["ring_gear.frame"]
+        fit = Growth(across=-frame.interference / (2.0 * self.geometry.outer_radius))
+        return Growth(thermal, thermal) + fit
+
+    def grown_cam_surface(self) -> CamSurface | GrownSurface:
+        """Surface of the cam at its temperature."""
+        strain, surface = self.cam_strain, self.cam_surface()
+        return GrownSurface(surface, strain) if strain else surface
+
+    def grown_ball_lines(self) -> BallLines:
+        """Places of the balls on the cam at its temperature."""
+        lines = partial(ball_lines, self.cam(), self.bearing_sizes.centre_depth)
+        factor = 1.0 + self.cam_strain
+
+        def grown(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+            centre, normal, curvature = lines(angle)
+            return factor * centre, normal, curvature / factor
+
+        return grown
+
+    @property
+    def ball_clearance(self) -> float:
+        """Clearance (mm) of a ball with the outer race at its temperature.
+
+        Half of what a ball grows by moves its centre off the inner race. `grown_ball_lines` has
+        moved the centre by what half a ball would grow by as the cam.
+        """
+        strain = self.growths["bearing"].across - 0.5 * self.cam_strain
+        return self.bearing.clearance - strain * self.bearing.ball_diameter
+
+    @property
+    def decisive_keys(self) -> dict[str, Any]:
+        """The keys that determine results, by section: without the output, the rotation, whose
+        angles are compared one by one, and how systems are solved."""
+        content = self.model_dump(
+            exclude={"output": True, "steps": {"rotation", "samples"}, "solver": SOLVER_CHOICES}
+        )
+        if self.bearing is not None:
+            content["cage_speed"] = self.cage_speed  # follows from steps.samples
+        return content

@@ -3,7 +3,7 @@ drive has, what of it is computed, materials."""
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from swgpar.design.cup_section import Cup
 from swgpar.design.deviations import Deviations
@@ -223,3 +223,27 @@ class DriveSections(Design):
     def teeth(self, gear: GearName) -> Teeth:
         """Number and sizes of the teeth of a gear."""
         return self.drive.teeth(gear, getattr(self, gear))
+
+    @property
+    def temperature_rises(self) -> dict[str, float]:
+        """Temperatures (K) above the reference, by the name of the section that has the key."""
+        sections: dict[str, Any] = {gear: getattr(self, gear) for gear in self.gears}
+        sections |= {
+            "ring_gear.housing": self.housing,
+            "ring_gear.frame": self.ring_gear.frame,
+            "wave_generator": self.wave_generator,
+            "wave_generator.bearing": self.bearing,
+        }
+        reference = self.load.reference_temperature
+        return {
+            name: 0.0 if section.temperature is None else section.temperature - reference
+            for name, section in sections.items()
+            if section is not None
+        }
+
+    @property
+    def cam_strain(self) -> float:
+        """Strain of the growth of the rigid cam."""
+        own = self.wave_generator.expansion
+        expansion = self.material.expansion if own is None else own
+        return (expansion or 0.0) * self.temperature_rises["wave_generator"]

@@ -21,7 +21,6 @@ import numpy as np
 
 from swgpar.analysis.bent_start import BentSpline
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.growth import cam_strain, frame_growth, growths
 from swgpar.errors import InputError
 from swgpar.exchange.calculix_model import JobModel, Surface, Term
 from swgpar.exchange.cam_facets import OUTER_FACE, CamFacets, cam_facets
@@ -84,7 +83,7 @@ def _check(design: DriveDesign) -> None:
     for key, given in sections.items():
         if given:
             refuse(key, "a design without it")
-    if any(growths(design).values()) or frame_growth(design) or cam_strain(design):
+    if any(design.growths.values()) or design.frame_growth or design.cam_strain:
         refuse("a temperature or a press fit", "bodies at load.reference_temperature without one")
     if design.is_bolted:
         refuse('cup.attachment = "bolted"', '"edge" or "clamped"')

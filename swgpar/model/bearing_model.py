@@ -12,7 +12,6 @@ from swgpar.contact.point_contact import ball_spring
 from swgpar.contact.race_contact import RaceContact
 from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.growth import ball_clearance, grown_ball_lines, growths
 from swgpar.fem.body import FLEXIBLE_SPLINE, OUTER_RACE, Body
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
@@ -31,7 +30,7 @@ def build_race(design: DriveDesign, spline: SectorMesh) -> Body:
     mesh = race_sector(
         spline, design.inner_radius, design.bearing.race_thickness, design.race_width, RADIAL
     )
-    materials, grown = (design.materials["bearing"],), (growths(design)["bearing"],)
+    materials, grown = (design.materials["bearing"],), (design.growths["bearing"],)
     return Body(mesh, materials, design.race_width, grown)
 
 
@@ -41,10 +40,10 @@ def build_balls(design: DriveDesign) -> BallSet:
     return BallSet(
         number=bearing.balls,
         diameter=bearing.ball_diameter,
-        clearance=ball_clearance(design),
+        clearance=design.ball_clearance,
         first_angle=float(np.radians(bearing.first_ball)),
         cage_speed=design.cage_speed,
-        lines=grown_ball_lines(design),
+        lines=design.grown_ball_lines(),
         spring=ball_spring(
             bearing.ball_diameter,
             sizes.inner_groove,

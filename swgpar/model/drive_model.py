@@ -25,7 +25,6 @@ from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
 from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.growth import frame_growth, grown_cam_surface, growths
 from swgpar.design.sections import Contact, Solver
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.body_layout import BodyLayout
@@ -234,13 +233,13 @@ def ring_sectors(design: DriveDesign, ring: BodyLayout) -> RingSectors | None:
 def build_layouts(design: DriveDesign, meshes: Mapping[str, SectorMesh]) -> list[BodyLayout]:
     """Modelled sectors of the gears and of the outer race."""
     held = design.kinematics.standing_gear if design.frame_is_rigid else None
-    grown = growths(design)
+    grown = design.growths
     layouts = [
         build_layout(
             build_gear(mesh, design.materials, design.drive.face_width, grown),
             copies=design.copies,
             clamped=name == held != FLEXIBLE_SPLINE,
-            held=frame_growth(design),
+            held=design.frame_growth,
             condensed_sectors=design.solver.condensed_sectors,
             condensed_teeth=design.condenses_teeth,
         )
@@ -274,7 +273,7 @@ def build_supports(design: DriveDesign, partition: Partition, elements: Elements
         if design.frame_is_rigid:
             ends = design.axial_range(design.kinematics.output_gear)
             penalty = design.penalty(design.kinematics.output_gear)
-            guide = ring_guide(ring_coupling, ends, copies, penalty, frame_growth(design))
+            guide = ring_guide(ring_coupling, ends, copies, penalty, design.frame_growth)
     scale = design.modulus_of("flexible_spline") * design.drive.module
     race = None if design.bearing is None else race_coupling(partition, elements, couplings[0])
     spline_ratio = None
@@ -297,7 +296,7 @@ def rigid_contacts(design: DriveDesign) -> Callable[[BodyElements], WaveGenerato
     spline."""
     contact = partial(
         RigidContact,
-        surface=grown_cam_surface(design),
+        surface=design.grown_cam_surface(),
         radius=design.inner_radius,
         half_width=0.5 * design.wave_generator.width * EDGE,
         n_quadrature=design.contact.wg_quadrature,

@@ -102,7 +102,7 @@ class Drives(System[DriveDesign, "DriveResult"]):
 
     def identity(self, design: DriveDesign, recipe: MeshRecipe | None) -> dict[str, Any]:
         found: dict[str, Any] = {
-            "identity": identity(design, recipe, None),
+            "identity": identity(design.decisive_keys, recipe, None),
             "rotation": design.steps.rotation,
         }
         return found | ({"root_stress": True} if design.output.root_stress else {})

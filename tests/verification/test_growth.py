@@ -9,7 +9,6 @@ from support.element_mesh import ElementMesh
 from support.grown_ring import GrownRing, lame
 from support.paths import RECIPE
 from support.stepping import small
-from swgpar.design.growth import growths
 from swgpar.fem.condensed_parts import condense_sector
 from swgpar.kernel import assemble_elements, recover_stress
 from swgpar.materials import Growth, Isotropic, TransverselyIsotropic
@@ -119,7 +118,7 @@ def test_a_ring_pressed_into_another_one(interference: float, rise: float) -> No
 def test_a_condensed_sector_grows_with_its_inside() -> None:
     design = small("plane", "material.expansion=12e-6", "flexible_spline.temperature=80")
     mesh = build_sector(design.geometry, load_recipe(RECIPE), "flexible_spline")
-    body = build_gear(mesh, design.materials, design.drive.face_width, growths(design))
+    body = build_gear(mesh, design.materials, design.drive.face_width, design.growths)
     condensed = condense_sector(mesh, body.elements)
     growth = Growth(across=12e-6 * RISE)
     outer = growth.of(mesh.coords[condensed.outer])
