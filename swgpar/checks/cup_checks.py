@@ -137,13 +137,17 @@ def _check_contour(sizes: CupSizes, rim: float) -> None:
     ):
         if point.outer_radius is not None:
             _check_lean(f"cup.contour.{k}", before, corner, after)
-    most = np.minimum(wall.inner.largest_rounding(), wall.outer.largest_rounding())
+    inside, outside = wall.inner.largest_rounding(), wall.outer.largest_rounding()
     # the last point may be where the fillet begins
-    limits = [*most.tolist(), 0.0]
-    for k, (point, limit) in enumerate(zip(cup.contour, limits, strict=False), 1):
-        allowed = f"0 to {limit:.4g} mm (half of the shorter side)"
-        fits = point.rounding <= limit * ROUND_OFF
-        require(fits, f"cup.contour.{k}.rounding", point.rounding, allowed)
+    for k, (point, *limits) in enumerate(
+        zip(cup.contour, [*inside.tolist(), 0.0], [*outside.tolist(), 0.0], strict=False), 1
+    ):
+        own = point.outer_rounding is not None
+        radii = (point.rounding, point.outer_rounding if own else point.rounding)
+        for name, radius, limit in zip(("rounding", "outer_rounding"), radii, limits, strict=True):
+            key = f"cup.contour.{k}.{name if own else 'rounding'}"
+            allowed = f"0 to {limit:.4g} mm (half of the shorter side)"
+            require(radius <= limit * ROUND_OFF, key, radius, allowed)
 
 
 def _neighbours(points: list[WallPoint]) -> list[tuple[WallPoint, WallPoint, WallPoint]]:

@@ -34,6 +34,9 @@ class ContourPoint(Section):
     rounding: float = quantity(
         0.0, unit="mm", text="radius that rounds the corners at this point", ge=0.0
     )
+    outer_rounding: float | None = quantity(
+        None, unit="mm", text="that of the corner outside; default rounding", ge=0.0
+    )
 
 
 class Cup(Section):
@@ -55,6 +58,20 @@ class Cup(Section):
         [],
         text="points of a wall that is not straight, from the teeth on; behind the last one it is "
         "straight",
+    )
+    inner_file: str | None = quantity(
+        None,
+        text="CSV or DXF file of the inner surface in place of contour: distance from the back of "
+        "the teeth and radius",
+    )
+    outer_file: str | None = quantity(
+        None, text="file of the outer surface, which belongs to inner_file"
+    )
+    inner_layer: str | None = quantity(
+        None, text="layer of a DXF file for the inner surface; without it the model space"
+    )
+    outer_layer: str | None = quantity(
+        None, text="layer of a DXF file for the outer surface; without it the model space"
     )
     end_thickness: float | None = quantity(
         None, unit="mm", text="thickness of closed end or flange; default that of the wall", gt=0.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from swgpar.design.cup_section import Cup
-from swgpar.geometry.cup_wall import CupWall, WallPoint, end_reach, rounded_lines
+from swgpar.geometry.cup_wall import SAME, CupWall, WallPoint, end_reach, rounded_lines
 from swgpar.meshing.drive_geometry import CupGeometry
 
 
@@ -31,16 +31,17 @@ class CupSizes:
     def points(self) -> list[WallPoint]:
         """Points of the wall, from the back of the teeth to the fillet."""
         inner, length = self.inner_radius, self.wall_length
-        points = [WallPoint(0.0, inner, 0.0, inner + self.thickness, 0.0)]
+        points = [WallPoint(0.0, inner, 0.0, inner + self.thickness, 0.0, 0.0)]
         for p in self.section.contour:
             radius = p.radius or inner
             outer = p.outer_radius or radius + p.thickness
             along = p.outer_distance or p.distance
-            points.append(WallPoint(p.distance, radius, along, outer, p.rounding))
+            rounding = p.rounding if p.outer_rounding is None else p.outer_rounding
+            points.append(WallPoint(p.distance, radius, along, outer, p.rounding, rounding))
         last = points[-1]
-        if last.distance >= length:
-            return points
-        return [*points, WallPoint(length, last.radius, length, last.outer_radius, 0.0)]
+        if last.distance >= length - SAME:
+            return [*points[:-1], last._replace(distance=length, outer_distance=length)]
+        return [*points, WallPoint(length, last.radius, length, last.outer_radius, 0.0, 0.0)]
 
     @property
     def end_thickness(self) -> float:

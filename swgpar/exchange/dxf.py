@@ -17,7 +17,7 @@ from swgpar.geometry.cams import cam_outlines
 
 def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
     """Write drive.dxf with a layer for each gear, the wave generator and, if there is one, the
-    housing.
+    housing; for a cup wall.dxf too.
 
     Call it on one rank.
 
@@ -38,6 +38,22 @@ def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
     for points in cam_outlines(design.cam()):  # within 0.02 µm of the curve
         space.add_lwpolyline(points.tolist(), close=True, dxfattribs={"layer": "wave_generator"})
     path = folder / "drive.dxf"
+    document.saveas(path)
+    return [path, *_write_wall(design, folder)]
+
+
+def _write_wall(design: DriveDesign, folder: Path) -> list[Path]:
+    """Write wall.dxf with both surfaces of a cup's wall, on the layers inner and outer: distance
+    from the back of the teeth, and radius."""
+    if not design.has_cup:
+        return []
+    document = new_document()
+    for layer in ("inner", "outer"):
+        document.layers.add(layer)
+        pieces = getattr(design.cup_sizes.wall, layer).pieces()
+        edges = [Edge(np.array([start, end]), centre) for start, end, centre in pieces]
+        draw(document.modelspace(), edges, layer)
+    path = folder / "wall.dxf"
     document.saveas(path)
     return [path]
 

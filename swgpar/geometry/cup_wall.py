@@ -28,14 +28,15 @@ STRAIGHT = 1e-9
 
 
 class WallPoint(NamedTuple):
-    """Corners of both surfaces: distances from the back of the teeth, radii, and the radius that
-    rounds both corners; mm."""
+    """Corners of both surfaces: distances from the back of the teeth, radii, and the radii that
+    round them; mm."""
 
     distance: float
     radius: float
     outer_distance: float
     outer_radius: float
     rounding: float
+    outer_rounding: float
 
     @property
     def across(self) -> Floats:
@@ -348,8 +349,8 @@ def thicknesses(points: Sequence[WallPoint]) -> list[float]:
 
 def rounded_lines(points: Sequence[WallPoint]) -> tuple[RoundedLine, RoundedLine]:
     """Inner and outer line through points."""
-    s, r, outer_s, outer_r, rounding = np.array(points).T
+    s, r, outer_s, outer_r, rounding, outer_rounding = np.array(points).T
     return (
         RoundedLine(np.column_stack([s, r]), rounding),
-        RoundedLine(np.column_stack([outer_s, outer_r]), rounding),
+        RoundedLine(np.column_stack([outer_s, outer_r]), outer_rounding),
     )

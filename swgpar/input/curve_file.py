@@ -93,7 +93,8 @@ def _bad_line(path: Path, number: int, line: str) -> InputError:
     return InputError(f"{path}, line {number}: {show(line)} is no point: allowed are two numbers")
 
 
-def _of_dxf(path: Path, layer: str | None, divided: bool) -> np.ndarray:
+def dxf_entities(path: Path, layer: str | None) -> tuple[list[Any], float]:
+    """Lines, arcs, splines and polylines of a DXF file, of one layer or all, and mm in its unit."""
     try:
         from ezdxf.enums import InsertUnits
         from ezdxf.filemanagement import readfile
@@ -123,6 +124,11 @@ def _of_dxf(path: Path, layer: str | None, divided: bool) -> np.ndarray:
             f"{path} has no curve{'' if layer is None else f' on the layer {show(layer)}'}: "
             f"allowed {names}"
         )
+    return entities, scale
+
+
+def _of_dxf(path: Path, layer: str | None, divided: bool) -> np.ndarray:
+    entities, scale = dxf_entities(path, layer)
     curve = _joined([scale * _points_of(entity, SAGITTA / scale) for entity in entities], path)
     corners_only = all(getattr(entity, "has_arc", True) is False for entity in entities)
     return _divided(curve) if divided and not corners_only else curve

@@ -17,11 +17,14 @@ from swgpar.input.refusals import sentence
 
 SectionType = TypeVar("SectionType", bound=Section)
 
+FILE_KEYS = ("file", "inner_file", "outer_file")
+"""Keys whose values are paths relative to the folder of the file that has them."""
+
 
 def read_toml(path: str | Path) -> dict[str, Any]:
     """Read a TOML file; every failure is an `InputError` of one sentence that names the file.
 
-    Keys with the name `file` in its sections are paths relative to the folder of the file.
+    Keys of `FILE_KEYS` in its sections are paths relative to the folder of the file.
     """
     path = Path(path)
     try:
@@ -46,8 +49,9 @@ def _with_folder(table: dict[str, Any], folder: Path) -> dict[str, Any]:
     """The table with the paths of its sections below a folder."""
     for section in table.values():
         if isinstance(section, dict):
-            if isinstance(section.get("file"), str):
-                section["file"] = str(folder / section["file"])
+            for key in FILE_KEYS:
+                if isinstance(section.get(key), str):
+                    section[key] = str(folder / section[key])
             _with_folder(section, folder)
     return table
 
