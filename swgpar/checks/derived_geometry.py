@@ -73,7 +73,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         "tips at the minor axis (mm)": ring.r_tip_circle - spline.r_tip_circle - valley,
         **_clearance(every[0]),
         **_growth(design),
-        **negligible_speeds(design),
+        **negligible_speeds(design.rim_inertia, design.kinematics),
         **_dynamic_spline(design),
         **_clearance(*every[1:]),
         **_rigid_contact(design.rigid_teeth().mesh()),

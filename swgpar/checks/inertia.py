@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
+from swgpar.design.kinematics import Kinematics
+from swgpar.design.sections import Load
 from swgpar.geometry.rim_inertia import RimInertia
 
 NEGLIGIBLE = 0.01
@@ -17,30 +18,10 @@ ROUND_OFF = 1e-12
 """Share, at 1 rad/s, below which inertia is none."""
 
 
-def rim_inertia(design: DriveDesign) -> RimInertia | None:
-    """The rim of the flexible spline with half of the mass of full teeth; None without a density.
-
-    The wall of a cup is left out: it makes the rim stiffer, and the speeds higher.
-    """
-    material, teeth = design.materials["flexible_spline"], design.teeth("flexible_spline")
-    if material.density is None:
-        return None
-    rim = design.flexible_spline.rim
-    return RimInertia(
-        radius=design.inner_radius + 0.5 * rim,
-        thickness=rim,
-        mass_thickness=rim + 0.5 * (teeth.addendum + teeth.dedendum),
-        modulus=material.modulus,
-        density=material.density,
-        lobes=design.wave_generator.lobes,
-        amplitude=0.5 * design.deflection,
-    )
-
-
-def negligible_speeds(design: DriveDesign) -> dict[str, float]:
+def negligible_speeds(rim: RimInertia | None, kinematics: Kinematics) -> dict[str, float]:
     """Input speeds (1/min) up to which inertia is negligible, by their meaning; none without a
     density. Speeds that nothing depends on are left out."""
-    rim, (spline, wave) = rim_inertia(design), design.kinematics.speeds_in_space
+    spline, wave = kinematics.speeds_in_space
     if rim is None:
         return {}
     shares = {
@@ -57,15 +38,15 @@ def negligible_speeds(design: DriveDesign) -> dict[str, float]:
     }
 
 
-def inertia_remarks(design: DriveDesign) -> list[str]:
+def inertia_remarks(rim: RimInertia | None, kinematics: Kinematics, load: Load) -> list[str]:
     """A sentence where the rim rotates so fast that the stress of its rotation counts."""
-    rim, (spline, _) = rim_inertia(design), design.kinematics.speeds_in_space
-    if rim is None or "input_speed" not in design.load.model_fields_set:
+    spline, _ = kinematics.speeds_in_space
+    if rim is None or "input_speed" not in load.model_fields_set:
         return []
-    stress = rim.hoop_stress(spline * PER_MINUTE * design.load.input_speed)
+    stress = rim.hoop_stress(spline * PER_MINUTE * load.input_speed)
     if stress <= NEGLIGIBLE * rim.bending_stress:
         return []
     return [
-        f"load.input_speed = {design.load.input_speed:g} 1/min rotates the flexible spline so fast "
+        f"load.input_speed = {load.input_speed:g} 1/min rotates the flexible spline so fast "
         f"that its rim has a further hoop stress of {stress:.3g} MPa: the model leaves it out"
     ]

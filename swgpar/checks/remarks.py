@@ -24,7 +24,11 @@ def remarks(design: DriveDesign) -> list[str]:
             f"{100 * stretch:.3g} %, which alone is a hoop stress of {hoop:.4g} MPa in the "
             f"flexible spline; a smaller minor axis shortens the cam"
         )
-    sentences += [*tooth_remarks(design), *growth_remarks(design), *inertia_remarks(design)]
+    sentences += [
+        *tooth_remarks(design),
+        *growth_remarks(design),
+        *inertia_remarks(design.rim_inertia, design.kinematics, design.load),
+    ]
     torque, negligible = design.load.torque, design.negligible_torque
     if 0.0 < 1000.0 * torque <= negligible:
         sentences.append(

@@ -29,6 +29,7 @@ from swgpar.geometry.profiles import (
 )
 from swgpar.geometry.profiles.rigid_teeth import RigidTeeth
 from swgpar.geometry.profiles.tip_relief import relieved
+from swgpar.geometry.rim_inertia import RimInertia
 from swgpar.geometry.rim_motion import axial_travel, omitted_bending
 from swgpar.materials import NO_GROWTH, Growth
 from swgpar.meshing.drive_geometry import DriveGeometry, FlankCrowning, GearGeometry
@@ -123,6 +124,27 @@ class DriveDesign(DriveSections):
         rim = self.flexible_spline.rim
         sizes = self.drive.face_width, rim, self.inner_radius + 0.5 * rim
         return negligible_torque(self.modulus_of("flexible_spline"), self.deflection, *sizes)
+
+    @property
+    def rim_inertia(self) -> RimInertia | None:
+        """The rim of the flexible spline with half of the mass of full teeth; None without a
+        density.
+
+        The wall of a cup is left out: it makes the rim stiffer, and the speeds higher.
+        """
+        material, teeth = self.materials["flexible_spline"], self.teeth("flexible_spline")
+        if material.density is None:
+            return None
+        rim = self.flexible_spline.rim
+        return RimInertia(
+            radius=self.inner_radius + 0.5 * rim,
+            thickness=rim,
+            mass_thickness=rim + 0.5 * (teeth.addendum + teeth.dedendum),
+            modulus=material.modulus,
+            density=material.density,
+            lobes=self.wave_generator.lobes,
+            amplitude=0.5 * self.deflection,
+        )
 
     @property
     def axial_travel(self) -> float:
