@@ -18,6 +18,7 @@ from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import logger
 from swgpar.model.drive_model import DriveModel
 from swgpar.model.torques import torques
+from swgpar.solve.newton import SOFT_PENALTIES, SPREADING_PENALTIES
 from swgpar.solve.solve_state import SolveResult
 
 MAX_KNOWN_STATES = 40
@@ -194,9 +195,8 @@ class LoadStepper:
 
     def _solve_from_prediction(self, state: LoadState, most: int) -> SolveResult:
         self._predict(state)
-        return self.solver.solve(
-            state, establish_contact=state.switches_on(self.load_state), max_iterations=most
-        )
+        softenings = SOFT_PENALTIES if state.switches_on(self.load_state) else ()
+        return self.solver.solve(state, softenings=softenings, max_iterations=most)
 
     def _held(self, state: LoadState) -> LoadState | None:
         """The same load with the spline held, where contacts alone are to hold it; else None.
@@ -227,13 +227,21 @@ class LoadStepper:
         return here.control == "rotation" or here.torque * state.torque <= 0.0
 
     def jump(self, target: LoadState) -> None:
-        """Solve for `target` from x in one increment, whatever x is; raises ConvergenceError."""
+        """Solve for `target` from x in one increment, whatever x is; raises ConvergenceError.
+
+        The contacts of a cup are soft at first: its wall keeps it from the bent shape, and where it
+        lies on the cam is found over many faces at once.
+        """
         self.iterations = 0
         held = self._held(target)
         for state in (target,) if held is None else (held, target):
             if state.control == "torque":
                 self._close_backlash(state)
-            result = self.solver.solve(state, max_iterations=MAX_JUMP_ITERATIONS)
+            result = self.solver.solve(
+                state,
+                softenings=SPREADING_PENALTIES if self.design.has_cup else (),
+                max_iterations=MAX_JUMP_ITERATIONS,
+            )
             if not result.converged:
                 raise self._failure(target, target, result, 0)
             self.iterations += result.iterations

@@ -36,6 +36,10 @@ SEARCH_DISTANCE = 0.25
 ROUND_OFF_SHARE = 0.05
 """Share of the round-off below which a residual counts as zero; runs reach 0.01 to 0.06 of it."""
 
+SLOW_ITERATIONS, SLOW_RESIDUALS = 5, (SOFT_TOLERANCE, 0.5)
+"""Iterations in which the residual does not halve, and its bounds, where contact spreads slowly.
+Above them bounded steps approach the contacts. Below them soft contacts know no better."""
+
 STALL = 0.3
 """Ratio of two residuals above which the iteration has stalled close to the round-off."""
 
@@ -46,6 +50,7 @@ class Verdict(enum.Enum):
     GO_ON = enum.auto()
     CONVERGED = enum.auto()
     INTERRUPTED = enum.auto()
+    SLOW = enum.auto()
     EXHAUSTED = enum.auto()
     COLLAPSED = enum.auto()
     OUT_OF_TIME = enum.auto()
@@ -114,6 +119,8 @@ class ConvergenceTest:
                 outdated = bounded and self._search_is_outdated(state)
             if iteration > 0 and (state.incomplete_pattern or outdated):
                 verdict = Verdict.INTERRUPTED
+            elif self._is_slow(state):
+                verdict = Verdict.SLOW
             elif is_exhausted(state.residuals, self.settings.max_iterations):
                 verdict = Verdict.EXHAUSTED
             else:
@@ -126,6 +133,17 @@ class ConvergenceTest:
         return Decision(
             verdict, near_solution=near, cycles=cycles, search_is_outdated=outdated, goal=goal
         )
+
+    def _is_slow(self, state: SolveState) -> bool:
+        """Whether contact spreads slowly under the full stiffness, for the first time in a solve.
+
+        Steps are full ones then, and the active set grows by a face in each.
+        """
+        last = state.residuals[-SLOW_ITERATIONS - 1 :]
+        if state.phase is not Phase.FULL or state.softened or len(last) <= SLOW_ITERATIONS:
+            return False
+        low, high = SLOW_RESIDUALS
+        return min(last) > low and max(last) < high and min(last) > 0.5 * last[0]
 
     def _search_is_outdated(self, state: SolveState) -> bool:
         """Whether nodes have moved so far since the search that others may meet; collective."""

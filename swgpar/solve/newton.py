@@ -10,7 +10,7 @@ A solve goes through phases (`Phase`), each one run of SNES, whose outcome decid
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from mpi4py import MPI
@@ -40,6 +40,10 @@ from swgpar.solve.solve_state import (
 SOFT_PENALTIES = (1e-3, 3e-2, 0.3)
 """Shares of the contacts' stiffness in the first rough runs, while contact is established."""
 
+SPREADING_PENALTIES = SOFT_PENALTIES[1:]
+"""The same where contact is there but spreads slowly: over stiff contacts by one face in an
+iteration, over soft ones by many."""
+
 MAX_FURTHER_SEARCHES = 3
 """Further contact searches of a solve, where flanks touch that the last search left out."""
 
@@ -57,6 +61,7 @@ PETSC_REASONS = {
     Verdict.GO_ON: None,
     Verdict.CONVERGED: PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE,
     Verdict.INTERRUPTED: PETSc.SNES.ConvergedReason.CONVERGED_ITS,
+    Verdict.SLOW: PETSc.SNES.ConvergedReason.CONVERGED_ITS,
     Verdict.EXHAUSTED: PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT,
     Verdict.COLLAPSED: PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN,
     Verdict.OUT_OF_TIME: PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT,
@@ -197,6 +202,9 @@ class NewtonSolver:
             self.system.set_goal(decision.goal)
         if decision.near_solution:
             self.problem.cells.freeze()
+        self.state.slow = decision.verdict is Verdict.SLOW
+        if self.state.slow:
+            logger.info("   contact spreads slowly in Newton iteration %d: softer for a while", its)
         if decision.cycles:
             text = "   contacts do not settle in Newton iteration %d: descending line search"
             logger.info(text, its)
@@ -219,18 +227,18 @@ class NewtonSolver:
         self,
         load_state: LoadState,
         *,
-        establish_contact: bool = False,
+        softenings: Sequence[float] = (),
         max_iterations: int | None = None,
         search: bool = True,
     ) -> SolveResult:
         """Solve for equilibrium from the present x; x is the solution if the result converged.
 
-        establish_contact : contacts are switched on: approach through softened penalties
+        softenings : shares of the contacts' stiffness in rough runs before that with all of it
         max_iterations : of all phases together, at most a multiple of that of the settings; None
         for that
         search : look for pairs of flanks first; False where those of the last search are near still
         """
-        self.state = state = self._begin(load_state, establish_contact, search)
+        self.state = state = self._begin(load_state, softenings, search)
         if max_iterations is not None:
             state.max_iterations = min(max_iterations, state.max_iterations)
         while state.result is None:
@@ -239,6 +247,8 @@ class NewtonSolver:
                 raise TimeLimitError(state.time_limit_text())
             if outcome is Outcome.FAILED:
                 self._after_failure(state)
+            elif outcome is Outcome.SLOW:
+                state.softened, state.softenings = True, list(SPREADING_PENALTIES)
             elif outcome is Outcome.INTERRUPTED:
                 self._prepare_contacts(state)
                 state.softenings.insert(0, state.penalty_share)
@@ -252,7 +262,9 @@ class NewtonSolver:
         state.before_augmentation = state.breaker.solution = None
         return state.result
 
-    def _begin(self, load_state: LoadState, establish_contact: bool, search: bool) -> SolveState:
+    def _begin(
+        self, load_state: LoadState, softenings: Sequence[float], search: bool
+    ) -> SolveState:
         problem = self.problem
         problem.clear_unused_multipliers(load_state)
         bounded = any(flanks.is_active(load_state) for flanks in problem.flanks)
@@ -261,9 +273,11 @@ class NewtonSolver:
             problem.search(load_state)
         else:
             problem.reset_contacts()
-        softenings = list(SOFT_PENALTIES) if establish_contact else []
         return SolveState(
-            load_state, softenings, MAX_ITERATIONS_FACTOR * self.settings.max_iterations
+            load_state,
+            list(softenings),
+            MAX_ITERATIONS_FACTOR * self.settings.max_iterations,
+            softened=bool(softenings),
         )
 
     def _iterate(self, state: SolveState) -> Outcome:
@@ -281,7 +295,9 @@ class NewtonSolver:
             return Outcome.FAILED
         if reason != PETSc.SNES.ConvergedReason.CONVERGED_ITS:
             return Outcome.CONVERGED
-        return Outcome.INTERRUPTED if state.iterations < state.max_iterations else Outcome.FAILED
+        if state.iterations >= state.max_iterations:
+            return Outcome.FAILED
+        return Outcome.SLOW if state.slow else Outcome.INTERRUPTED
 
     def _prepare_contacts(self, state: SolveState) -> None:
         """Search anew, or extend the pattern, as the run that was interrupted needs it."""

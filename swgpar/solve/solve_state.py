@@ -27,6 +27,7 @@ class Outcome(enum.Enum):
 
     CONVERGED = enum.auto()
     INTERRUPTED = enum.auto()
+    SLOW = enum.auto()
     FAILED = enum.auto()
 
 
@@ -96,6 +97,7 @@ class SolveState:
     pattern_misses : keys of contact blocks on this rank that the tangent's pattern lacks
     incomplete_pattern : whether any rank misses blocks
     outdated_search : whether the nodes have moved far since the last contact search
+    slow : whether contact spreads slowly;  softened : whether contacts are or were softened
     visited : active sets of the present run;  time_limit : s, once it has passed
     """
 
@@ -111,6 +113,8 @@ class SolveState:
     pattern_misses: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     incomplete_pattern: bool = False
     outdated_search: bool = False
+    slow: bool = False
+    softened: bool = False
     visited: VisitedSets = field(default_factory=VisitedSets)
     breaker: CycleBreaker = field(default_factory=CycleBreaker)
     before_augmentation: AcceptableState | None = None
