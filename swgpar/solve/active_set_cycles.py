@@ -22,8 +22,9 @@ from mpi4py import MPI
 MAX_ITERATIONS_FACTOR, HALVING = 8, 10
 """Most iterations over `solver.max_iterations`; iterations in which a residual has to halve."""
 
-PATIENCE, MIN_DECREASE = 8, 0.9
-"""Iterations in which the residual has to fall below this share of its smallest value before."""
+PATIENCE, NEAR_PATIENCE, MIN_DECREASE = 8, 3, 0.9
+"""Iterations in which the residual has to fall below this share of its smallest value before: far
+from the solution, and near it, where only a jump of the forces holds it up."""
 
 
 def fingerprint(comm: MPI.Comm, parts: Iterable[np.ndarray]) -> int:

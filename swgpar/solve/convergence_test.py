@@ -7,8 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from swgpar.load.load_states import Stage
 from swgpar.solve.active_set_cycles import (
     MIN_DECREASE,
+    NEAR_PATIENCE,
     PATIENCE,
     fingerprint,
     is_decreasing,
@@ -124,7 +126,8 @@ class ConvergenceTest:
             elif is_exhausted(state.residuals, self.settings.max_iterations):
                 verdict = Verdict.EXHAUSTED
             else:
-                sticks = not is_decreasing(state.residuals, PATIENCE, MIN_DECREASE)
+                patience = PATIENCE if ratio > SOFT_TOLERANCE else NEAR_PATIENCE
+                sticks = not is_decreasing(state.residuals, patience, MIN_DECREASE)
                 if sticks and state.breaker.solution is not None:
                     # a solution on frozen cells is known, and cells placed anew lead nowhere
                     verdict = Verdict.EXHAUSTED
@@ -135,12 +138,15 @@ class ConvergenceTest:
         )
 
     def _is_slow(self, state: SolveState) -> bool:
-        """Whether contact spreads slowly under the full stiffness, for the first time in a solve.
+        """Whether contact spreads slowly under the full stiffness, for the first time in a solve up
+        to the load.
 
         Steps are full ones then, and the active set grows by a face in each.
         """
+        if state.phase is not Phase.FULL or state.softened:
+            return False
         last = state.residuals[-SLOW_ITERATIONS - 1 :]
-        if state.phase is not Phase.FULL or state.softened or len(last) <= SLOW_ITERATIONS:
+        if state.load_state.stage > Stage.LOAD or len(last) <= SLOW_ITERATIONS:
             return False
         low, high = SLOW_RESIDUALS
         return min(last) > low and max(last) < high and min(last) > 0.5 * last[0]

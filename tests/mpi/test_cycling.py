@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from types import SimpleNamespace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
+from swgpar.load.load_states import Stage
 from swgpar.log import PhaseTimes
 from swgpar.petsc import PETSc
 from swgpar.solve.active_set_cycles import VisitedSets, fingerprint, is_exhausted
+from swgpar.solve.convergence_test import ConvergenceTest, Verdict
+from swgpar.solve.discrete_problem import ResidualInfo
 from swgpar.solve.line_search import LineSearch
+from swgpar.solve.solve_state import NewtonSettings, SolveState
 
 WORLD = MPI.COMM_WORLD
 
@@ -145,6 +150,35 @@ def test_residuals_that_fall_get_more_iterations() -> None:
     assert (
         is_exhausted(stuck, 10) and not is_exhausted(stuck, 40) and not is_exhausted(stuck[:22], 10)
     )
+
+
+CREEP = [0.4 * 0.95**k for k in range(8)]
+
+
+@pytest.mark.parametrize(
+    ("residuals", "stage", "softened", "slow"),
+    [
+        (CREEP, Stage.LOAD, False, True),
+        (CREEP, Stage.ROTATE, False, False),  # a state nearby is known
+        (CREEP, Stage.LOAD, True, False),  # once in a solve
+        (CREEP[:5], Stage.LOAD, False, False),
+        ([0.4 * 0.8**k for k in range(8)], Stage.LOAD, False, False),  # halves within five
+        ([2.0 * r for r in CREEP], Stage.LOAD, False, False),  # contacts are being approached
+        ([0.02 * r for r in CREEP], Stage.LOAD, False, False),  # near the solution
+    ],
+)
+def test_contact_that_spreads_slowly(
+    residuals: list[float], stage: Stage, softened: bool, slow: bool
+) -> None:
+    state = SolveState(Mock(stage=stage), [], 200, residuals=residuals, softened=softened)
+    problem = Mock(round_off=0.0, force_floor=1.0, active_sets=lambda state: [])
+    problem.partition.comm = WORLD
+    test = ConvergenceTest(problem, NewtonSettings(1e-9, 25, 0, 1.0))
+    decision = test.decide(
+        state, len(residuals), 1.0, ResidualInfo(1.0, False), descending=True, bounded=False
+    )
+    assert (decision.verdict is Verdict.SLOW) == slow
+    assert slow or decision.verdict is Verdict.GO_ON
 
 
 def test_sets_that_return() -> None:
