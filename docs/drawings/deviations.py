@@ -20,7 +20,7 @@ from _drafting import (
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgpar.geometry.flank_deviations import GearDeviations, direction
+from swgpar.profiles.flank_deviations import GearDeviations, direction
 
 LARGE = 2.5
 """mm, of a deviation in the drawings: some micrometres in a drive."""

@@ -22,7 +22,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.geometry.profiles import ToothProfile
+from swgpar.profiles import ToothProfile
 
 TEETH, RADIUS, SHAPER = (40, 42), 0.2, 28
 """Teeth of both gears, so few that the cutters' motion shows; tip radius (mm) of the cutters; teeth

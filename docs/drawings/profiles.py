@@ -21,8 +21,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.geometry.profiles import ToothProfile
-from swgpar.geometry.profiles.flank import Segment
+from swgpar.profiles import ToothProfile
+from swgpar.profiles.flank import Segment
 
 COLOURS = {
     "tip": "#8c4fb0",

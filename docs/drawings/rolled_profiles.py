@@ -20,7 +20,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.geometry.profiles import ToothProfile
+from swgpar.profiles import ToothProfile
 
 S_SHAPED = {"type": "s_shaped", "r_root": 0.25}
 CYCLOID = {"type": "cycloid", "r_epicycloid": 1.0, "r_hypocycloid": 1.0, "r_root": 0.2}

@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import swgpar
-from swgpar.geometry.profiles.mesh_gap import OutlinePair, outline
+from swgpar.profiles.mesh_gap import OutlinePair, outline
 
 DRIVERS = Path(__file__).parents[2] / "drivers"
 arcs = swgpar.load_design(

@@ -8,7 +8,7 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GearName
-from swgpar.geometry.profiles.mesh_gap import NearestPlace
+from swgpar.profiles.mesh_gap import NearestPlace
 
 WORDS = {
     "ring_gear": "smallest flank clearance, kinematic (mm)",

@@ -9,9 +9,9 @@ from swgpar.checks.inertia import negligible_speeds
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.cams import Cam, OffsetCam, PolarCam, pin_travel, taut_length
 from swgpar.geometry.cup_wall import thicknesses
-from swgpar.geometry.profiles import Points
-from swgpar.geometry.profiles.from_points import fitted_flank
-from swgpar.geometry.profiles.rigid_teeth import RigidMesh
+from swgpar.profiles import Points
+from swgpar.profiles.from_points import fitted_flank
+from swgpar.profiles.rigid_teeth import RigidMesh
 
 
 def _smallest(cam: Cam, lobes: int) -> dict[str, float]:

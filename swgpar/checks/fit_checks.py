@@ -18,9 +18,9 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.design.linear_solvers import LINEAR_SOLVERS
 from swgpar.design.sections import GEARS, OMITTED_BENDING
 from swgpar.errors import InputError
-from swgpar.geometry.profiles import Conjugate
 from swgpar.input.quantities import show
 from swgpar.input.require import require, require_available
+from swgpar.profiles import Conjugate
 
 THINNEST_RIM, THICKEST_RIM = 0.01, 100.0
 """Thickness of a rim, or of a housing, in modules: thinner and thicker ones are slips."""

@@ -22,10 +22,10 @@ from swgpar.errors import InputError
 from swgpar.geometry.bracketed_root import root_between
 from swgpar.geometry.cams import make_cam, taut_length
 from swgpar.geometry.cams.keys import Harmonic, Parabolic, Simplified
-from swgpar.geometry.profiles.keys import DoubleArc, ProfileKeys, QuadrupleArc, RackInvolute
 from swgpar.input.quantities import show
 from swgpar.input.require import require, require_available
 from swgpar.input.toml_file import with_value
+from swgpar.profiles.keys import DoubleArc, ProfileKeys, QuadrupleArc, RackInvolute
 
 Profile = Literal["quadruple_arc", "double_arc", "involute"]
 """Kinds of profiles of a starter design."""

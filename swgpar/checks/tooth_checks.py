@@ -5,8 +5,8 @@ from __future__ import annotations
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import ExternalGear, GearName, InternalGear
 from swgpar.errors import InputError
-from swgpar.geometry.profiles import Points
 from swgpar.input.require import require
+from swgpar.profiles import Points
 
 LARGEST_DEDENDUM = 2.0
 """Largest dedendum in modules, of both sections that have the key."""

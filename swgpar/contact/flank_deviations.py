@@ -18,8 +18,8 @@ import numpy as np
 from swgpar.contact.flank_faces import face_samples
 from swgpar.contact.search import FlankPair
 from swgpar.fem.body_layout import BodyLayout
-from swgpar.geometry.flank_deviations import GearDeviations
 from swgpar.geometry.rotation import MIRROR, rotated
+from swgpar.profiles.flank_deviations import GearDeviations
 
 SIDES = (1, -1)
 """Sides of the flanks in the order of the tables."""

@@ -12,10 +12,10 @@ import numpy as np
 from pydantic import model_validator
 
 from swgpar.errors import InputError
-from swgpar.geometry.flank_deviations import GearDeviations, direction
 from swgpar.geometry.pitch_deviations import pitch_tolerances, random_pitch_errors
-from swgpar.geometry.profiles import Teeth
 from swgpar.input.quantities import Section, quantity, show
+from swgpar.profiles import Teeth
+from swgpar.profiles.flank_deviations import GearDeviations, direction
 
 MICRO = 1e-3
 """mm in a micrometre."""

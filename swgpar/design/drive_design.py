@@ -18,7 +18,11 @@ from swgpar.geometry.cams import Cam, make_cam
 from swgpar.geometry.cams.semi_axes import minor_semi_axis, radial_deflection
 from swgpar.geometry.disc_surface import CamSurface, GrownSurface, cam_surface
 from swgpar.geometry.neutral_line import neutral_line
-from swgpar.geometry.profiles import (
+from swgpar.geometry.rim_inertia import RimInertia
+from swgpar.geometry.rim_motion import axial_travel, omitted_bending
+from swgpar.materials import NO_GROWTH, Growth
+from swgpar.meshing.drive_geometry import DriveGeometry, FlankCrowning, GearGeometry
+from swgpar.profiles import (
     Conjugate,
     RackInvolute,
     RackPath,
@@ -27,12 +31,8 @@ from swgpar.geometry.profiles import (
     ToothProfile,
     make_profile,
 )
-from swgpar.geometry.profiles.rigid_teeth import RigidTeeth
-from swgpar.geometry.profiles.tip_relief import relieved
-from swgpar.geometry.rim_inertia import RimInertia
-from swgpar.geometry.rim_motion import axial_travel, omitted_bending
-from swgpar.materials import NO_GROWTH, Growth
-from swgpar.meshing.drive_geometry import DriveGeometry, FlankCrowning, GearGeometry
+from swgpar.profiles.rigid_teeth import RigidTeeth
+from swgpar.profiles.tip_relief import relieved
 
 BallLines = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
 """Gives centres (n, 2) mm, groove normals (n, 2) in the cam's frame and curvatures (n,) 1/mm of the

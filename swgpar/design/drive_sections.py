@@ -30,9 +30,9 @@ from swgpar.design.sections import (
 )
 from swgpar.design.surroundings import Housing
 from swgpar.geometry.cams import Bearing, WaveGenerator
-from swgpar.geometry.profiles import Teeth
 from swgpar.input.design import Design
 from swgpar.materials import ChosenMaterial, Material
+from swgpar.profiles import Teeth
 
 
 class DriveSections(Design):

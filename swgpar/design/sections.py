@@ -9,11 +9,11 @@ import numpy as np
 from swgpar.design.linear_solvers import LINEAR_SOLVERS, LinearSolverName
 from swgpar.design.program_sections import ProgramStage
 from swgpar.design.surroundings import Frame, Housing
-from swgpar.geometry.profiles import ExternalProfile, InternalProfile, Points, Teeth
-from swgpar.geometry.profiles.flank_points import heights
 from swgpar.input.quantities import Section, quantity
 from swgpar.materials import OptionalMaterial
 from swgpar.materials.temperature import temperature
+from swgpar.profiles import ExternalProfile, InternalProfile, Points, Teeth
+from swgpar.profiles.flank_points import heights
 
 GearName = Literal["flexible_spline", "ring_gear", "dynamic_spline"]
 """Name of a gear: its section in the design file, and its body in meshes and results."""

@@ -18,13 +18,13 @@ from swgpar.constraints.distributing_coupling import node_weights
 from swgpar.contact.flank_faces import flank_faces
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.arrays import Floats, Ints
-from swgpar.geometry.profiles import ToothProfile
-from swgpar.geometry.profiles.flank import Segment
-from swgpar.geometry.profiles.rigid_teeth import RigidTeeth
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
 from swgpar.meshing.export import sector_numbers, whole_body, whole_drive
 from swgpar.meshing.inp import element_faces
+from swgpar.profiles import ToothProfile
+from swgpar.profiles.flank import Segment
+from swgpar.profiles.rigid_teeth import RigidTeeth
 
 SIDES = {1: "clockwise", -1: "counter_clockwise"}
 """Of the flanks of a tooth."""

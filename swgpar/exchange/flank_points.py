@@ -12,8 +12,8 @@ import numpy as np
 from swgpar.design.drive_design import DriveDesign
 from swgpar.exchange.dxf import draw, new_document
 from swgpar.exchange.outlines import flank_edges
-from swgpar.geometry.profiles import ToothProfile
 from swgpar.input.toml_file import to_toml
+from swgpar.profiles import ToothProfile
 
 PART_POINTS = 65
 """Points of a part of a flank: splines through them meet it to a millionth of the module."""

@@ -14,8 +14,8 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GearName
-from swgpar.geometry.profiles.flank import Segment, ToothProfile
 from swgpar.geometry.rotation import rotated
+from swgpar.profiles.flank import Segment, ToothProfile
 
 TOLERANCE = 1e-4
 """mm, of the curves through points."""

@@ -8,10 +8,10 @@ from scipy.interpolate import CubicSpline
 
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.geometry.micro_geometry import crowning
-from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.rotation import MIRROR, rotated
 from swgpar.meshing.drive_geometry import FlankCrowning
 from swgpar.meshing.sector import FlankGrid
+from swgpar.profiles import ToothProfile
 
 
 class MovedTooth:

@@ -9,10 +9,10 @@ import scipy
 from numpy.typing import NDArray
 
 from swgpar.geometry.arrays import Floats, Ints
-from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.meshing.half_tooth import HalfTooth
 from swgpar.meshing.mapped import QuadMesh, mapped_mesh
 from swgpar.meshing.recipe import ToothRecipe
+from swgpar.profiles.flank import ToothProfile
 
 UNDER, ROOT, RIM = 3, 4, 5
 """Numbers of the blocks below the core and below the root, and of the first of the lower rim."""

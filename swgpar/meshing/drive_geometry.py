@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from swgpar.geometry.cup_wall import CupWall
-from swgpar.geometry.profiles import ToothProfile
+from swgpar.profiles import ToothProfile
 
 THICK_CUP = 0.85
 """Cup over rim thickness above which the cup continues the layers below the root as well."""

@@ -24,10 +24,10 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.geometry.arrays import Floats
-from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.meshing.mapped import Sides
 from swgpar.meshing.recipe import ToothRecipe
 from swgpar.meshing.spacing import even, graded, line, polar, share, split_count
+from swgpar.profiles.flank import ToothProfile
 
 TIP_NORMAL, ROOT_NORMAL = np.radians(60.0), np.radians(45.0)
 """Inclination of the flank's normal, above the tangent of the pitch circle, at K and at Q."""

@@ -6,9 +6,9 @@ import numpy as np
 import scipy
 
 from swgpar.geometry.arrays import Floats
-from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.meshing.cross_section import CrossSection
 from swgpar.meshing.quality import GAUSS, PLANE_CORNERS, jacobian_matrices, shape_gradients
+from swgpar.profiles.flank import ToothProfile
 
 
 def boundary_nodes(section: CrossSection) -> np.ndarray:

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from swgpar.geometry.arrays import Floats, Ints
-from swgpar.geometry.profiles.flank import ToothProfile
+from swgpar.profiles.flank import ToothProfile
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.micro_geometry import crowning
-from swgpar.geometry.profiles import ToothProfile
 from swgpar.meshing.cross_section import CrossSection, cross_section
 from swgpar.meshing.cup import cup_slice, rounded_back
 from swgpar.meshing.drive_geometry import DriveGeometry, FlankCrowning
@@ -19,6 +18,7 @@ from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
 from swgpar.meshing.relief import relief_field
 from swgpar.meshing.sector import FlankGrid, SectorMesh
 from swgpar.meshing.sweep import axial_stations, sweep_line, sweep_quads, symmetric_steps
+from swgpar.profiles import ToothProfile
 
 
 def _radii(drive: DriveGeometry, gear: str, recipe: ToothRecipe) -> tuple[float, float]:

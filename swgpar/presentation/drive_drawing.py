@@ -18,10 +18,10 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS, GearName
 from swgpar.geometry.cams import cam_outlines
 from swgpar.geometry.cup_wall import thicknesses
-from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.recipe import CupRecipe
+from swgpar.profiles import ToothProfile
 
 SIZE = 560.0
 """Width of a drawing, pixels; it shrinks with the page."""

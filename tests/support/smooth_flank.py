@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from swgpar.geometry.profiles import ToothProfile
-from swgpar.geometry.profiles.flank import check_flank
+from swgpar.profiles import ToothProfile
+from swgpar.profiles.flank import check_flank
 
 
 def is_smooth(flank: ToothProfile) -> None:

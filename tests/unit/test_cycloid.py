@@ -14,8 +14,8 @@ from support.small_drive import PLANE
 from support.smooth_flank import is_smooth
 from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
-from swgpar.geometry.profiles import Teeth, ToothProfile, make_profile
-from swgpar.geometry.profiles.keys import Cycloid
+from swgpar.profiles import Teeth, ToothProfile, make_profile
+from swgpar.profiles.keys import Cycloid
 
 MODULE = 1.0
 CIRCLES = {"equal": (1.0, 1.0), "small and large": (0.7, 1.6), "radial": (0.8, 10.0)}

@@ -14,9 +14,9 @@ from swgpar.design.deviations import gear_deviations
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.evaluation.transmission_error import Causes, spectrum
-from swgpar.geometry.flank_deviations import GearDeviations
 from swgpar.geometry.pitch_deviations import pitch_tolerances, random_pitch_errors
 from swgpar.geometry.rotation import MIRROR, rotated
+from swgpar.profiles.flank_deviations import GearDeviations
 
 PLANE = DRIVERS / "plane_half_turn.toml"
 

@@ -14,7 +14,6 @@ from support.paths import RECIPE, REFERENCE
 from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
-from swgpar.geometry.profiles.flank import Segment, ToothProfile
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes, load_recipe
 from swgpar.meshing.cross_section import cross_section
 from swgpar.meshing.cup import meridian
@@ -23,6 +22,7 @@ from swgpar.meshing.quality import element_quality, hex_volumes
 from swgpar.meshing.recipe import make_recipe
 from swgpar.meshing.sweep import axial_stations
 from swgpar.meshing.tooth_sector import build_sector
+from swgpar.profiles.flank import Segment, ToothProfile
 
 CUP_RECIPES = ("coarse", "forces", "medium", "full")
 GEARS = ("flexible_spline", "ring_gear")

@@ -104,7 +104,7 @@ assert np.isfinite(run({"wave_generator": keys}).history["fs_s1"]).all()
 def test_own_profile(tmp_path: Path) -> None:
     """Flanks are straight with tangent roots, refusals name the keys, and a drive runs on them."""
     *_, curve, keys, branch = examples(HOWTO / "own_cam_or_profile.md", "python")
-    profiles = copied_package(tmp_path) / "geometry" / "profiles"
+    profiles = copied_package(tmp_path) / "profiles"
     (profiles / "straight_sided.py").write_text(curve, encoding="utf-8")
     insert(profiles / "keys.py", "ExternalProfile = ", f"{keys}\n\n")
     for involute in ("RackInvolute", "ShaperInvolute"):
@@ -112,8 +112,8 @@ def test_own_profile(tmp_path: Path) -> None:
     factory = profiles / "__init__.py"
     insert(factory, "    else:\n        profile = involute(", branch)
     insert(factory, "    Trapezoid,\n)\n", "    StraightSided,\n")
-    imported = "from swgpar.geometry.profiles.straight_sided import straight_sided\n"
-    insert(factory, "from swgpar.geometry.profiles.teeth ", imported)
+    imported = "from swgpar.profiles.straight_sided import straight_sided\n"
+    insert(factory, "from swgpar.profiles.teeth ", imported)
     execute(
         tmp_path,
         """

@@ -15,9 +15,9 @@ from support.paths import DESIGN, DRIVERS
 from support.small_drive import PLANE
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
-from swgpar.geometry.profiles import Teeth, ToothProfile, make_profile
-from swgpar.geometry.profiles.from_points import FittedFlank, fitted_flank
-from swgpar.geometry.profiles.keys import (
+from swgpar.profiles import Teeth, ToothProfile, make_profile
+from swgpar.profiles.from_points import FittedFlank, fitted_flank
+from swgpar.profiles.keys import (
     DoubleArc,
     Points,
     QuadrupleArc,

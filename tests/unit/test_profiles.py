@@ -14,12 +14,12 @@ from scipy.optimize import brentq
 
 from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
-from swgpar.geometry.profiles.double_arc import double_arc, straight_length
-from swgpar.geometry.profiles.flank import Segment, ToothProfile, check_flank
-from swgpar.geometry.profiles.involute import Cutter, involute
-from swgpar.geometry.profiles.keys import ProfileKeys
-from swgpar.geometry.profiles.pitch_point import PitchPointFrame
-from swgpar.geometry.profiles.quadruple_arc import quadruple_arc
+from swgpar.profiles.double_arc import double_arc, straight_length
+from swgpar.profiles.flank import Segment, ToothProfile, check_flank
+from swgpar.profiles.involute import Cutter, involute
+from swgpar.profiles.keys import ProfileKeys
+from swgpar.profiles.pitch_point import PitchPointFrame
+from swgpar.profiles.quadruple_arc import quadruple_arc
 
 ALPHA = np.radians(20.0)
 IMPROVED = {"r_tip": 0.5, "r_addendum": 1.0, "straight_l": 0.0, "r_dedendum": 20.0, "r_root": 0.6}

@@ -12,7 +12,7 @@ import swgpar
 from support.drive_groups import PLANE
 from support.paths import DATA, DRIVERS
 from swgpar.design.sections import GearName
-from swgpar.geometry.profiles import ToothProfile
+from swgpar.profiles import ToothProfile
 
 INVOLUTES: dict[str, Any] = {
     "drive.teeth_fs": 160,

@@ -14,8 +14,8 @@ from support.small_drive import PLANE
 from support.smooth_flank import is_smooth
 from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
-from swgpar.geometry.profiles import RackPath, Teeth, ToothProfile, make_profile
-from swgpar.geometry.profiles.keys import SShaped
+from swgpar.profiles import RackPath, Teeth, ToothProfile, make_profile
+from swgpar.profiles.keys import SShaped
 
 PATHS = {
     "standard": RackPath(1.0, 2, 1.0, 1.0),

@@ -15,9 +15,9 @@ from support.small_drive import PLANE
 from support.smooth_flank import is_smooth
 from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
-from swgpar.geometry.profiles import Teeth, make_profile
-from swgpar.geometry.profiles.flank import Segment
-from swgpar.geometry.profiles.keys import CommonTangent, QuadrupleArc, Trapezoid
+from swgpar.profiles import Teeth, make_profile
+from swgpar.profiles.flank import Segment
+from swgpar.profiles.keys import CommonTangent, QuadrupleArc, Trapezoid
 
 GEARS = [(120, True), (122, False)]
 QCA = {"r_tip": 0.3, "r_addendum": 1.0, "straight_l": 0.2, "r_dedendum": 2.0, "r_root": 0.3}

@@ -13,8 +13,8 @@ from support.drive_groups import PLANE
 from support.paths import DRIVERS
 from swgpar.checks.tooth_checks import tooth_remarks
 from swgpar.errors import InputError
-from swgpar.geometry.profiles.envelope import Envelope
-from swgpar.geometry.profiles.swept import SweptArea
+from swgpar.profiles.envelope import Envelope
+from swgpar.profiles.swept import SweptArea
 
 CONJUGATE = {"type": "conjugate", "r_root": 0.2}
 ARCS = {"type": "quadruple_arc", "r_tip": 0.2, "r_addendum": 8.0, "r_dedendum": 8.0, "r_root": 0.2}

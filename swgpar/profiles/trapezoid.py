@@ -13,8 +13,8 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.geometry.profiles.flank import ToothProfile
-from swgpar.geometry.profiles.pitch_point import PitchPointFrame
+from swgpar.profiles.flank import ToothProfile
+from swgpar.profiles.pitch_point import PitchPointFrame
 
 
 def trapezoid(

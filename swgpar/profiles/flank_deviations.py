@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.rotation import MIRROR, rotated
+from swgpar.profiles import ToothProfile
 
 
 def direction(angle: float) -> np.ndarray:

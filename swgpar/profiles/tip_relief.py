@@ -18,9 +18,9 @@ import numpy as np
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats
 from swgpar.geometry.bracketed_root import root_between
-from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints
-from swgpar.geometry.profiles.flank import FlankSegment, ToothProfile, check_flank
 from swgpar.input.require import require
+from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints
+from swgpar.profiles.flank import FlankSegment, ToothProfile, check_flank
 
 
 @dataclass(frozen=True)

@@ -25,11 +25,11 @@ import numpy as np
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats
 from swgpar.geometry.bracketed_root import root_between
-from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints
-from swgpar.geometry.profiles.flank import ToothProfile
-from swgpar.geometry.profiles.teeth import Teeth
 from swgpar.geometry.rotation import rotated
 from swgpar.input.require import require
+from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints
+from swgpar.profiles.flank import ToothProfile
+from swgpar.profiles.teeth import Teeth
 
 Center = Callable[[Floats], tuple[Floats, Floats]]
 """Centre C (n, 2) mm of the cutter's rounded tip, and dC/dpsi (n, 2), at psi (n,)."""

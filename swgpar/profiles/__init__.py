@@ -12,15 +12,17 @@ from functools import lru_cache, partial
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.geometry.profiles.advice import advise
-from swgpar.geometry.profiles.common_tangent import common_tangent
-from swgpar.geometry.profiles.conjugate import conjugate
-from swgpar.geometry.profiles.cycloid import cycloid
-from swgpar.geometry.profiles.double_arc import double_arc
-from swgpar.geometry.profiles.flank import ToothProfile, check_flank
-from swgpar.geometry.profiles.from_points import fitted_flank
-from swgpar.geometry.profiles.involute import Cutter, involute
-from swgpar.geometry.profiles.keys import (
+from swgpar.input.quantities import show
+from swgpar.input.require import require
+from swgpar.profiles.advice import advise
+from swgpar.profiles.common_tangent import common_tangent
+from swgpar.profiles.conjugate import conjugate
+from swgpar.profiles.cycloid import cycloid
+from swgpar.profiles.double_arc import double_arc
+from swgpar.profiles.flank import ToothProfile, check_flank
+from swgpar.profiles.from_points import fitted_flank
+from swgpar.profiles.involute import Cutter, involute
+from swgpar.profiles.keys import (
     CommonTangent,
     Conjugate,
     Cycloid,
@@ -34,15 +36,13 @@ from swgpar.geometry.profiles.keys import (
     SShaped,
     Trapezoid,
 )
-from swgpar.geometry.profiles.pitch_point import PitchPointFrame
-from swgpar.geometry.profiles.quadruple_arc import quadruple_arc
-from swgpar.geometry.profiles.s_shaped import RackPath, s_shaped
-from swgpar.geometry.profiles.teeth import Teeth
-from swgpar.geometry.profiles.tooth_motion import ToothMotion
-from swgpar.geometry.profiles.trapezoid import trapezoid
-from swgpar.geometry.profiles.turned import thinned
-from swgpar.input.quantities import show
-from swgpar.input.require import require
+from swgpar.profiles.pitch_point import PitchPointFrame
+from swgpar.profiles.quadruple_arc import quadruple_arc
+from swgpar.profiles.s_shaped import RackPath, s_shaped
+from swgpar.profiles.teeth import Teeth
+from swgpar.profiles.tooth_motion import ToothMotion
+from swgpar.profiles.trapezoid import trapezoid
+from swgpar.profiles.turned import thinned
 
 
 @lru_cache(maxsize=32)

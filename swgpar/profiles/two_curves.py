@@ -11,9 +11,9 @@ from collections.abc import Callable
 import numpy as np
 
 from swgpar.geometry.arrays import Complex, Floats
-from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints, points_of
-from swgpar.geometry.profiles.flank import ToothProfile
-from swgpar.geometry.profiles.teeth import Teeth
+from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints, points_of
+from swgpar.profiles.flank import ToothProfile
+from swgpar.profiles.teeth import Teeth
 
 GAP = 0.01
 """Height over the module, from where the curves meet, in which the cubic is."""

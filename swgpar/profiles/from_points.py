@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Complex, Floats
-from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints
-from swgpar.geometry.profiles.flank import ToothProfile
-from swgpar.geometry.profiles.flank_points import flank_points
-from swgpar.geometry.profiles.keys import Points
-from swgpar.geometry.profiles.teeth import Teeth
 from swgpar.input.quantities import show
+from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints
+from swgpar.profiles.flank import ToothProfile
+from swgpar.profiles.flank_points import flank_points
+from swgpar.profiles.keys import Points
+from swgpar.profiles.teeth import Teeth
 
 ROUNDS = 3
 """Fits, each over the arc lengths of the one before."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from swgpar.geometry.arrays import Floats
-from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints
-from swgpar.geometry.profiles.flank import FlankSegment, Segment, ToothProfile
 from swgpar.geometry.rotation import rotated
+from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints
+from swgpar.profiles.flank import FlankSegment, Segment, ToothProfile
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,9 @@ import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Complex, Floats
-from swgpar.geometry.profiles.keys import Points
-from swgpar.geometry.profiles.polyline import first_crossing, largest_distance
 from swgpar.input.quantities import show
+from swgpar.profiles.keys import Points
+from swgpar.profiles.polyline import first_crossing, largest_distance
 
 FEWEST = 4
 """Points, at least."""

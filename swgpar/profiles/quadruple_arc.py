@@ -14,8 +14,8 @@ import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.geometry.bracketed_root import root_between
-from swgpar.geometry.profiles.flank import ToothProfile
-from swgpar.geometry.profiles.pitch_point import PitchPointFrame
+from swgpar.profiles.flank import ToothProfile
+from swgpar.profiles.pitch_point import PitchPointFrame
 
 
 def closing_angle(radius: Callable[[float], float], target: float, refusal: str) -> float:

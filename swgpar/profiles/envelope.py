@@ -21,9 +21,9 @@ import scipy
 from numpy.typing import NDArray
 
 from swgpar.geometry.arrays import Complex, Floats
-from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints
-from swgpar.geometry.profiles.flank import FlankSegment, Segment, ToothProfile
-from swgpar.geometry.profiles.tooth_motion import Pose, ToothMotion
+from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints
+from swgpar.profiles.flank import FlankSegment, Segment, ToothProfile
+from swgpar.profiles.tooth_motion import Pose, ToothMotion
 
 STATIONS = 401
 """Stations on the other flank at which the contact is followed."""

@@ -18,12 +18,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.geometry.arrays import Floats
-from swgpar.geometry.profiles.ends import with_ends
-from swgpar.geometry.profiles.flank import ToothProfile
-from swgpar.geometry.profiles.keys import Cycloid
-from swgpar.geometry.profiles.teeth import Teeth
-from swgpar.geometry.profiles.two_curves import GAP, Derivatives, two_curves
 from swgpar.input.require import require
+from swgpar.profiles.ends import with_ends
+from swgpar.profiles.flank import ToothProfile
+from swgpar.profiles.keys import Cycloid
+from swgpar.profiles.teeth import Teeth
+from swgpar.profiles.two_curves import GAP, Derivatives, two_curves
 
 LAST = 0.98 * np.pi
 """Rotation (rad) of a rolling circle at which the curve ends: at pi it would turn back."""

@@ -15,10 +15,10 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.geometry.profiles.flank import ToothProfile
-from swgpar.geometry.profiles.keys import CommonTangent
-from swgpar.geometry.profiles.pitch_point import PitchPointFrame
-from swgpar.geometry.profiles.quadruple_arc import closing_angle
+from swgpar.profiles.flank import ToothProfile
+from swgpar.profiles.keys import CommonTangent
+from swgpar.profiles.pitch_point import PitchPointFrame
+from swgpar.profiles.quadruple_arc import closing_angle
 
 
 def common_tangent(

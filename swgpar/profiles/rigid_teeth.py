@@ -7,9 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
-from swgpar.geometry.profiles.flank import ToothProfile
-from swgpar.geometry.profiles.mesh_gap import NearestPlace, OutlinePair, outline
-from swgpar.geometry.profiles.tooth_motion import ToothMotion
+from swgpar.profiles.flank import ToothProfile
+from swgpar.profiles.mesh_gap import NearestPlace, OutlinePair, outline
+from swgpar.profiles.tooth_motion import ToothMotion
 
 STEP = 1e-5
 """Rotation (rad) from which the rotation that closes a gap is extrapolated."""

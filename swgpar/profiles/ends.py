@@ -15,8 +15,8 @@ import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.geometry.bracketed_root import root_between
-from swgpar.geometry.profiles.curved_segment import CurvedSegment
-from swgpar.geometry.profiles.flank import FlankSegment, Segment, ToothProfile
+from swgpar.profiles.curved_segment import CurvedSegment
+from swgpar.profiles.flank import FlankSegment, Segment, ToothProfile
 
 SAMPLES = 257
 """Places of the curve between which the ends are looked for."""

@@ -31,12 +31,12 @@ import numpy as np
 
 from swgpar.geometry.arrays import Floats
 from swgpar.geometry.bracketed_root import root_between
-from swgpar.geometry.profiles.ends import with_ends
-from swgpar.geometry.profiles.flank import ToothProfile
-from swgpar.geometry.profiles.keys import SShaped
-from swgpar.geometry.profiles.teeth import Teeth
-from swgpar.geometry.profiles.two_curves import GAP, Derivatives, two_curves
 from swgpar.input.require import require
+from swgpar.profiles.ends import with_ends
+from swgpar.profiles.flank import ToothProfile
+from swgpar.profiles.keys import SShaped
+from swgpar.profiles.teeth import Teeth
+from swgpar.profiles.two_curves import GAP, Derivatives, two_curves
 
 LAST = 0.98 * np.pi
 """Angle theta (rad) at which the curves end: at pi they would turn back."""

@@ -17,8 +17,8 @@ import scipy
 from numpy.typing import NDArray
 
 from swgpar.geometry.arrays import Complex, Floats
-from swgpar.geometry.profiles.flank import FlankSegment, Segment, ToothProfile
-from swgpar.geometry.profiles.tooth_motion import Pose, ToothMotion
+from swgpar.profiles.flank import FlankSegment, Segment, ToothProfile
+from swgpar.profiles.tooth_motion import Pose, ToothMotion
 
 FLANK_STEPS, LAND_STEPS = 1024, 64
 """Intervals between the samples of a flank, and of a land."""

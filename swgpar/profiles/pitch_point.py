@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.geometry.profiles.flank import Segment, ToothProfile
-from swgpar.geometry.profiles.teeth import Teeth
+from swgpar.profiles.flank import Segment, ToothProfile
+from swgpar.profiles.teeth import Teeth
 
 Piece = tuple[str, np.ndarray, float, float, float]
 """Name, start, inclination, convexity and length of a segment, see `PitchPointFrame.segment`."""

@@ -13,14 +13,14 @@ import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.geometry.bracketed_root import root_between
-from swgpar.geometry.profiles.ends import with_ends
-from swgpar.geometry.profiles.envelope import STATIONS, Envelope
-from swgpar.geometry.profiles.flank import FlankSegment, ToothProfile
-from swgpar.geometry.profiles.keys import Conjugate
-from swgpar.geometry.profiles.mesh_gap import NearestPlace, OutlinePair, outline
-from swgpar.geometry.profiles.swept import SweptArea
-from swgpar.geometry.profiles.teeth import Teeth
-from swgpar.geometry.profiles.tooth_motion import ToothMotion
+from swgpar.profiles.ends import with_ends
+from swgpar.profiles.envelope import STATIONS, Envelope
+from swgpar.profiles.flank import FlankSegment, ToothProfile
+from swgpar.profiles.keys import Conjugate
+from swgpar.profiles.mesh_gap import NearestPlace, OutlinePair, outline
+from swgpar.profiles.swept import SweptArea
+from swgpar.profiles.teeth import Teeth
+from swgpar.profiles.tooth_motion import ToothMotion
 
 DEEPEST = 1e-6
 """Overlap of the flanks over the module that counts as interference."""

@@ -20,8 +20,8 @@ import scipy
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Complex, Floats
 from swgpar.geometry.bracketed_root import root_between
-from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints, points_of
-from swgpar.geometry.profiles.envelope import REACH, Contacts, Envelope
+from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints, points_of
+from swgpar.profiles.envelope import REACH, Contacts, Envelope
 
 POSITIONS, PLACES, RADII = 1281, 65, 401
 """Positions of the moving tooth, places on each of its segments, and radii, between which the

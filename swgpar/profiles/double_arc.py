@@ -11,9 +11,9 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.geometry.profiles.flank import ToothProfile
-from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 from swgpar.input.require import require
+from swgpar.profiles.flank import ToothProfile
+from swgpar.profiles.pitch_point import PitchPointFrame
 
 
 def straight_length(
