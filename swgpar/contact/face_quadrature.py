@@ -70,4 +70,4 @@ class FaceQuadrature:
         self.position = np.einsum("qa,fai->fqi", self.shape, self.coords)
         radial = np.hypot(self.position[..., 0], self.position[..., 1])
         self.weight = np.linalg.norm(normal, axis=2) * weight * radius / radial
-        self.offset = radius - radial
+        self.offset = body.layout.body.stretch * (radius - radial)

@@ -36,9 +36,17 @@ class FlankFaces:
 
 
 def flank_faces(
-    mesh: SectorMesh, grid: FlankGrid, removed: float, width: float, shape_name: str
+    mesh: SectorMesh,
+    grid: FlankGrid,
+    removed: float,
+    width: float,
+    shape_name: str,
+    stretch: float = 1.0,
 ) -> FlankFaces:
-    """Faces of a flank; removed : mm, crowning at |z| = width / 2, of the curve `shape_name`."""
+    """Faces of a flank; removed : mm, crowning at |z| = width / 2, of the curve `shape_name`.
+
+    stretch : factor of the growth of the gear, by which the heights over the facets grow
+    """
     corners = face_corners(grid.nodes)
     ds, dz = np.diff(grid.s), np.diff(grid.z)
     size = np.stack(np.meshgrid(ds, dz, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -50,9 +58,8 @@ def flank_faces(
     cut = crowning(removed, z, width, shape_name)[0] * profile.crowning_weight(s)
     exact = profile.point(s) * side - cut[:, None] * outward
     facet = np.einsum("qa,fai->fqi", bilinear(a, b), mesh.coords[corners]).reshape(-1, 3)
-    offset = np.sum((exact - facet[:, :2]) * outward, axis=1).reshape(
-        -1, len(SAMPLES), len(SAMPLES)
-    )
+    height = stretch * np.sum((exact - facet[:, :2]) * outward, axis=1)
+    offset = height.reshape(-1, len(SAMPLES), len(SAMPLES))
     middle = profile.normal(np.repeat(grid.s[:-1] + 0.5 * ds, len(dz))) * side
     return FlankFaces(corners, size, np.column_stack([middle, np.zeros(len(middle))]), offset)
 

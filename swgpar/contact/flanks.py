@@ -77,7 +77,14 @@ class FlankContact:
         self.friction_coefficient = friction_coefficient
         mesh = spline.layout.mesh
         self.slaves = {
-            g.side: flank_faces(mesh, g, crowning.amount, crowning.width, crowning.shape)
+            g.side: flank_faces(
+                mesh,
+                g,
+                crowning.amount,
+                crowning.width,
+                crowning.shape,
+                spline.layout.body.stretch,
+            )
             for g in mesh.flanks
         }
         self.masters = {g.side: g for g in ring.layout.mesh.flanks}

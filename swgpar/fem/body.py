@@ -77,6 +77,11 @@ class Body:
         )
 
     @property
+    def stretch(self) -> float:
+        """Factor of the growth of the gear across the axis."""
+        return 1.0 + (self.growths[0].across if self.growths else 0.0)
+
+    @property
     def in_plane_elasticity(self) -> np.ndarray:
         """Stresses xx, yy, xy by strains in a section of the gear, (3, 3) MPa: plane stress in the
         plane model, else plane strain."""

@@ -42,13 +42,14 @@ def alike(model: str) -> tuple[str, ...]:
 def test_a_drive_that_grows_alike_is_a_larger_drive() -> None:
     """Stresses are those of the cold drive under a torque that is smaller by the volume.
 
-    The strain of the growth is 7e-4. Penalty and line loads hold per area of the cold drive: they
-    differ by that, and the ring gear by what it makes of its small stresses.
+    The strain of the growth is 7e-4. The law of the flanks holds per length of the cold drive, and
+    the ring gear has no other stress than theirs: 2 MPa, within twice that strain.
     """
     _, cold = loaded(small("plane"))
     _, warm = loaded(small("plane", *alike("plane")))
-    assert_agree(warm, cold, ("fs_s1", "fs_s3", "fs_vm"), 2e-5)
-    assert_agree(warm, cold, ("rg_s1", "rg_vm"), 5e-4)
+    assert_agree(warm, cold, ("fs_s1", "fs_s3", "fs_vm"), 2e-6)
+    assert_agree(warm, cold, ("output_angle_deg",), 1e-4)
+    assert_agree(warm, cold, ("rg_s1", "rg_vm"), 2.0 * EXPANSION * RISE)
     for name in ("wg_torque_Nmm", "tooth_torque_Nmm"):
         assert warm[name] == pytest.approx(cold[name] * (1.0 + EXPANSION * RISE) ** 3, rel=2e-4)
     assert warm["pairs_in_contact"] == cold["pairs_in_contact"]
