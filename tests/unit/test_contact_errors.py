@@ -11,6 +11,7 @@ import pytest
 from swgpar.analysis.contact_errors import (
     LEAST_FORCE,
     LEAST_PRESSURE,
+    LEAST_PRESSURE_WITH_EDGES,
     LEAST_WITH_EDGES,
     contact_errors,
 )
@@ -72,7 +73,7 @@ def test_the_pair_with_the_largest_value_is_compared_as_well() -> None:
     assert found.pressure == pytest.approx(FACTOR * 100.0 / 600.0)
     # a pair that one mesh does not have
     found = errors([pair(2, 600.0)], [pair(1, 598.0)], [pair(1, 600.0)])
-    assert found.pressure == pytest.approx(max(FACTOR * 4.0 / 600.0, LEAST_PRESSURE))
+    assert found.pressure == pytest.approx(max(FACTOR * 4.0 / 600.0, LEAST_PRESSURE["plane"]))
 
 
 def test_pairs_on_edges_do_not_count_among_those_off_edges() -> None:
@@ -81,7 +82,7 @@ def test_pairs_on_edges_do_not_count_among_those_off_edges() -> None:
     assert found.pressure_off_edges == pytest.approx(FACTOR * 40.0 / 600.0)
     assert found.pressure == pytest.approx(FACTOR * 600.0 / 1500.0)
     found = errors([edge], [edge], [edge])
-    assert found.pressure_off_edges is None and found.pressure == LEAST_PRESSURE
+    assert found.pressure_off_edges is None and found.pressure == LEAST_PRESSURE["plane"]
 
 
 def test_in_space_one_mesh_with_fewer_elements_in_all_directions_shows_the_errors() -> None:
@@ -92,7 +93,7 @@ def test_in_space_one_mesh_with_fewer_elements_in_all_directions_shows_the_error
     assert found.pressure == pytest.approx(100.0 / 600.0 / (ratio**2 - 1.0))
     assert found.force == LEAST_FORCE["cup"]
     same = contact_errors([CoarserMesh(coarse, {}, [pair(1, 600.0)])], cup, [pair(1, 600.0)], 2)
-    assert same.pressure == LEAST_PRESSURE
+    assert same.pressure == LEAST_PRESSURE["cup"]
 
 
 def test_without_coarser_meshes_nothing_is_known() -> None:
@@ -106,7 +107,7 @@ def test_the_force_of_a_pair_that_carries_alone_has_no_estimate() -> None:
     """It follows from the torque, until another pair touches."""
     alone = [replace(pair(1, 600.0), force_share=0.5)]
     found = errors(alone, alone, alone)
-    assert found.force is found.force_share is None and found.pressure == LEAST_PRESSURE
+    assert found.force is found.force_share is None and found.pressure == LEAST_PRESSURE["plane"]
 
 
 def test_every_other_increment_shows_what_lies_between() -> None:
@@ -131,3 +132,11 @@ def test_only_counts_that_differ_decide() -> None:
 def test_forces_are_less_certain_where_a_contact_lies_on_an_edge() -> None:
     fine = [pair(1, 600.0), pair(2, 900.0, edge=1)]
     assert errors(fine, fine, fine).force == LEAST_WITH_EDGES > LEAST_FORCE["plane"]
+
+
+def test_pressures_of_cups_are_less_certain_beside_an_edge() -> None:
+    cup = load_recipe("forces")
+    (coarse,) = coarser_recipes(cup)
+    pairs = [pair(1, 600.0), pair(2, 900.0, edge=1)]
+    found = contact_errors([CoarserMesh(coarse, {}, pairs)], cup, pairs, 2)
+    assert found.pressure_off_edges == LEAST_PRESSURE_WITH_EDGES["cup"] > LEAST_PRESSURE["cup"]
