@@ -30,7 +30,7 @@ from swgpar.meshing.race_sector import annular_sector
 from swgpar.meshing.sector import SectorMesh
 from swgpar.model.drive_model import EDGE, PRESSURE_LIMIT
 from swgpar.solve.discrete_problem import DiscreteProblem
-from swgpar.solve.newton import NewtonSolver
+from swgpar.solve.newton import SOFT_PENALTIES, NewtonSolver
 from swgpar.solve.solve_state import NewtonSettings
 
 REFERENCE_LENGTH = 1.0
@@ -167,7 +167,7 @@ class RingBody:
             design.plane,
         )
         count, fixed = counts.sectors // copies, np.zeros(0, dtype=np.int32)
-        body = Body(mesh, (design.material,), width, incompatible)
+        body = Body(mesh, (design.material,), width, incompatible=incompatible)
         layout = BodyLayout(
             body=body, first_tooth=0, count=count, closed=True, copies=copies, fixed=fixed
         )
@@ -270,7 +270,8 @@ class RingModel:
         )
 
     def _solve(self, state: LoadState, establish_contact: bool) -> int:
-        result = self.solver.solve(state, establish_contact=establish_contact)
+        softenings = SOFT_PENALTIES if establish_contact else ()
+        result = self.solver.solve(state, softenings=softenings)
         if not result.converged:
             raise ConvergenceError(
                 f"the ring did not converge ({state}): {result.reason}, residual "
