@@ -8,12 +8,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-import swgpar
-from support.paths import DESIGN
-from support.small_drive import PLANE
 from support.smooth_flank import is_smooth
-from swgpar.checks.design_file import load_design
-from swgpar.errors import InputError
+from support.toothed_drive import refuse_profile, run_with_teeth
 from swgpar.profiles import Teeth, ToothProfile, make_profile
 from swgpar.profiles.keys import Cycloid
 
@@ -94,27 +90,9 @@ REFUSED = [
 def test_what_gives_no_flank_is_refused(
     section: dict, values: list[str], words: str, design_file: Callable
 ) -> None:
-    with pytest.raises(InputError, match=words) as caught:
-        load_design(design_file({"ring_gear.profile": section}), values)
-    assert "\n" not in str(caught.value)
+    refuse_profile(design_file, section, values, words)
 
 
 def test_a_drive_runs_on_them() -> None:
     """A plane drive with cycloid teeth on both gears, one of them with rounded tips."""
-    gear = {"tip": 2, "layers": 1, "flank": 4, "root": 3, "under": 1, "rim": 1}
-    keys = "{type = 'cycloid', r_epicycloid = 1.0, r_hypocycloid = 1.0, r_root = 0.2"
-    design = swgpar.load_design(
-        DESIGN,
-        [
-            *PLANE,
-            f"flexible_spline.profile={keys}}}",
-            f"ring_gear.profile={keys}, r_tip = 0.05}}",
-            "ring_gear.c_P=0.9",
-            "steps.rotation=0",
-            "output.figures=false",
-        ],
-    )
-    assert design.rigid_teeth().clearance() > 0.0
-    recipe = {"flexible_spline": gear, "ring_gear": gear}
-    result = swgpar.run(design, mesh=recipe, progress=False)
-    assert np.isfinite(result.history["fs_s1"]).all()
+    run_with_teeth("type = 'cycloid', r_epicycloid = 1.0, r_hypocycloid = 1.0, r_root = 0.2", 0.9)

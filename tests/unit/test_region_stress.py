@@ -127,39 +127,6 @@ def test_flanks_of_cups_are_the_same_in_all_windows() -> None:
     assert one.place.value == 94.0 and one.place.error is None
 
 
-def test_the_error_by_the_drive_is_that_of_the_compared_window() -> None:
-    fine_recipe = load_recipe("forces")
-    coarse_recipe = coarsened(fine_recipe)
-    coarse = stress(readings({3: [85.0]}, skipped=1), nodal(t3=60.0))
-    assert coarse.levels[1:] == (85.0,) and np.isnan(coarse.levels[0])
-    fine = stress(readings({3: LEVELS}), nodal(t3=70.0))
-    root = RootStress(
-        s1=100.0,
-        error=None,
-        on_mesh=0.0,
-        region="tooth root",
-        warning="",
-        tooth=0,
-        radius=59.0,
-        z=0.0,
-        angle_deg=0.0,
-        part=BETWEEN,
-        by_part={BETWEEN: (nan, 100.0)},
-        elements=1,
-        regions={ROOT: fine},
-    )
-    meshes = [CoarserMesh(coarse_recipe, root.by_part, regions={ROOT: coarse})]
-    found = region_errors(meshes, fine_recipe, root, 0.001, ())[ROOT]
-    assert found.drive_error is not None
-    share = found.drive_error / 94.0
-    # of second order, by the smallest ratio of counts: 3 / 2
-    assert share == pytest.approx(SAFETY * (5.0 / 90.0) / (1.5**2 - 1.0))
-    assert region_errors(meshes, fine_recipe, root, 0.5, ())[ROOT].drive_error == 47.0
-    unknown = [replace(meshes[0], regions={})]
-    assert region_errors(unknown, fine_recipe, root, 0.5, ())[ROOT].drive_error is None
-    assert region_errors([], fine_recipe, root, 0.5, ())[ROOT].resolved.error is None
-
-
 def rooted(regions: dict[str, RegionStress]) -> RootStress:
     return RootStress(
         s1=100.0,
@@ -176,6 +143,25 @@ def rooted(regions: dict[str, RegionStress]) -> RootStress:
         elements=1,
         regions=regions,
     )
+
+
+def test_the_error_by_the_drive_is_that_of_the_compared_window() -> None:
+    fine_recipe = load_recipe("forces")
+    coarse_recipe = coarsened(fine_recipe)
+    coarse = stress(readings({3: [85.0]}, skipped=1), nodal(t3=60.0))
+    assert coarse.levels[1:] == (85.0,) and np.isnan(coarse.levels[0])
+    fine = stress(readings({3: LEVELS}), nodal(t3=70.0))
+    root = rooted({ROOT: fine})
+    meshes = [CoarserMesh(coarse_recipe, root.by_part, regions={ROOT: coarse})]
+    found = region_errors(meshes, fine_recipe, root, 0.001, ())[ROOT]
+    assert found.drive_error is not None
+    share = found.drive_error / 94.0
+    # of second order, by the smallest ratio of counts: 3 / 2
+    assert share == pytest.approx(SAFETY * (5.0 / 90.0) / (1.5**2 - 1.0))
+    assert region_errors(meshes, fine_recipe, root, 0.5, ())[ROOT].drive_error == 47.0
+    unknown = [replace(meshes[0], regions={})]
+    assert region_errors(unknown, fine_recipe, root, 0.5, ())[ROOT].drive_error is None
+    assert region_errors([], fine_recipe, root, 0.5, ())[ROOT].resolved.error is None
 
 
 def region(name: str, value: float) -> RegionStress:

@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 
 import swgpar
-from support.paths import DESIGN, DRIVERS
-from support.small_drive import PLANE
+from support.paths import DRIVERS
 from support.smooth_flank import is_smooth
-from swgpar.checks.design_file import load_design
-from swgpar.errors import InputError
+from support.toothed_drive import refuse_profile, run_with_teeth
 from swgpar.profiles import RackPath, Teeth, ToothProfile, make_profile
 from swgpar.profiles.keys import SShaped
 
@@ -125,27 +123,9 @@ REFUSED = [
 def test_what_gives_no_flank_is_refused(
     section: dict, values: list[str], words: str, design_file: Callable
 ) -> None:
-    with pytest.raises(InputError, match=words) as caught:
-        load_design(design_file({"ring_gear.profile": section}), values)
-    assert "\n" not in str(caught.value)
+    refuse_profile(design_file, section, values, words)
 
 
 def test_a_drive_runs_on_them() -> None:
     """A plane drive with S-shaped teeth on both gears, one of them with rounded tips."""
-    gear = {"tip": 2, "layers": 1, "flank": 4, "root": 3, "under": 1, "rim": 1}
-    keys = "{type = 's_shaped', r_root = 0.25"
-    design = swgpar.load_design(
-        DESIGN,
-        [
-            *PLANE,
-            f"flexible_spline.profile={keys}}}",
-            f"ring_gear.profile={keys}, r_tip = 0.05}}",
-            "ring_gear.c_P=0.87",
-            "steps.rotation=0",
-            "output.figures=false",
-        ],
-    )
-    assert design.rigid_teeth().clearance() > 0.0
-    recipe = {"flexible_spline": gear, "ring_gear": gear}
-    result = swgpar.run(design, mesh=recipe, progress=False)
-    assert np.isfinite(result.history["fs_s1"]).all()
+    run_with_teeth("type = 's_shaped', r_root = 0.25", 0.87)
