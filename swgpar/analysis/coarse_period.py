@@ -26,7 +26,7 @@ def coarse_period(
     """
     stepper = LoadStepper(model)
     sequence = stepper.sequence
-    if coarse.face_width is not None or not (sequence.samples and sequence.torque):
+    if coarse.model != "plane" or not (sequence.samples and sequence.torque):
         return None
     if sequence.periods > 1 or sequence.kinematics.wave_generator_is_fixed:
         return None

@@ -13,7 +13,7 @@ import numpy as np
 
 from swgpar.analysis.drive_mesh_error import SAFETY, CoarserMesh, shown_error
 from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares
-from swgpar.flank_pressure.pair_contact import PairContact
+from swgpar.flank_pressure.pair_contact import PairContact, touches_edges
 from swgpar.meshing import MeshRecipe
 
 LEAST_PRESSURE = {"plane": 0.02, "cup": 0.03}
@@ -55,11 +55,10 @@ def contact_errors(
     known without coarser meshes."""
     if not coarser or not contacts:
         return UNKNOWN
-    model = "plane" if recipe.face_width is None else "cup"
+    model, on_edge = recipe.model, touches_edges(contacts)
     alone = any(lobes * pair.force_share > ALONE for pair in contacts)
     meshes = [*((one.recipe, one.contacts) for one in coarser), (recipe, contacts)]
 
-    on_edge = any(pair.edge for pair in contacts)
     least = LEAST_WITH_EDGES if on_edge and model == "plane" else LEAST_FORCE[model]
     least_pressure = LEAST_PRESSURE_WITH_EDGES if on_edge else LEAST_PRESSURE
 

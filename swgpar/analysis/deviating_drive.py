@@ -59,7 +59,7 @@ def turn_mesh(recipe: MeshRecipe) -> MeshRecipe:
     """The coarsest mesh, by halves, that finds the contacts of the flanks: the output's angle needs
     no more. In the plane also by two thirds; in a cup drive so few elements along the face width
     change the forces of the teeth by a fifth."""
-    ways = (coarser, coarsened) if recipe.face_width is None else (coarser,)
+    ways = (coarser, coarsened) if recipe.model == "plane" else (coarser,)
     for fewer in ways:
         simpler = fewer(recipe)
         while simpler != recipe and finds_contacts(simpler):

@@ -15,7 +15,7 @@ from itertools import pairwise
 
 from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.flank_pressure.pair_contact import PairContact, pair_contacts
+from swgpar.flank_pressure.pair_contact import PairContact, pair_contacts, touches_edges
 from swgpar.largest_stress.places import OF_REGION
 from swgpar.largest_stress.region_stress import RegionStress
 from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress
@@ -81,7 +81,7 @@ def coarser_recipes(recipe: MeshRecipe) -> list[MeshRecipe]:
     not find the contacts."""
     coarse = coarsened(recipe)
     flanks = min(coarse.flexible_spline.flank, coarse.ring_gear.flank)
-    if recipe.face_width is None and flanks < FEWEST_ALONG_FLANKS:
+    if recipe.model == "plane" and flanks < FEWEST_ALONG_FLANKS:
         coarse = with_contact_of(coarse, recipe)
     if not finds_contacts(coarse):
         return []
@@ -92,8 +92,11 @@ def with_finer_flanks(coarse: MeshRecipe, recipe: MeshRecipe) -> list[MeshRecipe
     """The coarser recipe, and in the plane, where it is another one, that between both with the
     finer flanks. In a cup drive it has nearly all elements, and would cost a quarter of a run."""
     between = with_contact_of(coarse, recipe)
-    plane = recipe.face_width is None
-    return [coarse, between] if plane and between not in (coarse, recipe) else [coarse]
+    return (
+        [coarse, between]
+        if recipe.model == "plane" and between not in (coarse, recipe)
+        else [coarse]
+    )
 
 
 def coarser_mesh(
@@ -153,8 +156,7 @@ def region_errors(
 
     contacts : of all touching pairs;  others : see `drive_error`
     """
-    found, on_edge = {}, any(pair.edge for pair in contacts)
-    model = "plane" if recipe.face_width is None else "cup"
+    found, model, on_edge = {}, recipe.model, touches_edges(contacts)
     force_error = _force_error(coarser, recipe, contacts)
     for name, stress in fine.regions.items():
         kind, _, region = name.partition(OF_REGION)
@@ -236,5 +238,4 @@ def smallest_ratio(coarse: MeshRecipe, fine: MeshRecipe) -> float:
 
 def least_error(model: DriveModel, contacts: Sequence[PairContact]) -> float:
     """Least error that two meshes of the drive can show, as a share of the stress."""
-    edge = any(pair.edge for pair in contacts)
-    return LEAST_WITH_EDGES if edge else LEAST[model.design.drive.model]
+    return LEAST_WITH_EDGES if touches_edges(contacts) else LEAST[model.design.drive.model]

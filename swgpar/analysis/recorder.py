@@ -28,7 +28,7 @@ from swgpar.evaluation.result_frame import history_rows, nodal_fields
 from swgpar.evaluation.stiffness import loop_rows
 from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.flank_pressure.pair_contact import pair_contacts
+from swgpar.flank_pressure.pair_contact import pair_contacts, touches_edges
 from swgpar.input.toml_file import to_toml
 from swgpar.largest_stress.accuracy import Accuracy
 from swgpar.largest_stress.places import Place, find_places
@@ -146,7 +146,7 @@ class Recorder(ABC):
         for contact in contacts:
             record.pairs.append({**when, **contact.row()})
             record.contact_lines += [{**when, **station} for station in contact.station_rows()]
-        return any(contact.edge for contact in contacts)
+        return touches_edges(contacts)
 
     def _keep_balls(self, state: LoadState, race: Mapping[str, float]) -> None:
         if self.model.design.bearing is not None:

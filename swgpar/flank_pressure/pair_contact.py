@@ -10,7 +10,7 @@ their teeth, and the gap between them goes into the contact of two half spaces o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cache, partial
 from typing import Any
@@ -114,6 +114,11 @@ class PairContact:
         pair = {"tooth": self.tooth, "flank": self.flank, "ring_tooth": self.ring_tooth}
         pair |= {"ring": self.ring} if self.ring else {}
         return [{**pair, **station.row()} for station in self.stations]
+
+
+def touches_edges(contacts: Iterable[PairContact]) -> bool:
+    """Whether one of the contacts lies on an edge."""
+    return any(contact.edge for contact in contacts)
 
 
 def pair_contacts(model: DriveModel, state: LoadState) -> list[PairContact]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from swgpar.errors import InputError
 from swgpar.input.quantities import Section, quantity, show, show_key
@@ -73,6 +73,11 @@ class MeshRecipe(Section):
     ring_gear: ToothRecipe
     face_width: FaceWidthRecipe | None = None
     cup: CupRecipe | None = None
+
+    @property
+    def model(self) -> Literal["plane", "cup"]:
+        """Whether it has elements along the face width, as those of cup drives and pancakes."""
+        return "plane" if self.face_width is None else "cup"
 
 
 def is_recipe_name(mesh: str | Path) -> bool:
