@@ -16,7 +16,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.input.toml_file import read_toml
 

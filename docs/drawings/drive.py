@@ -25,7 +25,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GearName
 from swgpar.geometry.cams import EllipticalCam

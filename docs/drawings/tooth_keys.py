@@ -21,7 +21,7 @@ from _drafting import (
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.profiles import ToothProfile
 
 COLOURS = ("#2f7fd0", "#8c4fb0", "#2d9a57", "#c2a11a", "#d07a20")

@@ -14,7 +14,7 @@ from typing import Any
 from page import markdown, read_results, write_results
 from program import run
 
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 
 DRIVES = Path("drivers/catalogue")
 

@@ -15,8 +15,8 @@ from mpi4py import MPI
 from page import markdown, write_results
 from scipy.optimize import brentq
 
+from swgpar import load_design
 from swgpar.analysis.coarse_start import solve_to_load
-from swgpar.checks.design_file import load_design
 from swgpar.design.sections import GEARS
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe_counts import RATIO, resized

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.fem.sparse import fill_matrix
 from swgpar.meshing import load_recipe
 from swgpar.model.drive_model import build_drive_model

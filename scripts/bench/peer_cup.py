@@ -24,7 +24,6 @@ from peer_ccx import read_answer
 from scipy.spatial import cKDTree
 
 import swgpar
-from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.export import named_nodes, whole_body, whole_drive
@@ -155,7 +154,7 @@ def compare(name: str, out: Path, cores: int) -> list[str]:
     folder = out / Path(name).stem
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    design = load_design(Path(DESIGN), LOADED)
+    design = swgpar.load_design(Path(DESIGN), LOADED)
     mesh = build_sector_meshes(design.geometry, load_recipe(name))[BODY]
     coords, elements = whole_body(mesh)
     run(name, folder, cores)

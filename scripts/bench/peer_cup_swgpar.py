@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.constraints.boundary_conditions import PrescribedDisplacement
 from swgpar.constraints.supports import Supports
 from swgpar.fem.elements import Elements

@@ -14,7 +14,7 @@ from pathlib import Path
 import program
 from page import markdown, put
 
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 
 OFF = {
     "solver.symmetry": "false",

@@ -24,7 +24,7 @@ def measure(mesh: str, linear: str) -> None:
     """Print the numbers of one case; run under mpirun."""
     from mpi4py import MPI
 
-    from swgpar.checks.design_file import load_design
+    from swgpar import load_design
     from swgpar.fem.vectors import create_vector
     from swgpar.load.load_sequence import load_sequence
     from swgpar.meshing import load_recipe

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +12,7 @@ from swgpar.design.sections import GEARS, GearName
 from swgpar.errors import InputError
 from swgpar.input.corner_file import Corner, read_corners
 from swgpar.input.curve_file import read_curve
-from swgpar.input.toml_file import apply_overrides, read_toml, validate
+from swgpar.input.toml_file import validate
 
 GEAR_SECTIONS: tuple[GearName, ...] = (*GEARS, "dynamic_spline")
 """Sections that have a tooth profile."""
@@ -116,17 +114,3 @@ def _corner_at(line: list[Corner], x: float) -> Corner:
         return near
     distance, radius, _ = np.array(line).T
     return Corner(x, float(np.interp(x, distance, radius)), 0.0)
-
-
-def load_design(path: str | Path, overrides: Sequence[str] = ()) -> DriveDesign:
-    """Read and check a design file.
-
-    Parameters
-    ----------
-    path : str or Path
-    overrides : sequence of str
-        Values that replace those of the file, each written as ``section.key=value``.
-
-    Raises InputError of one sentence for every problem.
-    """
-    return make_drive(apply_overrides(read_toml(path), overrides))

@@ -10,7 +10,7 @@ from mpi4py import MPI
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stiffness import without_grounding
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.fem.body import RING_GEAR
 from swgpar.fem.vectors import create_vector
 from swgpar.load.load_states import LoadState, Stage

@@ -12,8 +12,8 @@ import pytest
 from support.paths import DESIGN
 from support.small_drive import PLANE
 from support.stepping import load_stepper, loaded
+from swgpar import load_design
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.checks.design_file import load_design
 from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import Stage
 

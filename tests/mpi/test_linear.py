@@ -12,7 +12,7 @@ from support.messages import Messages
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stiffness import without_grounding
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.errors import InputError
 from swgpar.fem.sparse import fill_matrix
 from swgpar.fem.vectors import create_vector

@@ -9,7 +9,6 @@ import pytest
 import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.checks.design_file import load_design
 from swgpar.presentation.drive_result import DriveResult
 
 STEEL, SOFT = {"E": 210e3, "nu": 0.29}, {"E": 120e3, "nu": 0.33}
@@ -35,7 +34,7 @@ def given(**materials: dict[str, float]) -> list[str]:
 
 
 def run(*overrides: str) -> DriveResult:
-    return swgpar.run(load_design(DESIGN, overrides), RECIPE, progress=False)
+    return swgpar.run(swgpar.load_design(DESIGN, overrides), RECIPE, progress=False)
 
 
 def assert_same(first: DriveResult, second: DriveResult, tolerance: float) -> None:

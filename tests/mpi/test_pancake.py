@@ -10,9 +10,9 @@ from pytest_mpi import parallel_assert
 
 from support.paths import DATA
 from support.stepping import WORLD, Row, load_stepper, rotate, row
+from swgpar import load_design
 from swgpar.analysis.bent_start import bend
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.checks.design_file import load_design
 from swgpar.constraints.distributing_coupling import ROTATION
 from swgpar.design.drive_design import DriveDesign
 from swgpar.flank_pressure.pair_contact import pair_contacts

@@ -8,13 +8,13 @@ from mpi4py import MPI
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
+from swgpar import load_design
 from swgpar.analysis.predictor import (
     KnownState,
     interpolation_points,
     predict,
     predict_guided,
 )
-from swgpar.checks.design_file import load_design
 from swgpar.fem.vectors import create_vector, read_field, write_field
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing import load_recipe

@@ -14,10 +14,10 @@ from pytest_mpi import parallel_assert
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stepping import load_stepper, row
+from swgpar import load_design
 from swgpar.analysis.coarse_start import levels, start_loaded
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.mesh_refinement import choose_mesh
-from swgpar.checks.design_file import load_design
 from swgpar.evaluation.period import continued
 from swgpar.fem.body import RING_GEAR
 from swgpar.fem.vectors import read_field

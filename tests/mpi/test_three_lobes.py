@@ -12,9 +12,9 @@ from pytest_mpi import parallel_assert
 from support.paths import DESIGN, DRIVERS
 from support.stepping import WORLD, Row, assert_agree, load_stepper, loaded, rotate, row
 from support.three_lobes import MODELS
+from swgpar import load_design
 from swgpar.analysis.bent_start import bend
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.vectors import read_field

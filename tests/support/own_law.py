@@ -12,7 +12,7 @@ import numpy as np
 
 from support.element_limits import distorted_grid
 from support.element_mesh import ElementMesh
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.errors import InputError
 from swgpar.materials import Isotropic, Material
 

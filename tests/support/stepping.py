@@ -12,8 +12,8 @@ from pytest_mpi import parallel_assert
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
+from swgpar import load_design
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import Stage

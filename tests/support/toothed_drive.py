@@ -11,7 +11,6 @@ import pytest
 import swgpar
 from support.paths import DESIGN
 from support.small_drive import PLANE
-from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
 
 GEAR = {"tip": 2, "layers": 1, "flank": 4, "root": 3, "under": 1, "rim": 1}
@@ -44,5 +43,5 @@ def refuse_profile(
 ) -> None:
     """A profile of the ring gear is refused in one line with these words."""
     with pytest.raises(InputError, match=words) as caught:
-        load_design(design_file({"ring_gear.profile": section}), values)
+        swgpar.load_design(design_file({"ring_gear.profile": section}), values)
     assert "\n" not in str(caught.value)

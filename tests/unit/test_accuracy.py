@@ -11,6 +11,7 @@ from support.drive_groups import PLANE as PLANE_DRIVE
 from support.messages import Messages
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
+from swgpar import load_design
 from swgpar.analysis.accuracy import with_accuracy
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.drive_mesh_error import (
@@ -25,7 +26,6 @@ from swgpar.analysis.drive_mesh_error import (
 )
 from swgpar.analysis.mesh_refinement import ChosenMesh, choose_mesh
 from swgpar.analysis.shortcuts import with_shortcuts
-from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
 from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.input.toml_file import to_toml

@@ -11,7 +11,7 @@ import pytest
 from pydantic import ValidationError
 
 from support.paths import DATA, DESIGN, REFERENCE
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.errors import InputError
 from swgpar.input.quantities import Section, quantity
 from swgpar.input.refusals import sentence

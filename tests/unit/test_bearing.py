@@ -8,7 +8,7 @@ import pytest
 from support.bearing import BEARING
 from support.paths import DESIGN
 from support.small_drive import PLANE
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.contact.point_contact import ball_spring, point_contact
 from swgpar.contact.smooth_curve import shape_functions, smooth_curve
 from swgpar.errors import InputError

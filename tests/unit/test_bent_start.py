@@ -9,8 +9,9 @@ import pytest
 import swgpar
 from support.drive_groups import PLANE, cams, table_of
 from support.paths import RECIPE, REFERENCE
+from swgpar import load_design
 from swgpar.analysis.bent_start import BentSpline
-from swgpar.checks.design_file import load_design, make_drive
+from swgpar.checks.design_file import make_drive
 from swgpar.geometry.neutral_line import bent_ring
 
 CAMS = {name: case for name, case in cams().items() if "wave_generator" in case}

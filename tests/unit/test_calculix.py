@@ -13,7 +13,6 @@ import swgpar
 from support.bearing import BEARING
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
 from swgpar.exchange.calculix import write_calculix
 from swgpar.exchange.calculix_model import JobModel
@@ -30,7 +29,7 @@ ROLLERS = ("wave_generator.type=four_roller", "wave_generator.beta=15", "wave_ge
     "overrides", [(), PLANE, (*PLANE, *ROLLERS)], ids=["cup", "plane", "rollers"]
 )
 def test_facets_lie_on_the_cam(overrides: tuple[str, ...]) -> None:
-    design = load_design(DESIGN, overrides)
+    design = swgpar.load_design(DESIGN, overrides)
     inset = 5e-4
     cam = cam_facets(design, 2.0, inset)
     assert cam.sagitta <= SAGITTA * design.drive.module
@@ -50,7 +49,7 @@ def test_facets_lie_on_the_cam(overrides: tuple[str, ...]) -> None:
 def test_equations_give_the_mean_motion(overrides: tuple[str, ...], layout: str) -> None:
     """A small rigid motion, and the waves of a bent spline, which have no mean."""
     model = JobModel(
-        load_design(DESIGN, [*overrides, f"drive.layout={layout}"]), load_recipe(RECIPE)
+        swgpar.load_design(DESIGN, [*overrides, f"drive.layout={layout}"]), load_recipe(RECIPE)
     )
     bodies = {"bore": model.spline} | ({"outer": model.ring} if layout == "spline_fixed" else {})
     move, turn = np.array([2e-3, -1e-3, 3e-3]), np.array([1e-4, -2e-4, 3e-4])
@@ -92,7 +91,7 @@ def test_equations_give_the_mean_motion(overrides: tuple[str, ...], layout: str)
 
 
 def test_forces_have_the_torque_of_the_design(tmp_path: Path) -> None:
-    design = load_design(DESIGN, PLANE)
+    design = swgpar.load_design(DESIGN, PLANE)
     job, mesh = swgpar.export(design, tmp_path, ["inp"], mesh=RECIPE)
     points = JobModel(design, load_recipe(RECIPE)).points
     text = job.read_text()
@@ -127,7 +126,9 @@ def test_forces_have_the_torque_of_the_design(tmp_path: Path) -> None:
 def test_what_the_job_does_not_carry(
     tmp_path: Path, change: str | tuple[str, ...], words: str
 ) -> None:
-    design = load_design(DESIGN, [*PLANE, *([change] if isinstance(change, str) else change)])
+    design = swgpar.load_design(
+        DESIGN, [*PLANE, *([change] if isinstance(change, str) else change)]
+    )
     with pytest.raises(InputError) as raised:
         swgpar.export(design, tmp_path, ["inp"], mesh=RECIPE)
     assert words in str(raised.value)
@@ -144,13 +145,13 @@ BOLTS = (
 def test_bolts_are_not_carried(tmp_path: Path) -> None:
     words = 'cup.attachment = "bolted" is not available with the format inp: allowed "edge" or'
     with pytest.raises(InputError, match=words):
-        swgpar.export(load_design(DESIGN, BOLTS), tmp_path, ["inp"], mesh=RECIPE)
+        swgpar.export(swgpar.load_design(DESIGN, BOLTS), tmp_path, ["inp"], mesh=RECIPE)
 
 
 @pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
 def test_a_clamped_ring_is_a_rigid_body(tmp_path: Path, layout: str) -> None:
     clamped = ("cup.attachment=clamped", "cup.clamping_radius=10", f"drive.layout={layout}")
-    design = load_design(DESIGN, clamped)
+    design = swgpar.load_design(DESIGN, clamped)
     job, _ = swgpar.export(design, tmp_path, ["inp"], mesh=RECIPE)
     model, text = JobModel(design, load_recipe(RECIPE)), job.read_text()
     listed = text.split("*NSET, NSET=CLAMPED\n")[1].split("*")[0].replace("\n", ", ").split(", ")
@@ -185,7 +186,9 @@ def test_a_standing_wave_generator_changes_nothing_up_to_the_loaded_state(tmp_pa
         folder = tmp_path / layout
         folder.mkdir()
         job, _ = write_calculix(
-            load_design(DESIGN, [*PLANE, f"drive.layout={layout}"]), folder, load_recipe(RECIPE)
+            swgpar.load_design(DESIGN, [*PLANE, f"drive.layout={layout}"]),
+            folder,
+            load_recipe(RECIPE),
         )
         jobs.append(job.read_text().replace(",", " ").split())
     number = re.compile(r"-?\d\.\d+e[+-]\d+")

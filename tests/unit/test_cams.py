@@ -13,8 +13,8 @@ from scipy.optimize import brentq
 from scipy.special import ellipe
 
 from support.paths import DRIVERS, REFERENCE
+from swgpar import load_design
 from swgpar.checks.derived_geometry import derived_geometry
-from swgpar.checks.design_file import load_design
 from swgpar.contact.rigid_surface import pin_directions
 from swgpar.errors import InputError
 from swgpar.geometry.cams import EllipticalCam, HarmonicCam, pin_travel, taut_length

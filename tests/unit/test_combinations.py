@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.cli import main
 
 DOUBLE_ARC = {"type": "double_arc", "r_addendum": 1.0, "r_dedendum": 0.6}

@@ -29,7 +29,6 @@ from support.paths import DRIVERS, RECIPE
 from support.stepping import loaded
 from swgpar.analysis.bent_start import BentSpline
 from swgpar.analysis.forecast import forecast
-from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.fem.element_matrices import element_matrices
@@ -407,7 +406,7 @@ def test_the_silk_hat_of_the_drivers_runs(tmp_path: Path) -> None:
     """One period without fields and figures on the smallest mesh: the mean input torque is that of
     the energy."""
     overrides = {"output.fields": False, "output.figures": False, "output.root_stress": False}
-    case = load_design(DRIVERS / "silk_hat.toml").with_values(overrides)
+    case = swgpar.load_design(DRIVERS / "silk_hat.toml").with_values(overrides)
     result = swgpar.run(case, RECIPE, tmp_path / "run")
     mean = float(np.mean(result.history["wg_torque_Nmm"]))
     assert mean == pytest.approx(1000.0 * case.load.torque / 50.0, rel=0.01)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from support.paths import DRIVERS
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.design.deviations import gear_deviations
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError

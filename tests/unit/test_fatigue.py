@@ -9,7 +9,6 @@ import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.answers.answer import declared_answers
-from swgpar.checks.design_file import load_design
 from swgpar.design.sections import Fatigue
 from swgpar.errors import InputError
 from swgpar.evaluation.fatigue import _life
@@ -161,7 +160,7 @@ def test_utilisation_grows_with_the_load() -> None:
 )
 def test_bad_input_is_refused(override: str, words: str) -> None:
     with pytest.raises(InputError) as error:
-        load_design(DESIGN, [override])
+        swgpar.load_design(DESIGN, [override])
     assert words in str(error.value)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from support.paths import DESIGN, RECIPE
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.flank_pressure.flank_loads import LineLoad, line_load, nodal_forces
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.recipe_counts import resized

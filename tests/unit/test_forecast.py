@@ -18,7 +18,6 @@ from swgpar.analysis.forecast import (
     reported_memory,
     require_memory,
 )
-from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError, OutOfMemoryError
 from swgpar.meshing import load_recipe
 from swgpar.model.drive_model import build_drive_model
@@ -46,7 +45,7 @@ HELD = (*HOUSING, "ring_gear.housing.outside=held")
     ],
 )
 def test_counts_are_those_of_the_model(overrides: tuple[str, ...]) -> None:
-    design, recipe = load_design(DESIGN, overrides), load_recipe(RECIPE)
+    design, recipe = swgpar.load_design(DESIGN, overrides), load_recipe(RECIPE)
     found = forecast(design, recipe)
     model = build_drive_model(design, recipe, comm=MPI.COMM_SELF)
     counts = model.counts().values()
@@ -58,7 +57,7 @@ def test_counts_are_those_of_the_model(overrides: tuple[str, ...]) -> None:
 
 
 def test_needs_grow_with_the_mesh() -> None:
-    design = load_design(REFERENCE)
+    design = swgpar.load_design(REFERENCE)
     coarse, full = (forecast(design, load_recipe(name)) for name in ("coarse", "full"))
     # measured on two ranks: docs/verification/forecast.md
     assert coarse.memory == pytest.approx(1.9, rel=0.25) and full.memory == pytest.approx(
@@ -103,7 +102,7 @@ def test_a_run_that_does_not_fit_is_refused_before_it_is_meshed(tmp_path: Path) 
 
 
 def test_an_allocation_that_fails_is_one_sentence() -> None:
-    needs = forecast(load_design(DESIGN), load_recipe(RECIPE))
+    needs = forecast(swgpar.load_design(DESIGN), load_recipe(RECIPE))
     for error in (MemoryError(), PETSc.Error(55)):
         message = "not enough memory: [0-9,]* unknowns need about .* GB on all ranks"
         with pytest.raises(OutOfMemoryError, match=message), reported_memory(needs):

@@ -7,7 +7,7 @@ import pytest
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.errors import InputError
 from swgpar.evaluation.frequencies import NaturalFrequencies, NaturalMode, sector_masses
 from swgpar.meshing import build_sector_meshes, load_recipe

@@ -14,7 +14,7 @@ import pytest
 from support.element_mesh import ElementMesh
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.materials import Isotropic
 from swgpar.meshing import SectorMesh, build_sector_meshes, load_recipe
 from swgpar.meshing.export import named_surfaces, whole_body, whole_drive, write_mesh

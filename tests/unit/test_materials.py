@@ -19,7 +19,7 @@ from support.line_contact import line_contact
 from support.markdown import examples
 from support.own_law import check_patch
 from support.paths import DESIGN, ROOT
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.checks.remarks import remarks
 from swgpar.errors import InputError
 from swgpar.fem.element_matrices import element_matrices

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from support.paths import RECIPE, REFERENCE
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes, load_recipe

@@ -8,7 +8,6 @@ import pytest
 import swgpar
 from support.paths import DESIGN, RECIPE, REFERENCE
 from support.small_drive import PLANE
-from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.rotation import GEAR_STRESSES
 from swgpar.largest_stress.local_problem import tooth_nodes
@@ -20,7 +19,7 @@ from swgpar.model.regions import AVERAGE, BACK, NOTCH, region_of, warning_of
 
 @pytest.fixture(scope="module")
 def cup() -> tuple[DriveDesign, SectorMesh]:
-    design = load_design(REFERENCE)
+    design = swgpar.load_design(REFERENCE)
     return design, build_sector(design.geometry, load_recipe("coarse"), "flexible_spline")
 
 
@@ -64,7 +63,7 @@ def test_regions_of_a_tooth(cup: tuple[DriveDesign, SectorMesh]) -> None:
 @pytest.mark.parametrize(("thickness", "expected"), [(0.8, "tooth end"), (0.95, "notch")])
 def test_roots_that_end_at_the_corner_have_no_limit_there(thickness: float, expected: str) -> None:
     """The corner between teeth and wall is where a wall as thick as the rim meets the roots."""
-    design = load_design(REFERENCE, [f"cup.thickness_coef={thickness}"])
+    design = swgpar.load_design(REFERENCE, [f"cup.thickness_coef={thickness}"])
     mesh = build_sector(design.geometry, load_recipe("coarse"), "flexible_spline")
     grid = mesh.flanks[0]
     end, front = (regions((design, mesh), grid.nodes[-1:, k]) for k in (-1, 0))
@@ -75,7 +74,7 @@ def test_roots_that_end_at_the_corner_have_no_limit_there(thickness: float, expe
 
 
 def test_a_fillet_takes_the_place_of_the_notch() -> None:
-    design = load_design(REFERENCE, ["cup.back_fillet=0.2"])
+    design = swgpar.load_design(REFERENCE, ["cup.back_fillet=0.2"])
     mesh = build_sector(design.geometry, load_recipe("full"), "flexible_spline")
     r, z = np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]
     wall = design.inner_radius + design.cup_sizes.thickness
@@ -89,7 +88,7 @@ def test_a_fillet_takes_the_place_of_the_notch() -> None:
 
 
 def test_regions_of_the_ring_gear() -> None:
-    design = load_design(REFERENCE)
+    design = swgpar.load_design(REFERENCE)
     mesh = build_sector(design.geometry, load_recipe("coarse"), "ring_gear")
     found = {
         region_of(design.geometry, mesh, int(node), False)
@@ -99,7 +98,7 @@ def test_regions_of_the_ring_gear() -> None:
 
 
 def test_a_run_says_where_its_largest_stresses_are() -> None:
-    design = load_design(DESIGN, [*PLANE, "steps.rotation=4", "steps.increment=2"])
+    design = swgpar.load_design(DESIGN, [*PLANE, "steps.rotation=4", "steps.increment=2"])
     result = swgpar.run(design, RECIPE)
     places, loaded = result.summary.stresses.places, result.history["step"] >= 3
     apart = {f"{name}{APART}" for name in GEAR_STRESSES if not name.endswith("s1")}

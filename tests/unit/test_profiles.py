@@ -12,7 +12,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.errors import InputError
 from swgpar.profiles.double_arc import double_arc, straight_length
 from swgpar.profiles.flank import Segment, ToothProfile, check_flank

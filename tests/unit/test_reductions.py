@@ -9,8 +9,8 @@ import pytest
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
+from swgpar import load_design
 from swgpar.analysis.coarse_start import levels
-from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
 from swgpar.evaluation.period import continued
 from swgpar.fem.body import RING_GEAR

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from support.paths import DESIGN
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.checks.inertia import inertia_remarks, negligible_speeds
 from swgpar.geometry.rim_inertia import RimInertia
 

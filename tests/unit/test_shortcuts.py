@@ -10,7 +10,6 @@ from support.messages import Messages
 from support.paths import DESIGN, DRIVERS, RECIPE, REFERENCE
 from support.small_drive import NO_SHORTCUTS, PLANE
 from swgpar.analysis.shortcuts import RTOL, SAMPLES, with_shortcuts
-from swgpar.checks.design_file import load_design
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe_counts import with_counts
 
@@ -19,7 +18,7 @@ PERIOD = 360.0 / 42.0
 
 
 def test_a_design_without_the_keys_takes_all() -> None:
-    found = with_shortcuts(load_design(REFERENCE), load_recipe("full"))
+    found = with_shortcuts(swgpar.load_design(REFERENCE), load_recipe("full"))
     steps = found.design.steps
     assert (steps.samples, steps.bent_start, steps.start_levels) == (SAMPLES["cup"], True, 2)
     assert (
@@ -36,7 +35,7 @@ def test_a_design_without_the_keys_takes_all() -> None:
 )
 def test_a_start_uses_meshes_that_find_the_contacts(recipe: str, levels: int) -> None:
     name = "plane_half_turn.toml" if recipe.startswith("plane") else "cup_45deg.toml"
-    found = with_shortcuts(load_design(DRIVERS / name), load_recipe(recipe))
+    found = with_shortcuts(swgpar.load_design(DRIVERS / name), load_recipe(recipe))
     assert found.design.steps.start_levels == levels
 
 
@@ -46,39 +45,45 @@ def test_very_fine_recipes_start_on_four_meshes_at_most() -> None:
     )
     assert (
         with_shortcuts(
-            load_design(DRIVERS / "plane_half_turn.toml"), fine
+            swgpar.load_design(DRIVERS / "plane_half_turn.toml"), fine
         ).design.steps.start_levels
         == 4
     )
-    without = with_shortcuts(load_design(DRIVERS / "plane_half_turn.toml"), fine, levels=False)
+    without = with_shortcuts(
+        swgpar.load_design(DRIVERS / "plane_half_turn.toml"), fine, levels=False
+    )
     assert without.design.steps.start_levels == 0
 
 
 def test_few_increments_are_computed_as_they_are() -> None:
-    few = with_shortcuts(load_design(REFERENCE, ["steps.rotation=10"]), load_recipe("coarse"))
+    few = with_shortcuts(
+        swgpar.load_design(REFERENCE, ["steps.rotation=10"]), load_recipe("coarse")
+    )
     assert few.design.steps.samples == 0
     partial = with_shortcuts(
-        load_design(REFERENCE, ["steps.load_increments=5"]), load_recipe("coarse")
+        swgpar.load_design(REFERENCE, ["steps.load_increments=5"]), load_recipe("coarse")
     )
     assert not partial.design.steps.bent_start
 
 
 def test_keys_of_the_design_are_kept() -> None:
-    design = load_design(REFERENCE, NO_SHORTCUTS)
+    design = swgpar.load_design(REFERENCE, NO_SHORTCUTS)
     found = with_shortcuts(design, load_recipe("full"))
     assert found.design == design and found.left_out == ()
-    found = with_shortcuts(load_design(REFERENCE, ["steps.samples=3"]), load_recipe("full"))
+    found = with_shortcuts(swgpar.load_design(REFERENCE, ["steps.samples=3"]), load_recipe("full"))
     assert found.design.steps.samples == 3 and found.design.steps.bent_start
 
 
 def test_friction_and_short_rotations() -> None:
     assert (
         with_shortcuts(
-            load_design(REFERENCE, ["contact.friction=0.1"]), load_recipe("full")
+            swgpar.load_design(REFERENCE, ["contact.friction=0.1"]), load_recipe("full")
         ).left_out
         == ()
     )
-    short = with_shortcuts(load_design(REFERENCE, ["steps.rotation=2.9"]), load_recipe("coarse"))
+    short = with_shortcuts(
+        swgpar.load_design(REFERENCE, ["steps.rotation=2.9"]), load_recipe("coarse")
+    )
     assert (
         short.design.steps.samples == 0
         and short.left_out[0] == "deflection and engagement step by step"
@@ -93,7 +98,7 @@ def test_a_run_with_shortcuts_ends_in_the_same_states() -> None:
         f"steps.increment={PERIOD / samples}",
         "solver.rtol=1e-9",
     ]
-    design = load_design(DESIGN, [*PLANE, *steps])
+    design = swgpar.load_design(DESIGN, [*PLANE, *steps])
     plain = swgpar.run(design, RECIPE, plain=True).history
     with Messages() as messages:
         fast = swgpar.run(design, RECIPE)
@@ -116,7 +121,7 @@ def test_the_tolerance_keeps_the_digits_that_are_printed(model: tuple[str, ...])
         f"steps.rotation={1.5 * PERIOD}",
         f"steps.increment={PERIOD / SAMPLES['plane']}",
     ]
-    tight = swgpar.run(load_design(DESIGN, [*steps, "solver.rtol=1e-11"]), RECIPE).history
-    fast = swgpar.run(load_design(DESIGN, steps), RECIPE).history
+    tight = swgpar.run(swgpar.load_design(DESIGN, [*steps, "solver.rtol=1e-11"]), RECIPE).history
+    fast = swgpar.run(swgpar.load_design(DESIGN, steps), RECIPE).history
     for name in ("fs_s1", "fs_vm", "wg_torque_Nmm"):
         assert np.allclose(fast[name], tight[name], rtol=2e-5)

@@ -10,9 +10,9 @@ from mpi4py import MPI
 from support.messages import Messages
 from support.paths import DESIGN
 from support.small_drive import PLANE
+from swgpar import load_design
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.saved_state import StartStates
-from swgpar.checks.design_file import load_design
 from swgpar.meshing import load_recipe
 from swgpar.results.folder import START_STATES
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from support.paths import DESIGN
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.load.load_sequence import load_sequence, start_state
 
 

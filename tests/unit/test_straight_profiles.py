@@ -13,7 +13,6 @@ import swgpar
 from support.paths import DESIGN
 from support.small_drive import PLANE
 from support.smooth_flank import is_smooth
-from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
 from swgpar.profiles import Teeth, make_profile
 from swgpar.profiles.flank import Segment
@@ -115,7 +114,7 @@ REFUSED = [
 @pytest.mark.parametrize(("section", "words"), REFUSED, ids=[words for _, words in REFUSED])
 def test_what_gives_no_flank_is_refused(section: dict, words: str, design_file: Callable) -> None:
     with pytest.raises(InputError, match=words) as caught:
-        load_design(design_file({"ring_gear.profile": section}), [])
+        swgpar.load_design(design_file({"ring_gear.profile": section}), [])
     assert "\n" not in str(caught.value)
 
 

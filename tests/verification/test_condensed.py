@@ -7,7 +7,7 @@ import pytest
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.fem.condensed_parts import CondensedPart, condense_sector, relative_end_rotation
 from swgpar.fem.element_matrices import element_matrices
 from swgpar.kernel import ReferenceElements, assemble_elements

@@ -14,7 +14,7 @@ from support.contact_blocks import Block, Surface, arc_block
 from support.element_mesh import ElementMesh
 from support.hertz import SIZE, STEEL, WIDTH, flank_line, graded
 from support.paths import DRIVERS
-from swgpar.checks.design_file import load_design
+from swgpar import load_design
 from swgpar.contact.missing_compliance import PATCH, MissingCompliance
 from swgpar.fem.body import Body
 from swgpar.meshing import build_sector_meshes, load_recipe
