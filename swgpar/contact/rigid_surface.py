@@ -23,7 +23,7 @@ from swgpar.kernel import add_face_blocks
 from swgpar.load.load_states import LoadState
 
 
-class Surface(Protocol):
+class RigidSurface(Protocol):
     """A rigid surface in the frame of the cam, major axis along +y."""
 
     def evaluate(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -102,7 +102,7 @@ class RigidContact(PressedPoints):
     def __init__(
         self,
         body: BodyElements,
-        surface: Surface,
+        surface: RigidSurface,
         pose: Callable[[LoadState], SurfacePose | None],
         *,
         radius: float,

@@ -22,7 +22,7 @@ import numpy as np
 from swgpar.analysis.bent_start import BentSpline
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
-from swgpar.exchange.calculix_model import JobModel, Surface, Term
+from swgpar.exchange.calculix_model import CoupledSurface, JobModel, Term
 from swgpar.exchange.cam_facets import OUTER_FACE, CamFacets, cam_facets
 from swgpar.geometry.arrays import Ints
 from swgpar.meshing import MeshRecipe
@@ -209,7 +209,7 @@ def _internal_torque(design: DriveDesign) -> float:
     return design.kinematics.internal_torque(design.load.torque)
 
 
-def _torque(model: JobModel, surface: Surface) -> Iterator[str]:
+def _torque(model: JobModel, surface: CoupledSurface) -> Iterator[str]:
     """Forces of the torque: those of the distributing coupling at the angle zero of the output."""
     torque = _internal_torque(model.design)
     x = model.points[surface.nodes, :2]

@@ -41,7 +41,7 @@ Term = tuple[int, int, float]
 
 
 @dataclass(frozen=True)
-class Surface:
+class CoupledSurface:
     """Nodes of a surface that is coupled or loaded.
 
     nodes : (n,) from 0, and their weight (n,), tributary areas with the sum 1
@@ -92,7 +92,7 @@ class JobModel:
             first += len(mesh.elements) * mesh.n_sectors
         return surfaces
 
-    def surface(self, mesh: SectorMesh, name: str) -> Surface:
+    def surface(self, mesh: SectorMesh, name: str) -> CoupledSurface:
         """The nodes of a node set of a body."""
         nodes = mesh.node_sets[name]
         weight = node_weights(mesh.coords, nodes, mesh.ccw_nodes)
@@ -101,7 +101,7 @@ class JobModel:
         middle = nodes[np.lexsort((np.abs(z - z.mean()).round(9), np.abs(x).round(9)))[0]]
         count = next(k for k in range(MEAN_NODES, mesh.n_sectors + 1) if mesh.n_sectors % k == 0)
         shares = np.tile(weight, mesh.n_sectors)
-        return Surface(
+        return CoupledSurface(
             nodes=self.numbers(mesh, nodes).ravel(),
             weight=shares / shares.sum(),
             mean=self.numbers(mesh, np.array([middle]))[:: mesh.n_sectors // count, 0],
@@ -161,7 +161,7 @@ class JobModel:
             closing = self.design.backlash_angle
         return self.design.kinematics.torque_direction * closing
 
-    def housing(self, surface: Surface) -> Iterator[list[Term]]:
+    def housing(self, surface: CoupledSurface) -> Iterator[list[Term]]:
         """The nodes of a surface, that of the ring gear, move along its circle and the axis.
 
         The equations are linear: a node moves on the chord of the rotation that brings the flanks
@@ -179,7 +179,7 @@ class JobModel:
         return normal, np.column_stack([first, 1 - first])
 
     def mean_motion(
-        self, surface: Surface, reference: int, in_housing: bool = False
+        self, surface: CoupledSurface, reference: int, in_housing: bool = False
     ) -> Iterator[list[Term]]:
         """Mean displacements, tilts and rotation about z of a surface, linear: the degrees of
         freedom 1 to 3 of the node `reference`, and those of the next one.

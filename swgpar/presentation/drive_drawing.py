@@ -31,14 +31,14 @@ FLANK_POINTS = 12
 Pixels = tuple[float, float]
 
 
-class Outline(NamedTuple):
+class FilledPath(NamedTuple):
     """Closed curves as the path of SVG, filled between them in the colour of the body."""
 
     path: str
     body: str
 
 
-class Line(NamedTuple):
+class DrawnLine(NamedTuple):
     """A line in pixels. style : class of the style sheet"""
 
     start: Pixels
@@ -66,8 +66,8 @@ class Sheet:
     height: float
     width: float = SIZE
     caption: str = ""
-    outlines: list[Outline] = field(default_factory=list)
-    lines: list[Line] = field(default_factory=list)
+    outlines: list[FilledPath] = field(default_factory=list)
+    lines: list[DrawnLine] = field(default_factory=list)
     texts: list[Text] = field(default_factory=list)
 
     def at(self, x: float, y: float) -> tuple[float, float]:
@@ -80,19 +80,19 @@ class Sheet:
             "M" + "L".join("{:.2f} {:.2f}".format(*self.at(*p)) for p in curve) + "Z"
             for curve in points
         )
-        self.outlines.append(Outline(path, body))
+        self.outlines.append(FilledPath(path, body))
 
     def axis(self, start: Pixels, end: Pixels) -> None:
         """A line of an axis between points in mm."""
-        self.lines.append(Line(self.at(*start), self.at(*end), "axis"))
+        self.lines.append(DrawnLine(self.at(*start), self.at(*end), "axis"))
 
     def across(self, x1: float, x2: float, y_from: float, y: float, text: str) -> None:
         """A horizontal dimension from x1 to x2 mm at the height y (pixels), with lines from y_from
         mm."""
         (a, start), (b, _) = self.at(x1, y_from), self.at(x2, y_from)
         for x in (a, b):
-            self.lines.append(Line((x, start), (x, y + (4 if y > start else -4)), "thin"))
-        self.lines.append(Line((a, y), (b, y)))
+            self.lines.append(DrawnLine((x, start), (x, y + (4 if y > start else -4)), "thin"))
+        self.lines.append(DrawnLine((a, y), (b, y)))
         self.texts.append(Text(0.5 * (a + b), y - 4, text))
 
     def upright(
@@ -101,8 +101,8 @@ class Sheet:
         """A vertical dimension from y1 to y2 mm at x (pixels), with lines from x_from mm."""
         (start, a), (_, b) = self.at(x_from, y1), self.at(x_from, y2)
         for y in (a, b):
-            self.lines.append(Line((start, y), (x + (4 if x > start else -4), y), "thin"))
-        self.lines.append(Line((x, a), (x, b)))
+            self.lines.append(DrawnLine((start, y), (x + (4 if x > start else -4), y), "thin"))
+        self.lines.append(DrawnLine((x, a), (x, b)))
         x += 6 if anchor == "start" else -6
         self.texts.append(Text(x, 0.5 * (a + b) + 4, text, anchor))
 
@@ -301,6 +301,6 @@ def _draw_attachment(sheet: Sheet, design: DriveDesign) -> None:
         return
     radius = 0.5 * cup.bolt_circle
     (x1, y), (x2, _) = sheet.at(near, radius), sheet.at(far, radius)
-    sheet.lines.append(Line((x1 - 12.0, y), (x2 + 12.0, y), "axis"))
+    sheet.lines.append(DrawnLine((x1 - 12.0, y), (x2 + 12.0, y), "axis"))
     text = f"{cup.bolts} bolts ⌀ {cup.washer_diameter:g}, circle ⌀ {cup.bolt_circle:g}"
     sheet.upright(0.0, radius, near, x, text, "end")

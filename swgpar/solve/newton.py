@@ -30,8 +30,8 @@ from swgpar.solve.linear_solvers import make_linear_solver
 from swgpar.solve.solve_state import (
     AcceptableState,
     CycleBreaker,
+    IterationStatus,
     NewtonSettings,
-    Outcome,
     Phase,
     SolveResult,
     SolveState,
@@ -242,14 +242,14 @@ class NewtonSolver:
         if max_iterations is not None:
             state.max_iterations = min(max_iterations, state.max_iterations)
         while state.result is None:
-            outcome = self._iterate(state)
+            status = self._iterate(state)
             if state.time_limit is not None:
                 raise TimeLimitError(state.time_limit_text())
-            if outcome is Outcome.FAILED:
+            if status is IterationStatus.FAILED:
                 self._after_failure(state)
-            elif outcome is Outcome.SLOW:
+            elif status is IterationStatus.SLOW:
                 state.softened, state.softenings = True, list(SPREADING_PENALTIES)
-            elif outcome is Outcome.INTERRUPTED:
+            elif status is IterationStatus.INTERRUPTED:
                 self._prepare_contacts(state)
                 state.softenings.insert(0, state.penalty_share)
             elif state.phase is Phase.SOFTENED:
@@ -280,7 +280,7 @@ class NewtonSolver:
             softened=bool(softenings),
         )
 
-    def _iterate(self, state: SolveState) -> Outcome:
+    def _iterate(self, state: SolveState) -> IterationStatus:
         """One run of Newton's iteration in the present phase."""
         state.residuals, state.incomplete_pattern, state.outdated_search = [], False, False
         self._trial_cache = None
@@ -292,12 +292,12 @@ class NewtonSolver:
         state.iterations += self.snes.getIterationNumber()
         reason = self.snes.getConvergedReason()
         if reason < 0:
-            return Outcome.FAILED
+            return IterationStatus.FAILED
         if reason != PETSc.SNES.ConvergedReason.CONVERGED_ITS:
-            return Outcome.CONVERGED
+            return IterationStatus.CONVERGED
         if state.iterations >= state.max_iterations:
-            return Outcome.FAILED
-        return Outcome.SLOW if state.slow else Outcome.INTERRUPTED
+            return IterationStatus.FAILED
+        return IterationStatus.SLOW if state.slow else IterationStatus.INTERRUPTED
 
     def _prepare_contacts(self, state: SolveState) -> None:
         """Search anew, or extend the pattern, as the run that was interrupted needs it."""

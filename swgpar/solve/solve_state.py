@@ -22,7 +22,7 @@ class Phase(enum.Enum):
     AUGMENTED = enum.auto()
 
 
-class Outcome(enum.Enum):
+class IterationStatus(enum.Enum):
     """How one run of Newton's iteration ended."""
 
     CONVERGED = enum.auto()

@@ -12,7 +12,7 @@ from swgpar.studies import figures
 from swgpar.studies.runs_page import HEADINGS, FigureSection, runs_page, table_of_runs
 from swgpar.studies.spec import Study
 from swgpar.studies.table import (
-    Comparison,
+    CaseComparison,
     Result,
     by_case,
     complete,
@@ -39,7 +39,7 @@ class Failure:
 def make_report(
     study: Study,
     results: Sequence[Result],
-    comparisons: Sequence[Comparison],
+    comparisons: Sequence[CaseComparison],
     out: Path,
     missing: int = 0,
 ) -> bytes:
@@ -90,7 +90,7 @@ def _extremes(results: Sequence[Result]) -> Table:
     return Table(["quantity", "smallest", "of case", "largest", "of case"], rows)
 
 
-def _comparisons(comparisons: Sequence[Comparison]) -> Table:
+def _comparisons(comparisons: Sequence[CaseComparison]) -> Table:
     rows = published_rows(comparisons)
     heads = [HEADINGS.get(name, name) for name in rows[0]]
     return Table(heads, [Row(list(row.values()), row["verdict"] == "MISS") for row in rows])

@@ -25,7 +25,14 @@ from swgpar.studies.job import STATUS, read_status, run_one
 from swgpar.studies.many_runs import claim_folder, do_runs, note_ended
 from swgpar.studies.report import make_report
 from swgpar.studies.spec import Study, load_study, make_study
-from swgpar.studies.table import Comparison, Result, compare, complete, published_rows, study_rows
+from swgpar.studies.table import (
+    CaseComparison,
+    Result,
+    compare_cases,
+    complete,
+    published_rows,
+    study_rows,
+)
 from swgpar.studies.terminal import StudyProgress
 from swgpar.tasks import Send
 
@@ -65,9 +72,9 @@ class StudyResult:
         return {name: [row[name] for row in rows] for name in rows[0]}
 
     @property
-    def comparisons(self) -> list[Comparison]:
+    def comparisons(self) -> list[CaseComparison]:
         """Published values beside the computed ones."""
-        return compare(self.results)
+        return compare_cases(self.results)
 
     @property
     def published(self) -> list[dict[str, Any]]:
@@ -249,7 +256,7 @@ def _write(
     study: Study, results: Sequence[Result], out: Path, comm: MPI.Comm, missing: int = 0
 ) -> None:
     """Write tables and report; collective. missing : number of jobs that have not ended"""
-    comparisons = compare(complete(results))
+    comparisons = compare_cases(complete(results))
     write_from_root(comm, out / TABLE, format_csv(study_rows(results)))
     if comparisons:
         write_from_root(comm, out / PUBLISHED, format_csv(published_rows(comparisons)))

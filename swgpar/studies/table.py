@@ -19,7 +19,7 @@ OF_MESHES = ("mesh", "converged", "error_estimate")
 
 
 @dataclass(frozen=True)
-class Comparison:
+class CaseComparison:
     """A published value beside the computed one: a row of published.csv.
 
     mesh : the one it was computed on, or empty
@@ -92,7 +92,7 @@ def estimate_of(case: Case, outcomes: Sequence[Outcome], name: str) -> Estimate 
     return estimate(coarse, fine, n_coarse, n_fine, case.system.dimensions(case.design))
 
 
-def compare(results: Sequence[Result]) -> list[Comparison]:
+def compare_cases(results: Sequence[Result]) -> list[CaseComparison]:
     """All published values."""
     rows = []
     for case, outcomes in by_case(results):
@@ -111,7 +111,7 @@ def compare(results: Sequence[Result]) -> list[Comparison]:
                 converged = of_meshes.converged
                 error = of_meshes.error if computed is None else abs(converged - computed)
             rows.append(
-                Comparison(
+                CaseComparison(
                     case=case.name,
                     mesh=mesh,
                     quantity=name,
@@ -151,7 +151,7 @@ def shown(value: Any) -> Any:
     return toml_value(value)
 
 
-def published_rows(comparisons: Iterable[Comparison]) -> list[dict[str, Any]]:
+def published_rows(comparisons: Iterable[CaseComparison]) -> list[dict[str, Any]]:
     """Rows of published.csv; without what follows from meshes where there are none."""
     rows = [asdict(comparison) for comparison in comparisons]
     if any(row["mesh"] for row in rows):

@@ -21,7 +21,7 @@ from swgpar.results.page import RANK, Row, Table, page
 from swgpar.studies.case import Outcome
 from swgpar.studies.report import make_report
 from swgpar.studies.spec import load_study
-from swgpar.studies.table import compare, shown_quantities
+from swgpar.studies.table import compare_cases, shown_quantities
 
 STUDY = f"""
 [study]
@@ -64,7 +64,7 @@ def test_tables_of_a_study(tmp_path: Path) -> None:
         for k, job in enumerate(jobs)
         for n in [0 if job.finer else 1]
     ]
-    text = make_report(load_study(path), results, compare(results), tmp_path).decode()
+    text = make_report(load_study(path), results, compare_cases(results), tmp_path).decode()
     headings = [heads for heads, _ in assert_needs_nothing_else(text).tables]
     cases = next(heads for heads in headings if "case" in heads and "status" in heads)
     assert "load.torque (N·m)" in cases and "wave_generator.C" in cases and "time (s)" in cases

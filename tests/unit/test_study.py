@@ -28,7 +28,7 @@ from swgpar.studies.job import read_status, run_one
 from swgpar.studies.report import make_report
 from swgpar.studies.spec import load_study
 from swgpar.studies.study import queue
-from swgpar.studies.table import compare, study_rows
+from swgpar.studies.table import compare_cases, study_rows
 from swgpar.systems.drive import Drives
 
 MESHES = f'meshes = ["{RECIPE}"]'
@@ -290,13 +290,13 @@ def test_published_values(study_file: Write) -> None:
             "tolerance = { mean.fs_s1 = 5.5, step1.fs_s1 = 5.0, step2.fs_s1 = 5.0 }\n"
         )
     )
-    (failed, *_) = compare([(job, Outcome("failed", "no"))])
+    (failed, *_) = compare_cases([(job, Outcome("failed", "no"))])
     assert (failed.computed, failed.error_estimate, failed.verdict) == (None, None, "MISS")
     job = replace(job, case=replace(job.case, meshes=(job.mesh, Path("fine.toml")), compared=1))
     coarse = replace(job, finer=1)
     rows = {
         c.quantity: c
-        for c in compare([(coarse, outcome(180.0, 1000)), (job, outcome(210.0, 8000))])
+        for c in compare_cases([(coarse, outcome(180.0, 1000)), (job, outcome(210.0, 8000))])
     }
     inside, without, miss, never = (
         rows[n] for n in ("mean.fs_s1", "mean.fs_vm", "step1.fs_s1", "step2.fs_s1")
@@ -314,7 +314,7 @@ def test_published_values(study_file: Write) -> None:
     assert (never.computed, never.difference_percent, never.verdict) == (None, None, "MISS")
     assert (without.difference_percent, without.verdict) == (0.0, "")
     job, coarse = (replace(j, case=replace(j.case, compared=0)) for j in (job, coarse))
-    first, *_ = compare([(coarse, outcome(180.0, 1000)), (job, outcome(210.0, 8000))])
+    first, *_ = compare_cases([(coarse, outcome(180.0, 1000)), (job, outcome(210.0, 8000))])
     assert (first.mesh, first.computed) == (job.mesh.stem, 180.0)
     assert first.error_estimate == pytest.approx(60.0)
 

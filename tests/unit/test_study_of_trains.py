@@ -20,7 +20,7 @@ from swgpar.studies.cases import labels
 from swgpar.studies.figures import over_angle, over_key
 from swgpar.studies.report import make_report
 from swgpar.studies.spec import load_study
-from swgpar.studies.table import compare, published_rows, study_rows
+from swgpar.studies.table import compare_cases, published_rows, study_rows
 
 Write = Callable[..., Path]
 
@@ -93,7 +93,7 @@ def test_a_list_stands_for_its_numbers(study_file: Write) -> None:
         "overloaded_static": 0.0,
     }
     results = [(job, Outcome("finished", values=found, wall_s=1.0))]
-    first, second, count = published_rows(compare(results))
+    first, second, count = published_rows(compare_cases(results))
     assert list(first) == [
         "case",
         "quantity",
@@ -218,7 +218,7 @@ def test_figures_and_report(study_file: Write, tmp_path: Path) -> None:
         len(list(over_key(results, "load.input", in_step=True))) == 2
     )  # 18 quantities, 12 in a figure
     assert len(list(over_key(results, "load.input", in_step=False))) == 0
-    page = make_report(load_study(path), results, compare(results), tmp_path).decode()
+    page = make_report(load_study(path), results, compare_cases(results), tmp_path).decode()
     assert page.count("data:image/png;base64,") == 4 and "Against load.output" in page
     assert (
         "error of the force-based standard deviation of the mesh deflection y1 - y2 + z against "
