@@ -31,7 +31,7 @@ from peer_problems import (
 
 from plain_ring import PlainRingDesign, RingBody, RingCounts, RingModel
 from swgpar.constraints.boundary_conditions import DeadLoad
-from swgpar.design.sections import Contact, Solver
+from swgpar.design.sections import ContactSection, Solver
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.stress import body_fields
 from swgpar.geometry.cams import EllipticalCam
@@ -72,7 +72,7 @@ def main() -> None:
     copies = 2 if part == "half" else 1
     problem: Problem = PROBLEMS[name]
     counts = RingCounts(*map(int, numbers))
-    contact = Contact(wg_penalty_coef=PENALTY, wg_quadrature=7, penetration_tolerance=1e-4)
+    contact = ContactSection(wg_penalty_coef=PENALTY, wg_quadrature=7, penetration_tolerance=1e-4)
     design = PlainRingDesign(
         2.0 * OUTER, OUTER - INNER, WIDTH, False, STEEL, contact, Solver(rtol=RTOL)
     )

@@ -22,7 +22,7 @@ from swgpar.petsc import is_out_of_memory
 
 
 @dataclass(frozen=True)
-class Growth:
+class RunNeeds:
     """Needs of a default run on two ranks: base + growing * unknowns / 100,000.
 
     memory, memory_base : GB of all ranks;  seconds, seconds_base : wall time
@@ -34,11 +34,11 @@ class Growth:
     seconds_base: float
 
 
-GROWTH = {
-    "plane": Growth(0.18, 0.61, 12.0, 4.3),
-    "cup": Growth(0.34, 1.31, 8.4, 17.4),
+NEEDS = {
+    "plane": RunNeeds(0.18, 0.61, 12.0, 4.3),
+    "cup": RunNeeds(0.34, 1.31, 8.4, 17.4),
 }
-GROWTH["pancake"] = GROWTH["cup"]
+NEEDS["pancake"] = NEEDS["cup"]
 
 
 @dataclass(frozen=True)
@@ -65,12 +65,12 @@ def forecast(design: DriveDesign, recipe: MeshRecipe) -> Forecast:
         free = counts.nodes - counts.shared - fixed
         elements += counts.elements * counts.n_sectors
         unknowns += (2 if plane else 3) * free * (counts.n_sectors // design.copies)
-    growth, size = GROWTH[design.drive.model], unknowns / 1e5
+    needs, size = NEEDS[design.drive.model], unknowns / 1e5
     return Forecast(
         elements=elements,
         unknowns=unknowns,
-        memory=growth.memory_base + growth.memory * size,
-        seconds=growth.seconds_base + growth.seconds * size,
+        memory=needs.memory_base + needs.memory * size,
+        seconds=needs.seconds_base + needs.seconds * size,
     )
 
 

@@ -12,7 +12,7 @@ from swgpar.design.kinematics import Kinematics, make_kinematics
 from swgpar.design.program_sections import Ratcheting, Stiffness
 from swgpar.design.sections import (
     GEARS,
-    Contact,
+    ContactSection,
     DesignBody,
     Drive,
     DynamicSpline,
@@ -51,7 +51,7 @@ class DriveSections(Design):
     load: Load = Load()
     stiffness: Stiffness | None = None
     ratcheting: Ratcheting | None = None
-    contact: Contact = Contact()
+    contact: ContactSection = ContactSection()
     steps: Steps = Steps()
     solver: Solver = Solver()
     output: Output = Output()

@@ -177,7 +177,7 @@ class Load(Section):
     )
 
 
-class Contact(Section):
+class ContactSection(Section):
     """Section [contact]: friction and lines of contact of the flanks, penalty of cam and pins."""
 
     friction: float = quantity(

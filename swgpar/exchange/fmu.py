@@ -36,7 +36,7 @@ NAME = "strain_wave_spring"
 """Of the FMU, its C file and its binary."""
 
 
-class Variable(NamedTuple):
+class ScalarVariable(NamedTuple):
     """A variable of the FMU: its name, causality, unit and meaning; the number in VARIABLES is its
     reference."""
 
@@ -46,8 +46,8 @@ class Variable(NamedTuple):
     text: str
 
 
-def _variables(causality: str, *rows: tuple[str, str, str]) -> tuple[Variable, ...]:
-    return tuple(Variable(name, causality, unit, text) for name, unit, text in rows)
+def _variables(causality: str, *rows: tuple[str, str, str]) -> tuple[ScalarVariable, ...]:
+    return tuple(ScalarVariable(name, causality, unit, text) for name, unit, text in rows)
 
 
 VARIABLES = (

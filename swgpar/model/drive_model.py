@@ -25,7 +25,7 @@ from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
 from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import Contact, Solver
+from swgpar.design.sections import ContactSection, Solver
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.condensed_parts import relative_end_rotation
@@ -339,7 +339,7 @@ def build_flank_contacts(
     return contacts
 
 
-def newton_settings(solver: Solver, contact: Contact, module: float) -> NewtonSettings:
+def newton_settings(solver: Solver, contact: ContactSection, module: float) -> NewtonSettings:
     """Settings of the solver. module : mm"""
     return NewtonSettings(
         rtol=solver.rtol,

@@ -12,7 +12,7 @@ from swgpar.geometry.disc_surface import CamSurface
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.presentation.off_screen import off_screen_plotter, without_margin
-from swgpar.presentation.sections import COLOURS, Box, PlaneBody, Section, section_of_cut
+from swgpar.presentation.sections import COLOURS, Box, PlaneBody, SectionView, section_of_cut
 
 if TYPE_CHECKING:
     import pyvista
@@ -83,7 +83,7 @@ def draw_plane_deformed(bodies: Sequence[PlaneBody], factor: float, title: str) 
     axes[0].margins(0.0)
     for body in bodies:
         triangles = np.concatenate([body.quads[:, [0, 1, 2]], body.quads[:, [0, 2, 3]]])
-        Section(body.points, triangles, body.mises, np.zeros((0, 2, 2))).draw(axes[0], limit)
+        SectionView(body.points, triangles, body.mises, np.zeros((0, 2, 2))).draw(axes[0], limit)
     return _finish_deformed(figure, axes, title, factor, limit)
 
 
@@ -135,7 +135,7 @@ def draw_loaded_teeth(
     return figure
 
 
-def _across(body: Body, angle: float, z: float, box: Box) -> Section | None:
+def _across(body: Body, angle: float, z: float, box: Box) -> SectionView | None:
     """Section of a deformed body across the axis at z (mm), in a box whose upward axis is at an
     angle (rad) from +y."""
     if isinstance(body, PlaneBody):

@@ -23,7 +23,7 @@ Box = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
-class Section:
+class SectionView:
     """A plane section through a deformed body.
 
     points : (n, 2) mm, places in the figure;  triangles : (m, 3)
@@ -47,7 +47,7 @@ class Section:
         axes.add_collection(LineCollection(list(self.outline), colors="#222", linewidths=0.5))
 
 
-def section_of_cut(cut: pyvista.PolyData, at: np.ndarray, box: Box) -> Section | None:
+def section_of_cut(cut: pyvista.PolyData, at: np.ndarray, box: Box) -> SectionView | None:
     """The part in a box of a plane cut through a body; None without one. at : (n, 2) mm, places of
     its points in the figure"""
     if not cut.n_points:
@@ -62,7 +62,7 @@ def section_of_cut(cut: pyvista.PolyData, at: np.ndarray, box: Box) -> Section |
     edges = flat.extract_feature_edges(
         boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False
     )
-    return Section(
+    return SectionView(
         np.asarray(flat.points)[:, :2],
         flat.regular_faces,
         np.asarray(flat.point_data["vm"]),
@@ -97,7 +97,7 @@ class PlaneBody:
             np.tile(mises[lower], copies),
         )
 
-    def section(self, angle: float, box: Box) -> Section | None:
+    def section(self, angle: float, box: Box) -> SectionView | None:
         """The elements that reach into a box; None without one. angle : rad, of the figure's upward
         axis from +y, counter-clockwise"""
         points = rotated(self.points, -angle)
@@ -116,4 +116,4 @@ class PlaneBody:
         sides = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2))
         edges, count = np.unique(sides, axis=0, return_counts=True)
         triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
-        return Section(places, triangles, mises, places[edges[count == 1]])
+        return SectionView(places, triangles, mises, places[edges[count == 1]])

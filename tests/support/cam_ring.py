@@ -6,7 +6,7 @@ import numpy as np
 from mpi4py import MPI
 
 from plain_ring import PlainRingDesign, RingCounts, RingModel
-from swgpar.design.sections import Contact, Solver
+from swgpar.design.sections import ContactSection, Solver
 from swgpar.geometry.cams import EllipticalCam
 from swgpar.materials import Isotropic
 
@@ -90,7 +90,7 @@ def ring_on_cam(
         1.0,
         plane,
         STEEL,
-        Contact(wg_quadrature=quadrature),
+        ContactSection(wg_quadrature=quadrature),
         Solver(linear=linear),
     )
     counts = RingCounts(k * FIRST.sectors, k * FIRST.radial, FIRST.axial)

@@ -9,7 +9,7 @@ from mpi4py import MPI
 
 from swgpar.constraints.distributing_coupling import DistributingCoupling
 from swgpar.constraints.supports import Supports
-from swgpar.design.sections import Contact, Solver
+from swgpar.design.sections import ContactSection, Solver
 from swgpar.fem.body import Body
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
@@ -67,7 +67,7 @@ class GrownRing:
             module=1.0,
             phases=PhaseTimes(),
         )
-        solver = NewtonSolver(problem, newton_settings(Solver(rtol=1e-12), Contact(), 1.0))
+        solver = NewtonSolver(problem, newton_settings(Solver(rtol=1e-12), ContactSection(), 1.0))
         self.result = solver.solve(LoadState(Stage.ROTATE, 4))
         position, u = ring.positions()[ring.owned], problem.displacement()
         self.height = position[..., 2]

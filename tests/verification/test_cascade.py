@@ -31,7 +31,7 @@ from swgpar.gear_trains.cascade.population import (
 from swgpar.gear_trains.cascade.run import RANKED_TOLERANCES
 from swgpar.gear_trains.cascade.static_sharing import (
     MESH_COUNTS,
-    first_crossing,
+    first_share_crossing,
     path_gap_angles,
     static_sharing,
 )
@@ -84,7 +84,7 @@ def test_static_shares_with_equal_units(design: CascadeDesign, force: int) -> No
 
 def test_static_crossing(design: CascadeDesign) -> None:
     """Printed 152 kN; interpolating Table 7 in 1 / F gives 146.8 kN."""
-    computed = 1e-3 * first_crossing(static_sharing(design, "B"), 247e3)
+    computed = 1e-3 * first_share_crossing(static_sharing(design, "B"), 247e3)
     assert computed == pytest.approx(design.published["first_crossing_static"], rel=0.05)
     low, high = (np.array(design.published[f"static_B_{force}"]) for force in (120, 207))
     a, b = low[3] - low[4], high[3] - high[4]

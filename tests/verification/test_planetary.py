@@ -15,12 +15,12 @@ from swgpar import load_design
 from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.kernel import PlanetaryStepKernel
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
-from swgpar.gear_trains.planetary.linearisation import TrainMoments, linearise
+from swgpar.gear_trains.planetary.linearisation import TrainMoments, linearise_train
 from swgpar.gear_trains.planetary.model import (
     PlanetaryModel,
+    base_radii,
     carrier_index,
     planet_index,
-    radii,
     ring_index,
 )
 from swgpar.gear_trains.planetary.monitored import MONITORED_NAMES, monitored_rows
@@ -65,7 +65,7 @@ def test_kinematics(design: PlanetaryDesign) -> None:
     """A turn of the carrier and the sun's by 1 + 99/21 of it, in a ring at rest, is no way of any
     mesh or bearing."""
     train = PlanetaryModel(design)
-    sun, planets, centres = radii(design)
+    sun, planets, centres = base_radii(design)
     x = np.zeros(train.size)
     turn, ratio = 1e-3, 1.0 + design.ring.teeth / 21.0
     x[2], x[carrier_index(design) + 2] = sun * ratio * turn, centres * turn
@@ -92,7 +92,7 @@ def test_statics(design: PlanetaryDesign) -> None:
     start, flanks = steps.static_equilibrium(torque)
     q = train.shapes @ start.q[:, 0]
     f = force(steps.stiffness[0], train.deflection_rows(0.0) @ q, train.half_backlash)
-    sun, _, centres = radii(design)
+    sun, _, centres = base_radii(design)
     cosine = np.cos(np.radians(design.mesh.pressure_angle))
     assert (flanks == -1.0).all()
     np.testing.assert_allclose(
@@ -334,7 +334,7 @@ def moments(
     design: PlanetaryDesign, h: float, count: int, every: int
 ) -> tuple[TimeStepper, WindLoad, TrainMoments]:
     steps, wind = TimeStepper(PlanetaryModel(design), h, count), WindLoad.of(design, h)
-    return steps, wind, linearise(steps, wind, every)
+    return steps, wind, linearise_train(steps, wind, every)
 
 
 def test_covariance_by_whole_matrices(small: PlanetaryDesign) -> None:

@@ -30,7 +30,7 @@ TOOTHED = ["pinion"] * PINIONS + ["g1"] * PINIONS + ["g2"] * SIDES + ["g3"] * SI
 """Sections of the gears but the rack, in the order of the degrees of freedom."""
 
 
-def radii(design: CascadeDesign) -> np.ndarray:
+def pitch_radii(design: CascadeDesign) -> np.ndarray:
     """Pitch radii of all gears, (23,) m; the rack has none."""
     return np.array([np.nan, *(design.radius(name) for name in [*TOOTHED, "g4"])])
 
@@ -38,7 +38,7 @@ def radii(design: CascadeDesign) -> np.ndarray:
 def masses(design: CascadeDesign) -> np.ndarray:
     """Masses at the pitch lines, (23,) kg: inertia over the radius squared (eq. 15)."""
     inertia = np.array([getattr(design, name).inertia for name in [*TOOTHED, "flywheel"]])
-    return np.concatenate([[design.rack.mass], inertia / radii(design)[1:] ** 2])
+    return np.concatenate([[design.rack.mass], inertia / pitch_radii(design)[1:] ** 2])
 
 
 def rigid_displacements(design: CascadeDesign) -> np.ndarray:
@@ -57,7 +57,7 @@ def meshes(design: CascadeDesign) -> np.ndarray:
     out["driven"] = np.concatenate(
         [PINION + np.arange(PINIONS), odd, G2 + np.arange(PAIRS) // 2, np.full(SIDES, G4)]
     )
-    out["driven_radius"] = radii(design)[out["driven"]]
+    out["driven_radius"] = pitch_radii(design)[out["driven"]]
     sections = [getattr(design, kind) for kind, count in MESH_COUNTS.items() for _ in range(count)]
     scales = {"stiffness": 1.0, "variation": 1.0, "gap_A": 1e-3, "gap_B": 1e-3, "module": 1e-3}
     for key, scale in scales.items():
@@ -73,7 +73,7 @@ def shafts(design: CascadeDesign) -> np.ndarray:
     out["first"] = np.concatenate([PINION + np.arange(PINIONS), G2 + side, [G4]])
     out["second"] = np.concatenate([G1 + np.arange(PINIONS), G3 + side, [FLYWHEEL]])
     for end in ("first", "second"):
-        out[f"{end}_radius"] = radii(design)[out[end]]
+        out[f"{end}_radius"] = pitch_radii(design)[out[end]]
     out["stiffness"][PINIONS:] = [design.shafts.g2_g3] * SIDES + [design.shafts.g4_flywheel]
     out["stiffness"][:PINIONS] = units.ratios * units.stiffness
     out["initial_stiffness"], out["linear_above"] = out["stiffness"], units.end

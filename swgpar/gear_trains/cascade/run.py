@@ -18,7 +18,7 @@ from swgpar.gear_trains.cascade.static_sharing import (
     MESH_COUNTS,
     Direction,
     even_pinion_mask,
-    first_crossing,
+    first_share_crossing,
     static_sharing,
 )
 from swgpar.gear_trains.cascade.tolerance_stack_up import contributions, sample_stack_up
@@ -59,7 +59,7 @@ def compute(design: CascadeDesign, comm: MPI.Comm) -> Computed:
         )
     )
     limit = design.load.largest_share
-    at_rest = first_crossing(static_sharing(design, "B"), 1e3 * design.load.peak)
+    at_rest = first_share_crossing(static_sharing(design, "B"), 1e3 * design.load.peak)
     values: dict[str, float | list[float]] = {
         "spearman_rack_pinion": [stacks["rack_pinion"][1][name] for name in RANKED_TOLERANCES],
         "first_crossing_static": 1e-3 * at_rest,

@@ -101,7 +101,7 @@ def static_sharing(
     return StaticSharing(units, design.radius("pinion"), path_gap_angles(design, direction, errors))
 
 
-def first_crossing(sharing: StaticSharing, highest: float) -> float:
+def first_share_crossing(sharing: StaticSharing, highest: float) -> float:
     """Lowest rack force in N at which shares of two pinions cross; NaN for none below `highest`.
 
     sharing : of one gearbox, gaps (8,)

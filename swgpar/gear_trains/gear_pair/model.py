@@ -72,7 +72,7 @@ def static_equilibrium(design: GearPairDesign, case: int) -> np.ndarray:
     return np.array([y1, y2, 1e-6 * design.mesh.half_backlash + force / stiffness - y1 + y2])
 
 
-def natural_modes(design: GearPairDesign) -> tuple[np.ndarray, np.ndarray]:
+def pair_modes(design: GearPairDesign) -> tuple[np.ndarray, np.ndarray]:
     """Natural frequencies (3,) in rad/s of the pair in contact, and their damping ratios (3,)."""
     pair = gear_pair_system(design, 0)
     squares, shapes = eigh(pair.linear_stiffness(0.0, np.array([design.mesh.stiffness])), pair.mass)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import product
 
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
-from swgpar.gear_trains.gear_pair.model import mesh_force, natural_modes
+from swgpar.gear_trains.gear_pair.model import mesh_force, pair_modes
 from swgpar.gear_trains.published import SAMPLING_ERROR, STATISTICS
 from swgpar.results.quantity import Quantity
 from swgpar.vibration.linearisation import EQUIVALENT
@@ -39,7 +39,7 @@ def quantities(design: GearPairDesign) -> dict[str, Quantity]:
 
 def derived(design: GearPairDesign) -> dict[str, float]:
     """Values derived from the design file, for `swgpar check`."""
-    frequencies, ratios = natural_modes(design)
+    frequencies, ratios = pair_modes(design)
     values = {f"natural frequency {k} (rad/s)": w for k, w in enumerate(frequencies, start=1)}
     values |= {f"damping ratio {k}": ratio for k, ratio in enumerate(ratios, start=1)}
     for case in range(len(design.load.input)):

@@ -138,7 +138,7 @@ class _Linearisation:
         return self.forces[meshes], squares[meshes]
 
 
-def linearise(stepper: TimeStepper, wind: WindLoad, every: int) -> TrainMoments:
+def linearise_train(stepper: TimeStepper, wind: WindLoad, every: int) -> TrainMoments:
     """Moments from rest under the steady wind, after every `every` steps."""
     state, rows, forces, errors = _Linearisation(stepper, wind), [], [], []
     for step in range(1, stepper.count + 1):

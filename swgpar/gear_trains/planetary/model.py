@@ -54,7 +54,7 @@ def ring_index(design: PlanetaryDesign) -> int:
     return carrier_index(design) + 3
 
 
-def radii(design: PlanetaryDesign) -> tuple[float, float, float]:
+def base_radii(design: PlanetaryDesign) -> tuple[float, float, float]:
     """Base radii of sun and planets, and radius of the planets' centres, m."""
     cosine = np.cos(np.radians(design.mesh.pressure_angle))
     sun, planets = 0.5e-3 * design.sun.pitch_diameter, 0.5e-3 * design.planet.pitch_diameter
@@ -87,7 +87,7 @@ class PlanetaryModel:
         self.mesh_damping = design.damping.stiffness * mean
         self.half_backlash = 1e-6 * m.half_backlash
         torque_row = np.zeros(self.size)
-        torque_row[carrier_index(design) + 2] = 1.0 / radii(design)[2]
+        torque_row[carrier_index(design) + 2] = 1.0 / base_radii(design)[2]
         self.torque_vector = self.shapes.T @ torque_row
         self._fixed_rows = self._fixed_deflection_rows()
 
@@ -101,7 +101,7 @@ class PlanetaryModel:
         design, first = self.design, ring_index(self.design)
         n = first + self.ring.size
         mass, stiffness = np.zeros((n, n)), np.zeros((n, n))
-        sun_radius, planet_radius, centres = radii(design)
+        sun_radius, planet_radius, centres = base_radii(design)
         lumped: list[tuple[int, Sun | Carrier | Planet, float]] = [
             (SUN, design.sun, sun_radius),
             (carrier_index(design), design.carrier, centres),

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
-from swgpar.gear_trains.planetary.model import PlanetaryModel, radii
+from swgpar.gear_trains.planetary.model import PlanetaryModel, base_radii
 from swgpar.gear_trains.planetary.monitored import MONITORED
 from swgpar.gear_trains.planetary.time_stepping import TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
@@ -61,7 +61,7 @@ def derived(design: PlanetaryDesign) -> dict[str, float]:
     whole = np.diag(train.stiffness) + deflection_rows.T @ (k[:, None] * deflection_rows)
     frequencies = np.sqrt(np.linalg.eigvalsh(whole).clip(0.0)) / (2.0 * np.pi)
     lowest = float(frequencies[frequencies > 1.0][0])
-    sun, planets, centres = radii(design)
+    sun, planets, centres = base_radii(design)
     return {
         "coordinates": train.size,
         "base radius of the sun (mm)": 1e3 * sun,

@@ -8,7 +8,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
-from swgpar.gear_trains.planetary.linearisation import TrainMoments, linearise
+from swgpar.gear_trains.planetary.linearisation import TrainMoments, linearise_train
 from swgpar.gear_trains.planetary.model import PlanetaryModel
 from swgpar.gear_trains.planetary.monitored import MONITORED, MONITORED_NAMES
 from swgpar.gear_trains.planetary.monte_carlo import BLOCK_SIZE, simulate
@@ -47,7 +47,7 @@ class _Case:
         return stepper, WindLoad.of(self.design, h)
 
     def linearised(self) -> TrainMoments:
-        return linearise(*self.steps, self.every)
+        return linearise_train(*self.steps, self.every)
 
     def simulated(self, block: int, size: int) -> tuple[SampleMoments, int]:
         random = random_stream(self.design.gear_train.seed, block)

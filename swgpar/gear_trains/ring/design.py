@@ -19,7 +19,7 @@ class Train(GearTrain):
     model: Literal["ring"] = quantity(text="the gear train")
 
 
-class Body(Section):
+class RingBody(Section):
     E: float = quantity(unit="GPa", text="modulus of elasticity", gt=0.0)
     density: float = quantity(unit="kg/m³", text="density", gt=0.0)
     outer_radius: float = quantity(unit="mm", text="outer radius", gt=0.0)
@@ -29,14 +29,14 @@ class Body(Section):
     modes: int = quantity(6, text="bending modes that are listed", ge=1, le=100)
 
 
-class Supports(Section):
+class RingSupports(Section):
     count: int = quantity(text="equally spaced supports; the first at angle 0", ge=1)
     radial: float = quantity(unit="N/m", text="radial stiffness of each", ge=0.0)
     tangential: float = quantity(unit="N/m", text="tangential stiffness of each", ge=0.0)
     torsional: float = quantity(unit="N·m/rad", text="torsional stiffness of each", ge=0.0)
 
 
-class Teeth(Section):
+class RingTeeth(Section):
     count: int = quantity(text="equally spaced teeth", ge=1)
     mass: float = quantity(unit="kg", text="mass of each", ge=0.0)
     inertia: float = quantity(unit="kg·m²", text="moment of inertia of each", ge=0.0)
@@ -72,9 +72,9 @@ class RingDesign(TrainDesign):
     file."""
 
     gear_train: Train
-    ring: Body
-    supports: Supports | None = None
-    teeth: Teeth | None = None
+    ring: RingBody
+    supports: RingSupports | None = None
+    teeth: RingTeeth | None = None
     moving_load: MovingLoad | None = None
 
     def beam_section(self) -> BeamSection:
