@@ -84,7 +84,7 @@ class PlainRingDesign:
     material: Material
     # a support touches over tenths of a millimetre: many points per facet, and a penalty as of the
     # flanks
-    contact: sections.Contact = sections.Contact(
+    contact: sections.ContactSection = sections.ContactSection(
         wg_penalty_coef=50.0, wg_quadrature=7, penetration_tolerance=1e-4
     )
     solver: sections.Solver = sections.Solver()
