@@ -79,22 +79,22 @@ def measure(name: str, on_balls: bool, options: argparse.Namespace) -> dict[str,
     summary = run(
         folder, DRIVES / f"{name}.toml", overrides, options.ranks, options.mesh, plain=False
     )
-    found, share = summary["stiffness"], (summary["bearing"] or {}).get("torsional_share")
+    found, share = summary.stiffness, summary.bearing and summary.bearing.torsional_share
     row = {
         "drive": name,
         "wave_generator": KINDS[on_balls],
         "mesh": options.mesh,
-        "elements": summary["elements"],
+        "elements": summary.elements,
     }
     row |= {
-        "wall_s": round(summary["wall_s"], 1),
-        "share": share and share["balls"] + share["race"],
+        "wall_s": round(summary.wall_s, 1),
+        "share": share and share.bearing,
     }
-    row |= {key: found[key] for key in (*NAMES, "lost_motion")}
+    row |= {key: getattr(found, key) for key in (*NAMES, "lost_motion")}
     for key in ("K1", "K3"):
         row |= {
-            f"{key}_error": (found["mesh_error"] or {}).get(key),
-            f"{key}_spread": found["spread"][key],
+            f"{key}_error": (found.mesh_error or {}).get(key),
+            f"{key}_spread": getattr(found.spread, key),
         }
     return row
 
@@ -109,17 +109,17 @@ def lose(name: str, options: argparse.Namespace) -> dict[str, Any]:
         summary = run(
             folder, DRIVES / f"{name}.toml", overrides, options.ranks, options.mesh, plain=False
         )
-        found.append(summary["losses"])
-        seconds += summary["wall_s"]
+        found.append(summary.losses)
+        seconds += summary.wall_s
     free, loaded = found
     return {
         "drive": name,
         "mesh": options.mesh,
         "wall_s": round(seconds, 1),
-        "no_load": free["no_load_torque_Nmm"],
-        "no_load_bearing": free["parts_Nmm"]["bearing"],
-        "loaded": loaded["loss_torque_Nmm"],
-        "efficiency": loaded["efficiency"],
+        "no_load": free.no_load_torque_Nmm,
+        "no_load_bearing": free.parts_Nmm.bearing,
+        "loaded": loaded.loss_torque_Nmm,
+        "efficiency": loaded.efficiency,
     }
 
 

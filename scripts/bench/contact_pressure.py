@@ -77,7 +77,7 @@ def stiffness_rows(reduction: float, count: int, ranks: int) -> list[str]:
     """Torsional stiffness of the plane drive, 10³ N·m/rad, mean over positions."""
     folder = OUT / f"stiffness_{reduction:g}_{count}"
     overrides = ["stiffness.torque=2", "stiffness.mesh_error=false"]
-    run(
+    summary = run(
         folder,
         DESIGN,
         [f"ring_gear.c_P={reduction:g}", *overrides],
@@ -85,8 +85,7 @@ def stiffness_rows(reduction: float, count: int, ranks: int) -> list[str]:
         recipe(count),
         plain=False,
     )
-    summary = swgpar.open_result(folder).summary
-    found = [summary[f"stiffness.{name}"].value for name in STIFFNESS[2:]]
+    found = [getattr(summary.stiffness, name) for name in STIFFNESS[2:]]
     return [f"{reduction:g}", f"{count}", *(f"{value / 1e3:.1f}" for value in found)]
 
 

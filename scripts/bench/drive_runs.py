@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import csv
-import json
 from pathlib import Path
 from typing import Any
 
 import program
+
+import swgpar
 
 
 def run(
@@ -20,17 +21,17 @@ def run(
     history.csv, with `last.` before their names
     """
     if (folder / "summary.json").exists():
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        summary = swgpar.open_result(folder).summary
     else:  # a run that ended before is begun anew
         summary = program.run(folder, design, ["output.fields=false", *overrides], ranks, mesh)
     with (folder / "history.csv").open(encoding="utf-8") as file:
         last = list(csv.DictReader(file))[-1]
     return {
-        "unknowns": summary["dofs"],
-        "elements": summary["elements"],
-        "values": summary["rotation"]["means"]
+        "unknowns": summary.dofs,
+        "elements": summary.elements,
+        "values": dict(summary.rotation.means)
         | {f"last.{key}": float(value) for key, value in last.items()},
         "exact": {},
-        "seconds": summary["wall_s"],
-        "memory_MB": sum(summary["peak_memory_MB_per_rank"]),
+        "seconds": summary.wall_s,
+        "memory_MB": sum(summary.peak_memory_MB_per_rank),
     }

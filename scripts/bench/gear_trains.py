@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 import program
 
+from swgpar.gear_trains.result import TrainSummary
 from swgpar.results.table import format_csv, read_columns
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -84,20 +85,20 @@ monitored quantities and times, over the largest value of the quantity.
 """
 
 
-def run(driver: str, overrides: list[str], folder: Path, ranks: int) -> dict[str, Any]:
+def run(driver: str, overrides: list[str], folder: Path, ranks: int) -> TrainSummary[Any]:
     """Run a driver and return its summary."""
     return program.run(folder, ROOT / "drivers" / f"{driver}.toml", overrides, ranks)
 
 
-def seconds(summary: dict[str, Any], name: str, part: str) -> float:
+def seconds(summary: TrainSummary[Any], name: str, part: str) -> float:
     """Seconds of a part of a run."""
     if part == "run":
-        return summary["wall_s"]
-    tasks = summary["task_s"]
+        return summary.wall_s
+    tasks = summary.task_s
     if part == "linearisation":
-        return tasks["linearised"]["largest"]
-    cases = len(summary["design"]["load"]["input"]) if name == "gear_pair" else 1
-    return tasks["monte_carlo"]["total"] / summary["ranks"] / cases
+        return tasks["linearised"].largest
+    cases = len(summary.design.load.input) if name == "gear_pair" else 1
+    return tasks["monte_carlo"].total / summary.ranks / cases
 
 
 def timings(names: list[str], out: Path, ranks: int) -> list[dict[str, Any]]:
@@ -115,7 +116,7 @@ def timings(names: list[str], out: Path, ranks: int) -> list[dict[str, Any]]:
                         "run": name,
                         "part": part,
                         "what": what,
-                        "ranks": summary["ranks"],
+                        "ranks": summary.ranks,
                         "published_s": published,
                         "target_s": target,
                         "seconds": round(taken, 2),
@@ -123,7 +124,7 @@ def timings(names: list[str], out: Path, ranks: int) -> list[dict[str, Any]]:
                     }
                 )
         print(name, [row["seconds"] for row in rows if row["run"] == name], flush=True)
-        print(f"  quantities: {json.dumps(summary['quantities'])}", flush=True)
+        print(f"  quantities: {json.dumps(dict(summary.quantities))}", flush=True)
     return rows
 
 
@@ -143,7 +144,7 @@ def step_study(out: Path) -> list[dict[str, Any]]:
         ]
         summary = run("planetary", overrides, out / f"steps_{count}", 1)
         found.append(read_columns(out / f"steps_{count}" / "history.csv"))
-        taken.append(summary["task_s"]["linearised"]["largest"])
+        taken.append(summary.task_s["linearised"].largest)
         print(f"{count} steps: {taken[-1]:.2f} s", flush=True)
     rows = [
         {

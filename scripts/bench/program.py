@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import subprocess
@@ -10,6 +9,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+import swgpar
 
 
 def run(
@@ -20,7 +21,7 @@ def run(
     mesh: str | Path | None = None,
     *,
     plain: bool = True,
-) -> dict[str, Any]:
+) -> Any:
     """Run a design from its beginning, without figures, and return its summary. Ends the benchmark
     where it fails.
 
@@ -49,4 +50,4 @@ def run(
     done = subprocess.run(command, capture_output=True, text=True, env=dict(os.environ))
     if done.returncode:
         raise SystemExit(f"{folder.name}: {done.stderr or done.stdout}")
-    return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    return swgpar.open_result(folder).summary

@@ -44,11 +44,11 @@ def run(arguments: argparse.Namespace, name: str, keys: dict[str, str]) -> dict[
     summary = program.run(
         out, arguments.design, [*overrides, *arguments.set], arguments.ranks, arguments.mesh
     )
-    row: dict[str, float | str] = {"reduction": name, "seconds": round(summary["wall_s"], 1)}
-    row["increments"] = summary["increments"]
-    row["newton_mean"] = round(summary["rotation"]["newton_iterations_mean"], 2)
-    row["memory_MB"] = max(summary["peak_memory_MB_per_rank"])
-    return {**row, **{k: summary["rotation"]["means"][k] for k in MEANS}}
+    row: dict[str, float | str] = {"reduction": name, "seconds": round(summary.wall_s, 1)}
+    row["increments"] = summary.increments
+    row["newton_mean"] = round(summary.rotation.newton_iterations_mean, 2)
+    row["memory_MB"] = max(summary.peak_memory_MB_per_rank)
+    return {**row, **{k: summary.rotation.means[k] for k in MEANS}}
 
 
 HEAD = (

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import json
 import subprocess
 import sys
 import time
@@ -29,6 +28,7 @@ from typing import Any
 import numpy as np
 from page import markdown, put
 
+import swgpar
 from support.commands import environment, on_ranks, run_command
 from support.drive_groups import (
     MESH,
@@ -167,7 +167,7 @@ def measured(folder: Path, case: dict[str, Any]) -> Row:
     torque = max((abs(r["output_torque_Nmm"]) for r in loaded), default=0.0)
     if torque and case.get("load.torque") != 0.0:  # without a load both are round-off
         out["unbalanced"] = max(r["torque_balance_Nmm"] for r in loaded) / torque
-    out |= energy(found[0].parent / SUMMARY)
+    out |= energy(found[0].parent)
     turned = [r for r in rows if int(r["step"]) >= 4]
     if len(turned) == WHOLE_PERIOD:
         turned = [turned[0], turned[2], turned[-1]]
@@ -176,20 +176,21 @@ def measured(folder: Path, case: dict[str, Any]) -> Row:
     return out
 
 
-def energy(path: Path) -> Row:
+def energy(folder: Path) -> Row:
     """From the summary of a run through a whole period: relative difference of its mean input
     torque, and the flag."""
-    if not path.exists():
+    if not (folder / SUMMARY).exists():
         return {}
-    summary = json.loads(path.read_text(encoding="utf-8"))
-    out: Row = {"flagged": 1} if summary["rotation"]["jammed"] else {}
-    expected, angles = summary["rotation"]["wg_torque_expected_Nmm"], summary["design"]["steps"]
+    summary = swgpar.open_result(folder).summary
+    rotation, design = summary.rotation, summary.design
+    out: Row = {"flagged": 1} if rotation.jammed else {}
+    expected = rotation.wg_torque_expected_Nmm
     if (
         expected
-        and angles["rotation"] > 4.9 * angles["increment"]
-        and not summary["design"]["contact"]["friction"]
+        and design.steps.rotation > 4.9 * design.steps.increment
+        and not design.contact.friction
     ):
-        rows = history.read_history(path.with_name(history.NAME))[-4:]
+        rows = history.read_history(folder / history.NAME)[-4:]
         out["energy"] = abs(sum(row["wg_torque_Nmm"] for row in rows) / len(rows) / expected - 1.0)
     return out
 

@@ -24,6 +24,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from page import markdown, write_results
 
+import swgpar
 from support.commands import environment
 
 OUT, PICTURE = Path("results/bench/time_error"), Path("docs/verification/data/time_error.png")
@@ -97,13 +98,12 @@ def measure(run: Run, ranks: int, other: Path | None, true: float) -> dict[str, 
     seconds = time.perf_counter() - begin
     if done.returncode:
         raise SystemExit(f"{' '.join(command)}: {done.stderr or done.stdout}")
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     with (folder / "history.csv").open(encoding="utf-8") as file:
         loaded = next(row for row in csv.DictReader(file) if int(row["step"]) >= 3)
     s1, stated = float(loaded["fs_s1"]), None
     if way == WAYS[0]:
-        root = next(answer for answer in summary["answers"] if answer["name"] == "root.s1")
-        s1, stated = root["value"], root["error"]
+        root = swgpar.open_result(folder).summary.root_stress
+        s1, stated = root.s1, root.total_error
     row = {
         "model": model,
         "way": way,

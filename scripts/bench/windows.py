@@ -40,10 +40,10 @@ def measure(name: str, mesh: str, ranks: int) -> dict[str, Any]:
     design, _, overrides = DRIVES[name]
     every = ["steps.rotation=0", "output.fields=false", "output.root_stress=true", *overrides]
     summary = run(Path("results/bench/windows") / f"{name} {mesh}", design, every, ranks, mesh)
-    root = summary["root_stress"]
-    row = {"drive": name, "mesh": mesh, "elements": summary["elements"]}
-    row |= {key: root[key] for key in ("on_mesh", "s1", "error", "region", "radius", "z")}
-    return row | {"levels": root["by_part"][root["part"]]}
+    root = summary.root_stress
+    row = {"drive": name, "mesh": mesh, "elements": summary.elements}
+    row |= {key: getattr(root, key) for key in ("on_mesh", "s1", "error", "region", "radius", "z")}
+    return row | {"levels": list(root.levels)}
 
 
 def table(rows: list[dict[str, Any]]) -> str:
