@@ -34,7 +34,7 @@ ring gear, of which no coarser mesh has fewer, change it by up to 2 % in the pla
 the forces of some ten pairs move with the layers along the face width, by 1 to 9 %
 (docs/verification/effectivity.md)."""
 
-LEAST_WITH_EDGES = 0.03
+LEAST_FORCE_WITH_EDGES = 0.03
 """The same in the plane where a contact lies on an edge, whose compliance no mesh resolves."""
 
 ALONE = 0.99
@@ -59,7 +59,7 @@ def contact_errors(
     alone = any(lobes * pair.force_share > ALONE for pair in contacts)
     meshes = [*((one.recipe, one.contacts) for one in coarser), (recipe, contacts)]
 
-    least = LEAST_WITH_EDGES if on_edge and model == "plane" else LEAST_FORCE[model]
+    least = LEAST_FORCE_WITH_EDGES if on_edge and model == "plane" else LEAST_FORCE[model]
     least_pressure = LEAST_PRESSURE_WITH_EDGES if on_edge else LEAST_PRESSURE
 
     def of_pressure(measure: Measure) -> float | None:

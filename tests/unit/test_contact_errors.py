@@ -10,9 +10,9 @@ import pytest
 
 from swgpar.analysis.contact_errors import (
     LEAST_FORCE,
+    LEAST_FORCE_WITH_EDGES,
     LEAST_PRESSURE,
     LEAST_PRESSURE_WITH_EDGES,
-    LEAST_WITH_EDGES,
     contact_errors,
 )
 from swgpar.analysis.drive_mesh_error import (
@@ -131,7 +131,7 @@ def test_only_counts_that_differ_decide() -> None:
 
 def test_forces_are_less_certain_where_a_contact_lies_on_an_edge() -> None:
     fine = [pair(1, 600.0), pair(2, 900.0, edge=1)]
-    assert errors(fine, fine, fine).force == LEAST_WITH_EDGES > LEAST_FORCE["plane"]
+    assert errors(fine, fine, fine).force == LEAST_FORCE_WITH_EDGES > LEAST_FORCE["plane"]
 
 
 def test_pressures_of_cups_are_less_certain_beside_an_edge() -> None:
