@@ -40,13 +40,17 @@ def _pressure(contact: LargestContact | None, limit: float) -> Check:
     at = None if contact is None else contact.largest
     if contact is None or at is None:
         return Check(name, None, "no pressure is known", of_strength=True)
-    text = (
-        f"{at.pressure_MPa:.4g} MPa; good up to {limit:.4g} MPa, {FIRST_YIELD:g} times the yield "
-        "strength of [fatigue], where yield begins below the surface"
+    good_up_to = (
+        f"good up to {limit:.4g} MPa, {FIRST_YIELD:g} times the yield strength of [fatigue], where "
+        "yield begins below the surface"
     )
+    pressure = f"{at.pressure_MPa:.4g} MPa"
     if at.edge:
-        return Check(name, None, f"{text}; it lies on an edge and has no limit", of_strength=True)
-    error = contact.error_MPa or 0.0
-    good = None if abs(at.pressure_MPa - limit) <= error else at.pressure_MPa <= limit
+        text = f"{pressure}; {good_up_to}; it lies on an edge and has no limit"
+        return Check(name, None, text, of_strength=True)
+    error = contact.error_MPa
+    stated = "no estimate of the error" if error is None else f"± {error:.2g}"
+    near = error is not None and abs(at.pressure_MPa - limit) <= error
+    good = None if near else at.pressure_MPa <= limit
     within = "; within its error of the limit" if good is None else ""
-    return Check(name, good, text + within, of_strength=True)
+    return Check(name, good, f"{pressure} ({stated}); {good_up_to}{within}", of_strength=True)

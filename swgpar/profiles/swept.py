@@ -113,12 +113,15 @@ class _SegmentEnvelope:
 
     def _solved(self, radius: Floats, s: Floats, psi: Floats) -> tuple[Floats, Floats, Floats]:
         """Places s (n,) mm and psi (n,) rad of contacts at radii (n,) mm by Newton's method, and
-        its last changes (n,) of psi."""
+        its last changes (n,) of psi. The segment is continued by its own length at most."""
+        low, high = self.span
+        beyond = high - low
         for _ in range(20):
             contacts, outwards, square = self._contacts(s, psi)
             missing = (np.abs(contacts.point) - radius) / outwards
             turn = (contacts.bend * missing - contacts.value) / square
-            s, psi = s - missing - contacts.along * turn, psi + np.clip(turn, -NEAR, NEAR)
+            s = np.clip(s - missing - contacts.along * turn, low - beyond, high + beyond)
+            psi = psi + np.clip(turn, -NEAR, NEAR)
             # the next change would be its square
             if not np.nanmax(np.abs(turn), initial=0.0) > 1e-8:
                 break
