@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field
 
@@ -33,6 +33,14 @@ class ProfileKeys(Section):
         return hash(self.model_dump_json())
 
 
+def _root_arc() -> Any:
+    return quantity(unit="mm", text="radius of the root arc", gt=0.0)
+
+
+def _rounded_tip() -> Any:
+    return quantity(0.0, unit="mm", text="radius of the rounded tip edge; 0: sharp", ge=0.0)
+
+
 class QuadrupleArc(ProfileKeys):
     """Section 3.3.3. The typical lengths are those of the reference drive."""
 
@@ -49,7 +57,7 @@ class QuadrupleArc(ProfileKeys):
     r_addendum: float = quantity(unit="mm", text="radius of the addendum arc", gt=0.0)
     straight_l: float = quantity(0.0, unit="mm", text="length of the straight segment", ge=0.0)
     r_dedendum: float = quantity(unit="mm", text="radius of the dedendum arc", gt=0.0)
-    r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
+    r_root: float = _root_arc()
 
 
 class DoubleArc(ProfileKeys):
@@ -78,7 +86,7 @@ class Trapezoid(ProfileKeys):
         lt=60.0,
     )
     r_tip: float = quantity(0.0, unit="mm", text="radius of the tip arc; 0: a sharp edge", ge=0.0)
-    r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
+    r_root: float = _root_arc()
 
 
 class CommonTangent(ProfileKeys):
@@ -102,7 +110,7 @@ class CommonTangent(ProfileKeys):
     e_dedendum: float = quantity(
         unit="mm", text="centre of the concave arc, above the pitch circle, towards the tip"
     )
-    r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
+    r_root: float = _root_arc()
 
 
 class SShaped(ProfileKeys):
@@ -118,8 +126,8 @@ class SShaped(ProfileKeys):
         text="radial deflection of the path; without it that of the wave generator",
         gt=0.0,
     )
-    r_tip: float = quantity(0.0, unit="mm", text="radius of the rounded tip edge; 0: sharp", ge=0.0)
-    r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
+    r_tip: float = _rounded_tip()
+    r_root: float = _root_arc()
 
 
 class Cycloid(ProfileKeys):
@@ -135,8 +143,8 @@ class Cycloid(ProfileKeys):
     r_hypocycloid: float = quantity(
         unit="mm", text="radius of the circle that rolls on its inside", gt=0.0
     )
-    r_tip: float = quantity(0.0, unit="mm", text="radius of the rounded tip edge; 0: sharp", ge=0.0)
-    r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
+    r_tip: float = _rounded_tip()
+    r_root: float = _root_arc()
 
 
 class Points(ProfileKeys):
@@ -208,8 +216,8 @@ class Conjugate(ProfileKeys):
     thickness_key = "backlash"
 
     type: Literal["conjugate"] = quantity("conjugate", text="kind of profile")
-    r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
-    r_tip: float = quantity(0.0, unit="mm", text="radius of the rounded tip edge; 0: sharp", ge=0.0)
+    r_root: float = _root_arc()
+    r_tip: float = _rounded_tip()
     backlash: float = quantity(
         0.0, unit="mm", text="backlash along the pitch circle, taken from these teeth", ge=0.0
     )
@@ -218,29 +226,15 @@ class Conjugate(ProfileKeys):
     )
 
 
+_EitherGear = QuadrupleArc | DoubleArc | CommonTangent | Trapezoid | SShaped | Cycloid | Points
+
 ExternalProfile = Annotated[
-    QuadrupleArc
-    | DoubleArc
-    | CommonTangent
-    | Trapezoid
-    | SShaped
-    | Cycloid
-    | Points
-    | RackInvolute
-    | Conjugate,
+    _EitherGear | RackInvolute | Conjugate,
     Field(discriminator="type"),
     BeforeValidator(default_type("quadruple_arc")),
 ]
 InternalProfile = Annotated[
-    QuadrupleArc
-    | DoubleArc
-    | CommonTangent
-    | Trapezoid
-    | SShaped
-    | Cycloid
-    | Points
-    | ShaperInvolute
-    | Conjugate,
+    _EitherGear | ShaperInvolute | Conjugate,
     Field(discriminator="type"),
     BeforeValidator(default_type("quadruple_arc")),
 ]
