@@ -7,7 +7,7 @@ units are known before a run, so that studies and optimisations can check what t
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass, replace
 from types import UnionType
 from typing import Any, ClassVar, TypeVar, dataclass_transform, get_args, get_type_hints
@@ -158,6 +158,11 @@ class AnswerGroup:
         missing = cls.SECTION and getattr(design, cls.SECTION) is None
         missing = missing or (design.has_program and not cls.IN_PROGRAMS)
         return () if missing else declared_answers(cls)
+
+    @classmethod
+    def kinds_with(cls, word: str, parts: Iterable[str]) -> tuple[AnswerKind, ...]:
+        """The declared answers with each of these parts of their names in place of a word."""
+        return tuple(kind.of(word, part) for part in parts for kind in declared_answers(cls))
 
     def answers(self) -> Iterator[Answer]:
         """The answers that have a value, and those of `reasons`."""

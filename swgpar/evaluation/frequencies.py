@@ -17,7 +17,6 @@ from swgpar.answers.answer import (
     Answer,
     AnswerGroup,
     AnswerKind,
-    declared_answers,
     evaluation,
     part_answers,
 )
@@ -80,16 +79,14 @@ class NaturalFrequencies(AnswerGroup):
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
-        return cls.kinds_of(0 if design.frequencies is None else design.frequencies.number)
+        return cls._numbered(0 if design.frequencies is None else design.frequencies.number)
 
     @classmethod
-    def kinds_of(cls, number: int) -> tuple[AnswerKind, ...]:
-        """The kinds of so many frequencies."""
-        (kind,) = declared_answers(cls)
-        return tuple(kind.of("NUMBER", str(k)) for k in range(1, number + 1))
+    def _numbered(cls, number: int) -> tuple[AnswerKind, ...]:
+        return cls.kinds_with("NUMBER", map(str, range(1, number + 1)))
 
     def answers(self) -> Iterator[Answer]:
-        for kind, mode in zip(self.kinds_of(len(self.modes)), self.modes, strict=True):
+        for kind, mode in zip(self._numbered(len(self.modes)), self.modes, strict=True):
             yield Answer(
                 kind.name,
                 mode.frequency,

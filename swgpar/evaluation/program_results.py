@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,6 @@ from swgpar.answers.answer import (
     Answer,
     AnswerGroup,
     AnswerKind,
-    declared_answers,
     evaluation,
     part_answers,
 )
@@ -95,16 +94,11 @@ class ProgramStages(AnswerGroup):
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
-        return cls.kinds_of(stage.name for stage in design.load.program)
-
-    @classmethod
-    def kinds_of(cls, stages: Iterable[str]) -> tuple[AnswerKind, ...]:
-        """The kinds for stages with these names."""
-        return tuple(kind.of("STAGE", one) for one in stages for kind in declared_answers(cls))
+        return cls.kinds_with("STAGE", (stage.name for stage in design.load.program))
 
     def answers(self) -> Iterator[Answer]:
         for stage, values in self.stages.items():
-            for kind in self.kinds_of((stage,)):
+            for kind in self.kinds_with("STAGE", (stage,)):
                 value = float(values[kind.name.rpartition(".")[2]])
                 no_error = "" if kind.exact else NO_ESTIMATE
                 yield Answer(kind.name, value, kind.unit, kind.text, no_error=no_error)
