@@ -7,9 +7,8 @@ spaces alone. Missing in all, with the half space H and the elements' Green's fu
 
     D Pi + H (1 - Pi) = D + (G + R) (1 - Pi),
 
-where R is H without the logarithm of the section:
-
-    R(s; z, z') = (1 / |r| + 2 ln|s| delta(z - z')) / (pi E'),   r² = s² + (z - z')².
+where R is H without the logarithm of the section: R / (pi E') of
+`swgpar.contact.layer_half_space`.
 
 A load that is linear over the layers has no rest, and lines then do not couple. The load of a line
 is uniform over its share of the face width; R is the mean over the shares. Forces have images at
@@ -20,10 +19,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from swgpar.contact.layer_half_space import among_lines
 from swgpar.contact.missing_compliance import MissingCompliance
-
-SMALLEST = 1e-9
-"""Distance (mm) along the profile that stands for none: R is continuous there."""
 
 
 class LineCoupling:
@@ -49,7 +46,7 @@ class LineCoupling:
         rest = np.eye(len(z)) - seen @ np.linalg.pinv(seen)
         compliance = missing.green * np.eye(len(z))[..., None, None]
         for place in (self.s, 2.0 * self.s[0] - self.s, 2.0 * self.s[-1] - self.s):
-            half_space = _half_space(place[:, None] - self.s, z, length)
+            half_space = among_lines(place[:, None] - self.s, z, length)
             compliance += 0.5 * missing.logarithm * half_space
         self.table = np.einsum("lp,pqab,qm->lmab", rest, compliance, rest, optimize=True)
 
@@ -75,22 +72,3 @@ class LineCoupling:
         for k, of in enumerate(cells):
             for j, by in enumerate(cells):
                 out[of, by] += shape[of] @ self.table[line[k], line[j]] @ shape[by].T
-
-
-def _half_space(s: np.ndarray, z: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """pi E' R (n_line, n_line, ...) at distances s (...) mm along the profile: means over the
-    shares of two lines, times the roots of their lengths."""
-    apart = np.maximum(np.abs(s), SMALLEST)
-    low = z[0] - 0.5 * length[0] + np.append(0.0, np.cumsum(length)[:-1])
-    high = low + length
-
-    def between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        """Second integral of 1 / r over the distance of two ends."""
-        t = (a[:, None] - b).reshape(len(a), len(b), *(1 for _ in apart.shape))
-        return t * np.arcsinh(t / apart) - np.hypot(t, apart)
-
-    means = between(high, low) - between(high, high) - between(low, low) + between(low, high)
-    roots = np.sqrt(length[:, None] * length)
-    own = np.eye(len(z))
-    expand = (..., *(None for _ in apart.shape))
-    return means / roots[expand] + 2.0 * np.log(apart) * own[expand]

@@ -8,21 +8,18 @@ Green's function G of the contact law says (`swgpar.contact.missing_compliance`)
 layer is long they yield as a half space does:
 
     u_a(z) = sum_bk (G_ab N_k(z) + R_k(s_a - s_b, z) / (pi E')) w_bk,
-    R_k(s, z) = ∫ N_k(z') / r dz' + 2 ln|s| N_k(z),    r² = s² + (z - z')².
 
-R is the half space under a line load without the logarithm that is in G. The forces have images at
-the ends of the profile, as in G.
+where R_k is the half space under the hat function N_k without the logarithm that is in G
+(`swgpar.contact.layer_half_space`). The forces have images at the ends of the profile, as in G.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from swgpar.contact.layer_half_space import under_hats
 from swgpar.contact.missing_compliance import MissingCompliance
 from swgpar.flank_pressure.flank_loads import overlaps
-
-SMALLEST = 1e-9
-"""Distance (mm) that stands for none: R is continuous there."""
 
 
 def indentation(missing: MissingCompliance, z: np.ndarray, force: np.ndarray) -> np.ndarray:
@@ -36,20 +33,6 @@ def indentation(missing: MissingCompliance, z: np.ndarray, force: np.ndarray) ->
     s, (first, last) = missing.s, missing.s[[0, -1]]
     out = missing.green @ load
     for place in (s, 2.0 * first - s, 2.0 * last - s):
-        table = _half_space(place[:, None] - s, z)
+        table = under_hats(place[:, None] - s, z)
         out += 0.5 * missing.logarithm * np.einsum("ablk,bk->al", table, load)
-    return out
-
-
-def _half_space(s: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """R (..., n_z, n_z) at distances s (...) mm along the profile and the stations z, by hat
-    function."""
-    apart = np.maximum(np.abs(s), SMALLEST)[..., None, None]
-    low, high = z[:-1] - z[:, None], z[1:] - z[:, None]
-    # integrals of 1 / r and t / r over a layer, t = z' - z
-    even = np.arcsinh(high / apart) - np.arcsinh(low / apart)
-    odd = np.hypot(high, apart) - np.hypot(low, apart)
-    out = 2.0 * np.log(apart) * np.eye(len(z))
-    out[..., :-1] += (high * even - odd) / np.diff(z)
-    out[..., 1:] += (odd - low * even) / np.diff(z)
     return out

@@ -12,7 +12,8 @@ from scipy.integrate import quad
 from support.crowned_block import pressed_crown
 from swgpar.contact.cells import Stations
 from swgpar.contact.contact_lines import FlankCompliance
-from swgpar.contact.line_coupling import LineCoupling, _half_space
+from swgpar.contact.layer_half_space import among_lines
+from swgpar.contact.line_coupling import LineCoupling
 from swgpar.flank_pressure.indentation import indentation
 
 NODES = np.array([-3.0, -2.0, -0.8, 0.4, 1.5, 3.0])
@@ -43,7 +44,7 @@ def test_loads_that_are_linear_over_the_layers_do_not_couple() -> None:
 def test_mean_of_the_half_space_over_shares_of_lines() -> None:
     """Against quadrature, at a distance along the profile."""
     (z, length), s = lines(), 0.3
-    found = _half_space(np.array(s), z, length)
+    found = among_lines(np.array(s), z, length)
     ends = z[0] - 0.5 * length[0] + np.append(0.0, np.cumsum(length))
 
     def line(at: float, k: int) -> float:
