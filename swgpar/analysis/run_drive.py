@@ -11,12 +11,13 @@ import numpy as np
 
 from swgpar.analysis.accuracy import require_refinable, with_accuracy
 from swgpar.analysis.coarse_period import coarse_period
-from swgpar.analysis.coarse_start import start_at_load
+from swgpar.analysis.coarse_start import solve_to_load, start_at_load
 from swgpar.analysis.coarse_wall import coarse_wall
 from swgpar.analysis.contact_errors import contact_errors
 from swgpar.analysis.drive_mesh_error import (
     CoarserMesh,
     coarser_mesh,
+    coarser_recipes,
     drive_error,
     least_error,
     region_errors,
@@ -232,6 +233,20 @@ class DriveRun:
             self.recorder.record.coarse_period = period
         self.coarser.append(found)
 
+    def _load_coarser(self) -> None:
+        """Load the drive on the coarser meshes in the steps of the run, where it did not start on
+        them."""
+        design, comm = self.model.design, self.model.comm
+        for recipe in coarser_recipes(self.recipe):
+            try:
+                model = solve_to_load(design, recipe, comm)
+            except (ConvergenceError, InputError) as error:
+                logger.info("the error by the mesh of the drive is not known: %s", error)
+                self.coarser.append(None)
+                return
+            self._keep_coarse(model, recipe)
+            model.destroy()
+
     def go_through(self, states: Sequence[LoadState]) -> None:
         """Compute and record the increments that are left."""
         stepper, recorder, terminal = self.stepper, self.recorder, self.options.terminal
@@ -293,6 +308,9 @@ class DriveRun:
         known, sequence = self.recorder.record.root_stress, self.stepper.sequence
         # of two periods the first one settles
         further = sequence.samples and sequence.periods == 1 and state.stage == Stage.ROTATE
+        if loaded and known is None and not self.coarser:
+            with self.model.phases("coarser mesh"):
+                self._load_coarser()
         try:
             with self.model.phases("windows"):
                 if loaded:

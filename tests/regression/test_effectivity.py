@@ -73,6 +73,19 @@ def test_errors_under_load_cover_the_truth(monkeypatch: pytest.MonkeyPatch) -> N
     judge(ratios)
 
 
+def test_a_run_in_steps_states_the_same_errors() -> None:
+    """Friction changes the loaded state a little on every mesh, and the errors with it."""
+    names = "root.s1", "largest.fs_vm_apart", "sharing.largest_force_share"
+    drive = small_drives()[1]
+    design = swgpar.load_design(drive.table).with_values({"steps.rotation": 0.0})
+    at_once = swgpar.run(design, progress=False).summary
+    in_steps = swgpar.run(design, plain=True, progress=False).summary
+    rough = swgpar.run(design.with_values({"contact.friction": 0.05}), progress=False).summary
+    for name in names:
+        assert in_steps[name].error == pytest.approx(at_once[name].error, rel=0.01), name
+        assert rough[name].error == pytest.approx(at_once[name].error, rel=0.5), name
+
+
 def test_errors_of_the_stiffness_cover_the_truth() -> None:
     names = "stiffness.K1", "stiffness.K2", "stiffness.K3", "stiffness.lost_motion"
     ratios: dict[str, list[float]] = {name: [] for name in names}
