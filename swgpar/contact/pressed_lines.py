@@ -56,6 +56,11 @@ class PressedLine:
         )
 
     @property
+    def outermost_cells(self) -> tuple[float, float]:
+        """Lengths (mm) of the outermost cells: within them the end of the contact is not known."""
+        return float(self.high[0] - self.low[0]), float(self.high[-1] - self.low[-1])
+
+    @property
     def ends_on_tips(self) -> tuple[bool, bool]:
         """Whether the contact ends on the tip of the flexible spline, of the ring gear: the
         pressure rises to a sharp edge, where it is largest, and falls to 0 where smooth flanks

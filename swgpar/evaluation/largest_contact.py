@@ -24,6 +24,8 @@ from swgpar.results.history import Row
 
 EDGE = "no property of the drive, and the stress at the teeth may be off by more than its error"
 
+OTHER_EDGE = "its pressure grows with every finer mesh, and may become the largest"
+
 TOLD = 0.02
 """Share of the largest force in an increment from which a pair without a pressure is told of."""
 
@@ -68,7 +70,8 @@ class LargestContact(AnswerGroup):
     not lie on an edge; None without one
     edge_force_N : 0 where no pair lies on an edge
     unknown_force_N : largest force of a pair whose pressure could not be computed; 0 without one
-    error_MPa, error_off_edges_MPa : of both pressures; None where they are not known
+    error_MPa, error_off_edges_MPa : of both pressures; None where they are not known, as that of
+    the first one is where any pair lies on an edge
     """
 
     largest: LoadedPair | None = part_answers(
@@ -125,7 +128,7 @@ class LargestContact(AnswerGroup):
         for one in super().answers():
             pair = pairs.get(one.name)
             if pair is not None:
-                one = replace(one, place=pair.place, remark=self._remark(pair))
+                one = replace(one, place=pair.place, remark=self._remark(one.name, pair))
             if largest and largest.edge and one.name in ("contact.pressure", "contact.shear"):
                 one = with_no_limit(one)
             yield one
@@ -148,9 +151,15 @@ class LargestContact(AnswerGroup):
             else ""
         )
 
-    def _remark(self, pair: LoadedPair) -> str:
-        edge = f"{pair.force_N:.4g} N on the {pair.edge_place or 'edge'}: {EDGE}"
-        return "; ".join(filter(None, (edge if pair.edge else "", self._unknown)))
+    def _remark(self, name: str, pair: LoadedPair) -> str:
+        edge = ""
+        if pair.edge:
+            edge = f"{pair.force_N:.4g} N on the {pair.edge_place or 'edge'}: {EDGE}"
+        elif self.on_edge and name == "contact.pressure":
+            edge = (
+                f"another pair lies on an edge, with up to {self.edge_force_N:.4g} N: {OTHER_EDGE}"
+            )
+        return "; ".join(filter(None, (edge, self._unknown)))
 
 
 def largest_contact(
@@ -176,7 +185,7 @@ def largest_contact(
         edge_force_N=max(on_edges, default=0.0),
         on_edge=bool(on_edges),
         unknown_force_N=max(unknown, default=0.0),
-        error_MPa=_error(known, errors.pressure),
+        error_MPa=None if on_edges else _error(known, errors.pressure),
         error_off_edges_MPa=_error(
             [pair for pair in known if not pair["edge"]], errors.pressure_off_edges
         ),

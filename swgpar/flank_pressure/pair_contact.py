@@ -49,9 +49,6 @@ WIDTH = 0.05
 STRIPS = 48
 """Strips of a line on which its pressure is reported in the plane."""
 
-END = 1e-6
-"""Distance over the module from the end of a profile within which a contact lies on an edge."""
-
 
 @dataclass(frozen=True)
 class PairContact:
@@ -257,15 +254,16 @@ def _with_pressure(
             raise
     if patch is not None:
         at_end, reaches, shear = patch.at_end, patch.reaches, patch.largest_shear
-        stations = patch_stations(patch)
+        stations, ring_cell = patch_stations(patch), patch.cell_width
         width = len(patch.z) * patch.cell_length
     elif lines:
         strips = STRIPS if plane else CELLS_ACROSS
         stations = tuple(line_station(line, strips) for line in lines)
         line, station = max(zip(lines, stations), key=lambda one: one[0].largest)
-        near = END * model.design.drive.module
         on_tip, on_ring_tip = line.ends_on_tips
-        at_end = bool(on_tip or line.low[0] < near or line.high[-1] > tooth.profile.length - near)
+        (first, last), (first_cell, ring_cell) = line.ends, line.outermost_cells
+        own_tip, own_root = first < first_cell, last > tooth.profile.length - ring_cell
+        at_end = on_tip or own_tip or own_root
         low, high = facing.ends
         reaches = not plane and any(
             one.z - one.length < low or one.z + one.length > high for one in lines
@@ -277,7 +275,7 @@ def _with_pressure(
     top = max(stations, key=lambda station: station.pressure_MPa)
     ends = top.s_mm + top.half_width_mm * np.array([[-1.0], [1.0]])
     foot = gap.foot(ends, np.array([top.z_mm]))
-    on_ring_tip = bool(on_ring_tip or foot.min() < END * model.design.drive.module)
+    on_ring_tip = bool(on_ring_tip or foot.min() < ring_cell)
     places = {
         "end of the face width": reaches,
         f"tip of the {tooth.body.replace('_', ' ')}": at_end,

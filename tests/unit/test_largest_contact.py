@@ -12,7 +12,8 @@ import swgpar
 from support.paths import DRIVERS
 from swgpar.answers.answer import NO_ESTIMATE, NO_LIMIT, Answer
 from swgpar.drive_results.report_checks import checks
-from swgpar.evaluation.largest_contact import LargestContact, largest_contact
+from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares
+from swgpar.evaluation.largest_contact import largest_contact
 from swgpar.flank_pressure.pair_contact import PairContact
 from swgpar.results.history import Row
 from swgpar.systems.drive import DRIVE
@@ -53,14 +54,10 @@ def row(pressure: float, force: float, edge_place: str = "", increment: int = 1)
     return {"increment": increment, "step": 3, "wg_angle_deg": 0.0, **contact.row()}
 
 
-def answers(*rows: Row) -> dict[str, Answer]:
-    return {one.name: one for one in contact_of(*rows).answers()}
-
-
-def contact_of(*rows: Row) -> LargestContact:
-    contact = largest_contact(rows)
+def answers(*rows: Row, errors: ContactErrorShares = UNKNOWN) -> dict[str, Answer]:
+    contact = largest_contact(rows, errors)
     assert contact is not None
-    return contact
+    return {one.name: one for one in contact.answers()}
 
 
 def test_a_pair_on_an_edge_is_the_largest_without_a_limit() -> None:
@@ -79,6 +76,21 @@ def test_off_edges_the_two_are_one() -> None:
     assert found["contact.pressure"].value == found["contact.pressure_off_edges"].value == 600.0
     assert found["contact.pressure"].no_error == NO_ESTIMATE
     assert found["contact.edge_force"].value == 0.0
+
+
+def test_another_pair_on_an_edge_leaves_no_estimate() -> None:
+    """Its pressure grows with every finer mesh: that of all pairs has none. That off edges has."""
+    errors = ContactErrorShares(pressure=0.02, pressure_off_edges=0.02)
+    found = answers(row(731.0, 515.0), row(726.0, 458.0, "tip of the ring gear"), errors=errors)
+    assert found["contact.pressure"].value == found["contact.pressure_off_edges"].value == 731.0
+    assert found["contact.pressure"].no_error == NO_ESTIMATE
+    assert found["contact.pressure"].remark.startswith(
+        "another pair lies on an edge, with up to 458"
+    )
+    off_edges = found["contact.pressure_off_edges"]
+    assert off_edges.error == pytest.approx(0.02 * 731.0) and not off_edges.remark
+    without = answers(row(731.0, 515.0), row(726.0, 458.0), errors=errors)
+    assert without["contact.pressure"].error == off_edges.error
 
 
 def test_what_is_not_known_is_told_with_its_force() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from swgpar.contact.pressed_lines import PressedLine
 from swgpar.contact.search import FlankPair
@@ -44,3 +45,11 @@ def test_two_contacts_on_a_line_show_no_edge() -> None:
 def test_few_cells_show_no_edge() -> None:
     assert line(np.array([2.0])).ends_on_tips == (False, False)
     assert line(np.array([2.0, 1.0])).ends_on_tips == (False, False)
+
+
+def test_the_end_is_not_known_within_the_outermost_cell() -> None:
+    ends = np.array([0.2, 0.21, 0.23, 0.26])
+    uneven = replace(line(np.array([1.0, 2.0, 1.0])), low=ends[:-1], high=ends[1:])
+    assert uneven.outermost_cells == pytest.approx((0.01, 0.03))
+    low, high = uneven.ends
+    assert ends[0] < low < ends[1] and ends[-2] < high < ends[-1]
