@@ -111,14 +111,23 @@ class BodyElements:
         self.preceding[: self.owned.start] = True
         if layout.closed and end - first == layout.count:
             self.preceding[:] = False
-        angle = layout.sector_angle(layout.first_tooth + sectors)
-        self.sector_rotation = np.column_stack([np.cos(angle), np.sin(angle)]).reshape(-1, 2)
+        self.sector_rotation = self._rotation()
         counted = self.preceding.copy()
         counted[self.owned] = True
         owned = partition.owns(self.number) & counted[:, None]
         self._touching = [owned[:, nodes].any(axis=2) for _, nodes in self._kinds]
         self.active, self.whole_teeth = np.ones((2, len(sectors)), dtype=bool)
         self.assembled = self._assembled()
+
+    def rotate(self, layout: BodyLayout) -> None:
+        """Take a layout that differs in its first tooth alone."""
+        self.layout = layout
+        self.sector_rotation = self._rotation()
+        self.assembled = self._assembled()
+
+    def _rotation(self) -> np.ndarray:
+        angle = self.layout.sector_angle(self.layout.first_tooth + self.sectors)
+        return np.column_stack([np.cos(angle), np.sin(angle)]).reshape(-1, 2)
 
     def activate(self, active: np.ndarray) -> None:
         """Let the elements of the sectors (n_sectors,) bool count, and no others."""

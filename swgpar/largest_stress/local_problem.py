@@ -21,9 +21,6 @@ from swgpar.constraints.distributing_coupling import node_weights
 from swgpar.constraints.supports import Supports
 from swgpar.errors import ConvergenceError
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR, STRESS_PREFIXES
-from swgpar.fem.body_layout import BodyLayout
-from swgpar.fem.elements import Elements
-from swgpar.fem.partition import Partition
 from swgpar.fem.stress import principal
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.flank_pressure.flank_loads import flank_forces, line_loads, nodal_forces
@@ -34,13 +31,13 @@ from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.drive_geometry import DriveGeometry
-from swgpar.meshing.interpolation import interpolation
 from swgpar.meshing.sector import SectorMesh
 from swgpar.meshing.tooth_sector import build_sector
 from swgpar.meshing.trim import trimmed
 from swgpar.model.drive_model import DriveModel
 from swgpar.model.regions import END, region_of, warning_of
 from swgpar.model.torques import torques
+from swgpar.model.window_mesh import WindowMesh
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
 
@@ -106,7 +103,7 @@ class _Found:
     node: int
 
 
-def window_mesh(
+def window_sector(
     geometry: DriveGeometry, recipe: MeshRecipe, gear: str = FLEXIBLE_SPLINE
 ) -> SectorMesh:
     """The sector of a window of a gear. Of a flexible spline it is the toothed part and the
@@ -118,14 +115,14 @@ def window_mesh(
     return trimmed(mesh, mesh.coords[mesh.hexes, 2].min(axis=1) < end)
 
 
-def meshed(model: DriveModel, recipe: MeshRecipe, gear: str) -> tuple[SectorMesh, csr_matrix]:
-    """Sector of a window of a gear and the interpolation to it, made once for all windows of a
-    model."""
-    known = model.window_meshes
-    if (gear, recipe) not in known:
-        mesh = window_mesh(model.geometry, recipe, gear)
-        known[gear, recipe] = mesh, interpolation(model.partition.layouts[gear].mesh, mesh)
-    return known[gear, recipe]
+def shared_mesh(model: DriveModel, recipe: MeshRecipe, gear: str) -> WindowMesh:
+    """What the windows of a gear on a mesh share, made once for a model."""
+    count = sectors_of(gear)
+    key = gear, recipe, count
+    if key not in model.window_meshes:
+        layout, sector = model.partition.layouts[gear], window_sector(model.geometry, recipe, gear)
+        model.window_meshes[key] = WindowMesh(layout, sector, count, model.comm)
+    return model.window_meshes[key]
 
 
 def tooth_nodes(mesh: SectorMesh, geometry: DriveGeometry, ends: bool) -> np.ndarray:
@@ -160,6 +157,8 @@ class LocalProblem:
     recipe : of the window's mesh
     gear : name of the body
     coarser : equilibrium of a coarser window around the tooth, which is nearer than the drive's
+
+    One window of a mesh at a time: the next one takes over its elements and factor.
     """
 
     def __init__(
@@ -175,18 +174,10 @@ class LocalProblem:
         self.gear = gear
         count = sectors_of(gear)
         first = tooth - count // 2
-        mesh, self._from_drive = meshed(model, recipe, gear)
+        self._shared = shared = shared_mesh(model, recipe, gear)
         layout = model.partition.layouts[gear]
-        self.layout = BodyLayout(
-            body=replace(layout.body, mesh=mesh),
-            first_tooth=first,
-            count=count,
-            closed=False,
-            copies=1,
-            fixed=np.zeros(0, dtype=np.int32),
-        )
-        self.partition = Partition([self.layout], model.comm)
-        self.elements = Elements(self.partition)
+        self.layout = shared.move(first)
+        mesh, self.partition, self.elements = shared.mesh, shared.partition, shared.elements
         self.body = self.elements.bodies[gear]
         teeth = first + np.arange(count)
         self.loads = line_loads(
@@ -203,6 +194,7 @@ class LocalProblem:
             wave_generator=model.rigid_contacts(self.body) if gear == FLEXIBLE_SPLINE else None,
             boundary_terms=[self._dead_load(), self._cuts(displacement)],
             module=geometry.module,
+            blocks=shared.blocks,
             phases=PhaseTimes(),
         )
         self.solver = NewtonSolver(
@@ -217,7 +209,7 @@ class LocalProblem:
         self.problem = problem
         begin = displacement
         if coarser is not None:
-            begin = self._interpolated(coarser.displacement, interpolation(coarser.mesh, mesh))
+            begin = self._interpolated(coarser.displacement, shared.from_window(coarser.mesh))
         own = begin[self.partition.owned_indices(gear)]
         write_field(self.partition, gear, own, problem.x)
 
@@ -227,7 +219,7 @@ class LocalProblem:
         model = self.model
         coarse = model.partition.layouts[self.gear]
         field = read_field(model.partition, self.gear, teeth - coarse.first_tooth, model.problem.x)
-        return self._interpolated(field, self._from_drive)
+        return self._interpolated(field, self._shared.from_drive)
 
     def _interpolated(self, field: np.ndarray, matrix: csr_matrix) -> np.ndarray:
         """Displacement (n_teeth, n_node, 3) mm at the nodes of this window from that on another
@@ -389,5 +381,5 @@ class LocalProblem:
         return WindowStress(found.value, found.tooth, position, region, warning, elements)
 
     def destroy(self) -> None:
-        """Release the solver; collective."""
+        """Release what further windows on this mesh do not take over; collective."""
         self.solver.destroy()

@@ -222,6 +222,7 @@ def resolve_root_stress(
         further = readings.tooth_with_largest("fs_vm")
         if level + 2 < count and all(tooth != further for tooth, _ in places):
             places.append((further, False))  # as far as the last window but one
+        _release(model)
     stresses = ", ".join(f"{value:.1f}" for value in values[best][skipped:])
     logger.info(
         "windows around tooth %d, drive of %d elements: s1 %s MPa",
@@ -242,6 +243,7 @@ def resolve_root_stress(
     regions = readings.stresses(model, FLEXIBLE_SPLINE, nodal, RATIO[kind])
     if ring:
         regions |= _ring_stresses(model, state, count, skipped)
+        _release(model)
     return replace(known, regions=regions)
 
 
@@ -272,6 +274,12 @@ def _ring_stresses(
             finally:
                 window.destroy()
     return readings.stresses(model, RING_GEAR, nodal, RATIO[kind])
+
+
+def _release(model: DriveModel) -> None:
+    """Release the factors of windows, but not of those that further angles need; collective."""
+    kind = model.geometry.model
+    model.release_windows(kept=window_recipe(kind, PERIOD_LEVEL[kind]))
 
 
 def _reached(levels: list[float]) -> tuple[int, float]:

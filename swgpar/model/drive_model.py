@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 from mpi4py import MPI
-from scipy.sparse import csr_matrix
 
 from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans
 from swgpar.constraints.supports import (
@@ -41,6 +40,7 @@ from swgpar.model.contact_distances import contact_search, foot_reach
 from swgpar.model.couplings import ring_guide, spline_attachment
 from swgpar.model.layouts import build_gear, build_layout
 from swgpar.model.regions import sector_regions
+from swgpar.model.window_mesh import WindowMesh
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
 from swgpar.solve.solve_state import NewtonSettings
@@ -64,7 +64,7 @@ class DriveModel:
     problem, solver : discrete problem and its Newton solver
     rigid_contacts : makes the contacts of cam and pins on another mesh of the flexible spline
     phases : wall seconds
-    window_meshes : sectors of windows and the interpolation to them, by gear and recipe
+    window_meshes : what windows on a mesh share, by gear, recipe and number of sectors
     """
 
     design: DriveDesign
@@ -77,14 +77,19 @@ class DriveModel:
     solver: NewtonSolver
     rigid_contacts: Callable[[BodyElements], WaveGeneratorContacts]
     phases: PhaseTimes
-    window_meshes: dict[tuple[str, MeshRecipe], tuple[SectorMesh, csr_matrix]] = field(
-        default_factory=dict
-    )
+    window_meshes: dict[tuple[str, MeshRecipe, int], WindowMesh] = field(default_factory=dict)
 
     def destroy(self) -> None:
         """Release the solver and its factor; collective. PETSc's objects refer to each other, so
         Python does not."""
+        self.release_windows()
         self.solver.destroy()
+
+    def release_windows(self, kept: MeshRecipe | None = None) -> None:
+        """Release the factors of windows on all meshes but that of one recipe; collective."""
+        for (_, recipe, _), shared in self.window_meshes.items():
+            if recipe != kept:
+                shared.release()
 
     @property
     def copies(self) -> int:

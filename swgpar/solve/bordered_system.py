@@ -53,8 +53,8 @@ class BorderedSystem:
             )
 
     def destroy(self) -> None:
-        """Release the solvers and their matrices; collective."""
-        for owned in (self.solver, self.reused, self.into, self.out):
+        """Release all but the solver; collective."""
+        for owned in (self.reused, self.into, self.out):
             if owned is not None:
                 owned.destroy()
 
@@ -107,7 +107,8 @@ class BorderedSystem:
                 if owned is not None:
                     owned.destroy()
             self.into, self.out = matrix.createVecs()
-            self.solver.renew()
+            if self.solver.matrix is not matrix:  # else another system has left it
+                self.solver.renew()
             self.discard_factor()
         self.active = active
         self.n_loaded = 0 if bound is None else 1

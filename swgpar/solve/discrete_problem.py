@@ -31,10 +31,7 @@ from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.sectors_in_reach import ModelledSectors
-from swgpar.fem.sparse import (
-    BlockRows,
-    add_unit_diagonal,
-)
+from swgpar.fem.sparse import BlockRows, add_unit_diagonal
 from swgpar.fem.vectors import Exchange, create_vector, read_multipliers
 from swgpar.geometry.rotation import to_owners
 from swgpar.load.load_states import LoadState
@@ -70,6 +67,7 @@ class DiscreteProblem:
     boundary_terms : what holds and loads a part that is cut out
     module : mm, length that bounds and floors refer to
     modelled : what of the drive is modelled in full; None where all is
+    blocks : room for the tangent, which outlives the problem; None: its own
     phases : wall seconds
 
     Attributes:
@@ -94,6 +92,7 @@ class DiscreteProblem:
         boundary_terms: Sequence[ForceTerm] = (),
         module: float,
         modelled: ModelledSectors | None = None,
+        blocks: TangentMatrix | None = None,
         phases: PhaseTimes,
     ) -> None:
         self.partition = partition
@@ -121,7 +120,7 @@ class DiscreteProblem:
         self.x, self.accepted = create_vector(partition), create_vector(partition)
         self.local_nodes = elements.local
         self.exchange = Exchange(partition, self.local_nodes.number)
-        self.blocks = TangentMatrix(elements)
+        self.blocks, self._owns_blocks = blocks or TangentMatrix(elements), blocks is None
         self._extent = largest(partition.comm, float(np.abs(self.positions()).max(initial=0.0)))
         self.round_off = 0.0
         self._searched = self.x.array_r.copy()
@@ -129,7 +128,8 @@ class DiscreteProblem:
     def destroy(self) -> None:
         """Release the tangent and the exchange of ghost values; collective."""
         self.exchange.destroy()
-        self.blocks.destroy()
+        if self._owns_blocks:
+            self.blocks.destroy()
 
     @property
     def symmetric(self) -> bool:

@@ -95,8 +95,11 @@ class NewtonSolver:
         kind = MatrixKind(
             problem.partition.comm, positions[:, : problem.partition.dims], problem.symmetric
         )
-        solver = make_linear_solver(settings.linear, kind, "stiffness_")
-        self.system = BorderedSystem(problem.partition, solver, reuse=settings.reuse_factor)
+        if problem.blocks.linear is None:
+            problem.blocks.linear = make_linear_solver(settings.linear, kind, "stiffness_")
+        linear = problem.blocks.linear
+        linear.kind = kind
+        self.system = BorderedSystem(problem.partition, linear, reuse=settings.reuse_factor)
         self.line_search = LineSearch(self.system, self._trial_residual, problem.x, problem.phases)
         self.snes = self._create_snes()
 

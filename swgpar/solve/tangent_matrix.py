@@ -10,6 +10,7 @@ from swgpar.fem.local_nodes import LocalNodes
 from swgpar.fem.sparse import BlockRows, MatrixRows, create_matrix, fill_matrix, matrix_rows
 from swgpar.fem.vectors import Exchange, create_vector
 from swgpar.petsc import PETSc
+from swgpar.solve.linear_solver import LinearSolver
 
 
 class TangentMatrix:
@@ -22,6 +23,7 @@ class TangentMatrix:
     changed since the last `make_room`
     rows : blocks of the owned rows;  block_indices : of the element blocks among them
     matrix : of the last `fill`;  matrix_rows : which of the rows it has
+    linear : solves with it, of the first Newton solver that needs it; later ones take it over
     """
 
     def __init__(self, elements: Elements) -> None:
@@ -31,11 +33,14 @@ class TangentMatrix:
         self.matrix_rows: MatrixRows | None = None
         self.block_indices: list[np.ndarray] = []
         self.matrix: PETSc.Mat | None = None
+        self.linear: LinearSolver | None = None
 
     def destroy(self) -> None:
-        """Release the matrix; collective."""
-        if self.matrix is not None:
-            self.matrix.destroy()
+        """Release the matrix and what solves with it; collective. `make_room` begins anew."""
+        for owned in (self.matrix, self.linear):
+            if owned is not None:
+                owned.destroy()
+        self.pattern = self.matrix = self.linear = None
 
     def make_room(self, pattern: np.ndarray, local: LocalNodes, exchange: Exchange) -> None:
         """Make room for contact blocks with these keys (n,); collective.
@@ -48,7 +53,8 @@ class TangentMatrix:
             return
         self.pattern = pattern
         self.rows, self.block_indices = self.elements.rows(pattern, local.number)
-        self.destroy()
+        if self.matrix is not None:
+            self.matrix.destroy()
         work = create_vector(self.partition)
         self.matrix_rows = matrix_rows(self.rows, local, exchange, work)
         work.destroy()

@@ -236,6 +236,7 @@ def test_options_of_petsc_solve_or_end_in_a_sentence(linear: str) -> None:
         else:
             ends, said = "failed" if border.solver.failure else "solved", border.solver.failure
             border.destroy()
+            border.solver.destroy()
         parallel_assert(len(set(comm.allgather((ends, said)))) == 1, f"{chosen}: {ends} {said}")
         if ends == "solved":
             x.axpy(-1.0, reference)

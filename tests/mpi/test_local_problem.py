@@ -117,6 +117,26 @@ def test_on_the_drive_s_mesh_a_window_has_the_drive_s_stress(
     parallel_assert(found == pytest.approx(expected, rel=rel), f"{found} and {expected}")
 
 
+@pytest.mark.parametrize("model", ["plane", "cup"])
+@pytest.mark.parallel([1, 2])
+def test_a_window_on_the_mesh_of_another_one_has_its_own_stress(model: str) -> None:
+    """It takes over elements, room of the tangent and factor of the window around another tooth."""
+    stepper = drive(model)
+    found = []
+    for tooth in (1, 7, 1):
+        window = solved(stepper, tooth)
+        found.append(window.largest().value)
+        window.destroy()
+    stepper.model.release_windows()
+    alone = solved(stepper, 7)
+    expected = alone.largest().value
+    alone.destroy()
+    print(f"{found} and {expected:.6f} MPa")
+    parallel_assert(found[1] == pytest.approx(expected, rel=1e-9), f"{found} and {expected}")
+    parallel_assert(found[2] == pytest.approx(found[0], rel=1e-9), f"{found}")
+    parallel_assert(abs(found[1] - found[0]) > 0.1, f"{found}")
+
+
 def roots(stepper: LoadStepper, gear: str) -> tuple[dict[str, float], dict[str, float]]:
     """Largest stresses (MPa) in the roots of a gear in a window with the drive's mesh, and in the
     same sectors of the drive, by name; collective."""

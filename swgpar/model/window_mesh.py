@@ -1,0 +1,65 @@
+"""What windows of a gear on one mesh share: sector, elements, room of the tangent and its factor.
+
+A window around another tooth is the same chain of sectors, rotated. So the pattern of its tangent
+and the order in which MUMPS eliminates the unknowns stay.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from mpi4py import MPI
+from scipy.sparse import csr_matrix
+
+from swgpar.fem.body_layout import BodyLayout
+from swgpar.fem.elements import Elements
+from swgpar.fem.partition import Partition
+from swgpar.meshing.interpolation import interpolation
+from swgpar.meshing.sector import SectorMesh
+from swgpar.solve.tangent_matrix import TangentMatrix
+
+
+class WindowMesh:
+    """One window at a time is on it.
+
+    body : layout of the gear in the drive;  mesh : its sector in windows
+    count : sectors of a window;  comm : communicator
+
+    Attributes:
+    from_drive : interpolation from the drive's mesh;  partition, elements : of the present window
+    blocks : room of its tangent, with the factor
+    """
+
+    def __init__(self, body: BodyLayout, mesh: SectorMesh, count: int, comm: MPI.Comm) -> None:
+        self.gear, self.mesh = body.name, mesh
+        self.from_drive = interpolation(body.mesh, mesh)
+        chain = BodyLayout(
+            body=replace(body.body, mesh=mesh),
+            first_tooth=0,
+            count=count,
+            closed=False,
+            copies=1,
+            fixed=np.zeros(0, dtype=np.int32),
+        )
+        self.partition = Partition([chain], comm)
+        self.elements = Elements(self.partition)
+        self.blocks = TangentMatrix(self.elements)
+        self._from_coarser: tuple[SectorMesh, csr_matrix] | None = None
+
+    def move(self, first_tooth: int) -> BodyLayout:
+        """Let the sectors begin with another tooth; returns their layout."""
+        layout = replace(self.partition.layouts[self.gear], first_tooth=first_tooth)
+        self.partition.layouts[self.gear] = layout
+        self.elements.bodies[self.gear].rotate(layout)
+        return layout
+
+    def from_window(self, coarser: SectorMesh) -> csr_matrix:
+        """Interpolation from the mesh of a coarser window."""
+        if self._from_coarser is None or self._from_coarser[0] is not coarser:
+            self._from_coarser = coarser, interpolation(coarser, self.mesh)
+        return self._from_coarser[1]
+
+    def release(self) -> None:
+        """Release tangent and factor; collective. The next window makes them anew."""
+        self.blocks.destroy()
