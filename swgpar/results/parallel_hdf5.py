@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import h5py
 import numpy as np
@@ -43,19 +43,13 @@ class Block(NamedTuple):
         return cls(np.ascontiguousarray(array if comm.rank == 0 else array[:0]), 0, len(array))
 
 
-def write(
-    path: Path,
-    comm: MPI.Comm,
-    blocks: Mapping[str, Block],
-    attrs: Mapping[str, Mapping[str, Any]] | None = None,
-) -> None:
+def write(path: Path, comm: MPI.Comm, blocks: Mapping[str, Block]) -> None:
     """Write a file of data sets atomically; collective, with the same names on every rank.
 
     Parameters
     ----------
     path : the file; an earlier one stays until the new one is complete
     blocks : data set name (groups separated by "/") -> rows of this rank
-    attrs : group name -> its HDF5 attributes, used from rank 0; "/" is the file itself
 
     Raises
     ------
@@ -67,7 +61,7 @@ def write(
     try:
         with agreed(comm, path):
             if comm.rank == 0:
-                offsets = _lay_out(temporary, blocks, attrs or {})
+                offsets = _lay_out(temporary, blocks)
         _fill(temporary, path, comm, blocks, comm.bcast(offsets))
         with agreed(comm, path):
             if comm.rank == 0:
@@ -78,9 +72,7 @@ def write(
         raise
 
 
-def _lay_out(
-    temporary: Path, blocks: Mapping[str, Block], attrs: Mapping[str, Mapping[str, Any]]
-) -> dict[str, int]:
+def _lay_out(temporary: Path, blocks: Mapping[str, Block]) -> dict[str, int]:
     """Make the file without its rows; returns where in the file the rows of each data set begin."""
     shapes = {name: (block.total, *block.array.shape[1:]) for name, block in blocks.items()}
     sizes = [int(np.prod(shapes[name])) * blocks[name].array.dtype.itemsize for name in blocks]
@@ -103,8 +95,6 @@ def _lay_out(
                 dcpl=early,
             )
             offsets[name] = made.get_offset()  # None without rows
-        for name, values in attrs.items():
-            file.require_group(name).attrs.update(values)
     reserve(temporary, temporary.stat().st_size)
     return offsets
 

@@ -45,12 +45,11 @@ def test_content_does_not_depend_on_ranks(
     """piece : bytes of one call of MPI; rows larger than it are written in several"""
     monkeypatch.setattr(parallel_hdf5, "PIECE_BYTES", piece)
     path = COMM.bcast(tmp_path) / "all.h5"
-    parallel_hdf5.write(path, COMM, parts(COMM), {"body": {"unit": "mm"}})
+    parallel_hdf5.write(path, COMM, parts(COMM))
     with h5py.File(path, "r") as file:
         for name, whole in WHOLE.items():
             assert file[name].dtype == whole.dtype and file[name].shape == whole.shape
             assert (file[name][:] == whole).all(), name
-        assert file["body"].attrs["unit"] == "mm"
     rows = parallel_hdf5.read_rows(path, COMM, {"body/points": (COMM.rank, 7)})
     assert (rows["body/points"] == WHOLE["body/points"][COMM.rank : COMM.rank + 7]).all()
     COMM.Barrier()  # a rank that is done removes the folder of the test
