@@ -82,7 +82,7 @@ def ball_lines(
     return centre, normal, curvature
 
 
-def smallest_curvature_radius(cam: Cam, n: int = 2000) -> float:
-    """Smallest radius of curvature (mm) at n points of a cam; inf for straight lines only."""
-    largest = float(cam.evaluate(cam.outline(n))[2].max())
+def smallest_curvature_radius(cam: Cam) -> float:
+    """Smallest radius of curvature (mm) of a cam; inf for straight lines only."""
+    largest = float(cam.evaluate(cam.outline(2000))[2].max())
     return 1.0 / largest if largest > 0.0 else np.inf

@@ -13,6 +13,9 @@ from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats
 from swgpar.geometry.bracketed_root import root_between
 
+MISMATCH = 1e-9
+"""Of points, over the tip radius, and of tangents (rad) where segments join."""
+
 OF_POINTS = 1e-3
 """rad, of tangents of a flank from points with few digits."""
 
@@ -249,26 +252,24 @@ class ToothProfile:
         return float(2.0 * self.r_root_circle * angle)
 
 
-def check_flank(profile: ToothProfile, tolerance: float = 1e-9, *, corners: bool = False) -> None:
+def check_flank(profile: ToothProfile, *, corners: bool = False) -> None:
     """Refuse a flank that is broken, ends beside its circles, folds back, or leaves its half tooth.
 
-    profile : ToothProfile
-    tolerance : relative mismatch of points (to the tip radius), and of tangents (rad) at joints
     corners : whether segments may join with an angle, and tangents be off by `OF_POINTS`
     """
     for before, after in zip(profile.segments, profile.segments[1:], strict=False):
         end, start = np.array([before.length]), np.zeros(1)
         jump = before.point(end)[0] - after.point(start)[0]
         kink = np.angle(np.exp(1j * (before.angle(end)[0] - after.angle(start)[0])))
-        bent = abs(kink) > tolerance and not corners
-        if np.hypot(*jump) > tolerance * profile.r_tip_circle or bent:
+        bent = abs(kink) > MISMATCH and not corners
+        if np.hypot(*jump) > MISMATCH * profile.r_tip_circle or bent:
             raise InputError(f"the {before.name} and {after.name} segments do not join smoothly")
     for name, at, circle, radius in (
         ("tip", 0.0, "addendum", profile.r_tip_circle),
         ("root", profile.length, "dedendum", profile.r_root_circle),
     ):
         reached = float(np.hypot(*profile.point(at)[0]))
-        if abs(reached - radius) > tolerance * profile.r_tip_circle:
+        if abs(reached - radius) > MISMATCH * profile.r_tip_circle:
             raise InputError(
                 f"the {name} end has the radius {reached:.10g} mm, that of the {circle} circle is "
                 f"{radius:.10g} mm"
@@ -282,6 +283,6 @@ def check_flank(profile: ToothProfile, tolerance: float = 1e-9, *, corners: bool
     if angle.min() <= 0.0 or angle.max() >= np.pi / profile.n_teeth:
         raise InputError("the flank leaves its half of the tooth sector")
     outward = np.einsum("ij,ij->i", profile.tangent(s), profile.point(s))
-    back = OF_POINTS if corners else tolerance
+    back = OF_POINTS if corners else MISMATCH
     if np.any((outward if profile.external else -outward) > back * profile.r_tip_circle):
         raise InputError("the flank folds back between tip and root")

@@ -63,16 +63,14 @@ class Gearbox:
         v: np.ndarray,
         times: np.ndarray,
         *,
-        errors: np.ndarray | None = None,
         rtol: float = 1e-5,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Ways (m) and velocities (m/s), (n, 23), at `times` (n,) s by LSODA with exact matrices.
+        """Ways (m) and velocities (m/s), (n, 23), at `times` (n,) s by LSODA with exact matrices,
+        without errors of the meshes.
 
         v : (23,) velocities at the first of the times, where all displacements are zero
-        errors : (18,) of the kernel's MESH_ERROR, none by default
         """
-        errors = no_errors() if errors is None else errors
-        inverse = 1.0 / self.mass
+        errors, inverse = no_errors(), 1.0 / self.mass
         inverse[FLYWHEEL] *= not self.braked
 
         def rates(t: float, y: np.ndarray) -> np.ndarray:

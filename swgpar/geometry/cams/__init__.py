@@ -114,13 +114,13 @@ def taut_length(cam: Cam, n: int = 7200) -> float:
     return float(scipy.spatial.ConvexHull(cam.outline(n)).area)
 
 
-def pin_travel(cam: Cam, radius: float, lobes: int = 2, n: int = 7200) -> float:
+def pin_travel(cam: Cam, radius: float, lobes: int = 2) -> float:
     """How far the pins, each a lobe of the cam, are drawn in to fit into the circle `radius`.
 
     In mm; half the deflection for a cam that first touches at its tips, more when it bulges beside
     them (the pins of section 3.2 are the halves of the cam).
     """
-    x, y = cam.outline(n).T
+    x, y = cam.outline(7200).T
     upper = (np.abs(np.arctan2(x, y)) < np.pi / lobes) & (np.abs(x) < radius)
     return float(np.max(y[upper] - np.sqrt(radius**2 - x[upper] ** 2)))
 
