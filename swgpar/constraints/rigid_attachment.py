@@ -27,6 +27,7 @@ from swgpar.constraints.distributing_coupling import (
     Y,
     Z,
 )
+from swgpar.contact.face_quadrature import CORNERS
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import Partition
 from swgpar.geometry.rotation import rotated
@@ -35,9 +36,6 @@ from swgpar.meshing.sector import SectorMesh
 
 POINTS = 16
 """Points across the attached area at which is asked whether they belong to it."""
-
-CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-"""Parameters of the nodes of a face."""
 
 Inside = Callable[[np.ndarray], np.ndarray]
 """Whether points (..., 2) mm of the undeformed drive belong to the attached area."""

@@ -10,7 +10,6 @@ so that the forces are normal to the race's surface.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +19,7 @@ from swgpar.contact.point_contact import BallSpring
 from swgpar.contact.smooth_curve import NODES, STEPS, shape_functions, smooth_curve
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
+from swgpar.geometry.bearing import BallLines
 from swgpar.geometry.rotation import rotated, to_images, to_owners
 from swgpar.kernel import add_face_blocks
 from swgpar.load.load_states import LoadState
@@ -34,10 +34,6 @@ POINTS, KERNEL_MOMENT = 8, 0.2
 LARGEST_REACH = 0.35
 """Largest reach over a sector: a rank sees one sector beyond its own, in which windows of two
 balls' reach must end."""
-
-BallLines = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
-"""Gives centres (n, 2) mm, groove normals (n, 2) in the cam's frame and curvatures (n,) 1/mm of the
-centres' curve at angles (n,) rad from the major axis."""
 
 
 @dataclass(frozen=True)

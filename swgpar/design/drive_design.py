@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -13,7 +12,7 @@ from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.drive_sections import DriveSections
 from swgpar.design.negligible_torque import negligible_torque
 from swgpar.design.sections import OMITTED_BENDING, ExternalGear, GearName, InternalGear
-from swgpar.geometry.bearing import BearingSizes, ball_lines
+from swgpar.geometry.bearing import BallLines, BearingSizes, ball_lines
 from swgpar.geometry.cams import Cam, make_cam
 from swgpar.geometry.cams.semi_axes import minor_semi_axis, radial_deflection
 from swgpar.geometry.disc_surface import CamSurface, GrownSurface, cam_surface
@@ -33,10 +32,6 @@ from swgpar.profiles import (
 )
 from swgpar.profiles.rigid_teeth import RigidTeeth
 from swgpar.profiles.tip_relief import relieved
-
-BallLines = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
-"""Gives centres (n, 2) mm, groove normals (n, 2) in the cam's frame and curvatures (n,) 1/mm of the
-centres' curve at angles (n,) rad from the major axis."""
 
 SOLVER_CHOICES = {
     "linear",

@@ -7,11 +7,16 @@ race is rigid on the cam.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from swgpar.geometry.cams import Cam
+
+BallLines = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
+"""Gives centres (n, 2) mm, groove normals (n, 2) in the cam's frame and curvatures (n,) 1/mm of the
+centres' curve at angles (n,) rad from the major axis."""
 
 MAX_STEPS = 50
 """Newton steps along a ray to the curve of the balls; a few suffice."""

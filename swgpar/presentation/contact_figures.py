@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from swgpar.drive_results.drive_tables import Columns
 from swgpar.errors import InputError
 from swgpar.results.figure_set import panels
 
@@ -22,9 +22,6 @@ CELL = re.compile(r"p\d+_MPa")
 
 ANGLE = "angle of the wave generator (degrees)"
 ANGLE_AGAINST_RING = "angle of the wave generator against the ring gear (degrees)"
-
-Columns = Mapping[str, np.ndarray]
-"""Of a table."""
 
 
 def _from_lobe(pairs: Columns, lobes: int) -> np.ndarray:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PERCENTILE = 99.9
-"""Of the von Mises stress of the nodes: the end of the colour range."""
+"""Of a field at the nodes, as the von Mises stress: the end of its colour range."""
 
 CAM_COLOUR = "#d9d9d9"
 

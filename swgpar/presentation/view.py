@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from swgpar.errors import InputError
+from swgpar.presentation.deformed_figures import PERCENTILE
 from swgpar.presentation.off_screen import errors_only, has_display
 
 if TYPE_CHECKING:
@@ -21,9 +22,6 @@ COLOURED = {"vm": "von Mises, MPa", "s1": "s1, MPa", "s3": "s3, MPa"}
 """Fields that the keys 1, 2 and 3 show, with the titles of their colour ranges."""
 
 MOST_MAGNIFIED = 10.0
-
-PERCENTILE = 99.9
-"""Of a field's size: the end of its colour range."""
 
 
 def require_display() -> None:
