@@ -3,19 +3,15 @@ in files."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 
-import numpy as np
 from mpi4py import MPI
 
 from swgpar.results.atomic import write_from_root
 from swgpar.results.folder import DRIVE_TABLES
 from swgpar.results.sector_fields import SectorFields, read_sector, write_sector
-from swgpar.results.table import format_columns, read_columns
-
-Columns = Mapping[str, np.ndarray]
+from swgpar.results.table import Columns, format_columns, read_columns
 
 
 @dataclass(eq=False)

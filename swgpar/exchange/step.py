@@ -34,7 +34,7 @@ SAME = 1e-7
 """mm, distance below which the ends of edges are one point."""
 
 
-Step = tuple[tuple[float, float], tuple[float, float] | None]
+OutlineStep = tuple[tuple[float, float], tuple[float, float] | None]
 """Next corner of an outline, and the center of the arc to it."""
 
 Solid = GearName | Literal["wave_generator", "housing"]
@@ -180,7 +180,7 @@ def _wall_section(design: DriveDesign) -> list[Edge]:
     center, first, back = wall.center, wall.outer.points[0, 1], wall.back
     start = (wall.inner.points[0, 1], back)
     # ends of the edges with the centers of arcs; those of the lines of the wall are (s, r)
-    path: list[Step] = [((first + fillet, back), None)]
+    path: list[OutlineStep] = [((first + fillet, back), None)]
     if fillet:
         path.append(((first, back + fillet), (first + fillet, back + fillet)))
     path += [_from_back(back, end, middle) for _, end, middle in wall.outer.pieces()]
@@ -212,6 +212,6 @@ def _wall_section(design: DriveDesign) -> list[Edge]:
     return edges
 
 
-def _from_back(back: float, end: Floats, middle: Floats | None) -> Step:
+def _from_back(back: float, end: Floats, middle: Floats | None) -> OutlineStep:
     """A distance from the back of the teeth and a radius as r and z, also those of a center."""
     return (end[1], back + end[0]), middle if middle is None else (middle[1], back + middle[0])

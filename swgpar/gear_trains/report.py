@@ -12,7 +12,7 @@ from swgpar.gear_trains.published import Comparison
 from swgpar.gear_trains.result import TrainResult, TrainSummary
 from swgpar.log import console
 from swgpar.presentation.answer_text import answer_table, detail_table, value_text
-from swgpar.results.page import Row, Table
+from swgpar.results.page import Table, TableRow
 from swgpar.results.result_page import RunFacts, result_page
 
 
@@ -20,7 +20,7 @@ def train_report(result: TrainResult) -> bytes:
     """The whole page; reads the figures in the results folder. Call it on one rank."""
     summary = result.summary
     compared = [asdict(row) for row in result.compared]
-    rows = [Row(list(row.values())) for row in compared]
+    rows = [TableRow(list(row.values())) for row in compared]
     return result_page(
         "gear_trains/train_report.html.j2",
         f"Gear train: {result.design_table['gear_train']['model'].replace('_', ' ')}",

@@ -21,11 +21,8 @@ from swgpar.results.atomic import agreed, to_json, write_from_root
 from swgpar.results.figure_set import NamedFigures
 from swgpar.results.folder import SUMMARY, TABLES
 from swgpar.results.quantity import Quantity
-from swgpar.results.table import format_columns, format_csv, read_columns
+from swgpar.results.table import Columns, format_columns, format_csv, read_columns
 from swgpar.vibration.sampling import TaskSeconds
-
-Table = Mapping[str, np.ndarray]
-"""Columns by name, with their unit at the end of the name; all of one length."""
 
 PUBLISHED = "published.csv"
 
@@ -41,8 +38,8 @@ class Computed:
     task_s : times of the tasks of each kind
     """
 
-    history: Table
-    tables: Mapping[str, Table]
+    history: Columns
+    tables: Mapping[str, Columns]
     quantities: Mapping[str, float | list[float]]
     task_s: Mapping[str, TaskSeconds]
 
@@ -104,8 +101,8 @@ class TrainResult(Generic[D]):
         The figures: ``plot.names`` lists them, ``plot.NAME()`` returns a matplotlib figure.
     """
 
-    history: Table
-    tables: Mapping[str, Table]
+    history: Columns
+    tables: Mapping[str, Columns]
     summary: TrainSummary[D]
     compared: list[Comparison] = field(default_factory=list)
     folder: Path | None = None

@@ -11,7 +11,7 @@ from swgpar.optimisation import figures
 from swgpar.optimisation.problem import STATUS, Problem
 from swgpar.optimisation.result import OptimisationResult
 from swgpar.optimisation.spec import Specification
-from swgpar.results.page import Picture, Row, Table
+from swgpar.results.page import Picture, Table, TableRow
 from swgpar.studies.runs_page import FigureSection, runs_page, table_of_runs
 
 IMPORTANCE = (
@@ -48,7 +48,7 @@ def _variables(problem: Problem) -> Table:
     rows = []
     for v in problem.section.variable:
         scale = ", ".join(map(str, v.choices)) or ("log" if v.log else "")
-        rows.append(Row([", ".join(v.keys), v.low, v.high, problem.units[v.name], scale]))
+        rows.append(TableRow([", ".join(v.keys), v.low, v.high, problem.units[v.name], scale]))
     return Table(["variable", "low", "high", "unit", "scale or choices"], rows)
 
 
@@ -58,7 +58,7 @@ def _quantities(problem: Problem) -> Table:
     rows = []
     for name, goal in wanted:
         quantity = problem.known[name]
-        rows.append(Row([name, goal, quantity.meaning, quantity.unit]))
+        rows.append(TableRow([name, goal, quantity.meaning, quantity.unit]))
     return Table(["quantity", "goal or limit", "meaning", "unit"], rows)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from swgpar.answers.answer import Answer
-from swgpar.results.page import Row, Table, number
+from swgpar.results.page import Table, TableRow, number
 
 NOTHING = 1e-9
 """Size below which a value is round-off and 0 is shown."""
@@ -42,7 +42,9 @@ def answer_table(answers: Iterable[Answer]) -> Table:
     rows = []
     for answer in answers:
         numbers = ["—" if answer.value is None else answer.value, answer.unit, error_text(answer)]
-        rows.append(Row([answer.text, *numbers, answer.place, remark_text(answer), answer.name]))
+        rows.append(
+            TableRow([answer.text, *numbers, answer.place, remark_text(answer), answer.name])
+        )
     return Table(["", "value", "unit", "error", "where", "remark", "name"], rows)
 
 

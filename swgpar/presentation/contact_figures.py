@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from swgpar.drive_results.drive_tables import Columns
 from swgpar.errors import InputError
 from swgpar.results.figure_set import panels
+from swgpar.results.table import Columns
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

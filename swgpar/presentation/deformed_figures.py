@@ -30,7 +30,7 @@ PITCHES = 2.2
 CAM_GRID = 400
 """Points along each side of the close-up in which the distance from the cam is evaluated."""
 
-Body = Union["pyvista.UnstructuredGrid", PlaneBody]
+DrawnBody = Union["pyvista.UnstructuredGrid", PlaneBody]
 """A whole body with its stress: a mesh that is not deformed yet, or a deformed one in the plane."""
 
 
@@ -39,7 +39,7 @@ def colour_limit(*stresses: np.ndarray) -> float:
     return float(np.percentile(np.concatenate(stresses), PERCENTILE)) or 1.0
 
 
-def _limit(bodies: Sequence[Body]) -> float:
+def _limit(bodies: Sequence[DrawnBody]) -> float:
     return colour_limit(
         *(one.mises if isinstance(one, PlaneBody) else one.point_data["vm"] for one in bodies)
     )
@@ -97,7 +97,7 @@ def _finish_deformed(
 
 
 def draw_loaded_teeth(
-    bodies: Sequence[Body],
+    bodies: Sequence[DrawnBody],
     geometry: DriveGeometry,
     cam: CamSurface | None,
     wg_angle: float,
@@ -135,7 +135,7 @@ def draw_loaded_teeth(
     return figure
 
 
-def _across(body: Body, angle: float, z: float, box: Box) -> SectionView | None:
+def _across(body: DrawnBody, angle: float, z: float, box: Box) -> SectionView | None:
     """Section of a deformed body across the axis at z (mm), in a box whose upward axis is at an
     angle (rad) from +y."""
     if isinstance(body, PlaneBody):

@@ -142,11 +142,13 @@ def _shaper_tip(cut: Cutter, name: str) -> tuple[float, float, Center]:
     return (-np.arcsin(w_c * np.cos(alpha) / r_c) - offset) / ratio, -offset / ratio, center
 
 
-Contact = Callable[[Floats], tuple[Floats, Floats, Floats, Floats]]
+GeneratingContact = Callable[[Floats], tuple[Floats, Floats, Floats, Floats]]
 """K (n, 2) mm, dK/dpsi (n, 2), angle of the normal (n,) rad and its rate (n,) at psi (n,)."""
 
 
-def _curve(cut: Cutter, name: str, ends: tuple[float, float], contact: Contact) -> CurvedSegment:
+def _curve(
+    cut: Cutter, name: str, ends: tuple[float, float], contact: GeneratingContact
+) -> CurvedSegment:
     """Segment from the generating angle ends[0] to ends[1].
 
     `contact` gives K (n, 2), dK/dpsi (n, 2), the angle of n and its derivative (n,).

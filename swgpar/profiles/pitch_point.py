@@ -10,7 +10,7 @@ from swgpar.errors import InputError
 from swgpar.profiles.flank import Segment, ToothProfile
 from swgpar.profiles.teeth import Teeth
 
-Piece = tuple[str, np.ndarray, float, float, float]
+PlacedSegment = tuple[str, np.ndarray, float, float, float]
 """Name, start, inclination, convexity and length of a segment, see `PitchPointFrame.segment`."""
 
 
@@ -78,7 +78,7 @@ class PitchPointFrame(Teeth):
             float(length),
         )
 
-    def profile(self, pieces: list[Piece], name: str) -> ToothProfile:
+    def profile(self, pieces: list[PlacedSegment], name: str) -> ToothProfile:
         """Flank of `pieces` from tip to root without those of no length; refuses a negative one.
 
         name : section of the design file, for the message

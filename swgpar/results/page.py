@@ -21,7 +21,7 @@ RANK = "results/rank.js"
 
 
 @dataclass(frozen=True)
-class Row:
+class TableRow:
     """Cells of a table. bad : whether something is wrong"""
 
     cells: Sequence[Any]
@@ -34,7 +34,7 @@ class Table:
     `RANK`"""
 
     header: Sequence[str]
-    rows: Sequence[Row]
+    rows: Sequence[TableRow]
     ranked: bool = False
 
     @property

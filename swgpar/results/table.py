@@ -12,6 +12,9 @@ import numpy as np
 
 from swgpar.errors import printable
 
+Columns = Mapping[str, np.ndarray]
+"""Of a table, by name; all of one length."""
+
 FORMULA = ("=", "+", "-", "@")
 """First letters of a text that spreadsheets take for a formula and compute."""
 

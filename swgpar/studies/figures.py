@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from swgpar.studies.table import Result
+    from swgpar.studies.table import JobResult
 
 OVER_ANGLE = ("fs_s1", "fs_s3", "fs_vm")
 LINES = 12
@@ -39,7 +39,7 @@ TITLE_LETTERS = 48
 MARKERS = "os^vDP"
 
 
-def over_angle(results: Sequence[Result]) -> Iterator[bytes]:
+def over_angle(results: Sequence[JobResult]) -> Iterator[bytes]:
     """Stresses against the angle of the wave generator, every case on its finest finished mesh."""
     lines = []
     for case, outcomes in by_case(results):
@@ -61,7 +61,7 @@ def over_angle(results: Sequence[Result]) -> Iterator[bytes]:
         yield as_png(figure)
 
 
-def over_key(results: Sequence[Result], key: str, *, in_step: bool) -> Iterator[bytes]:
+def over_key(results: Sequence[JobResult], key: str, *, in_step: bool) -> Iterator[bytes]:
     """Quantities against a varied key; a line for each combination of all else. None without
     numbers.
 

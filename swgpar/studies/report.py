@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from swgpar.results.page import Picture, Row, Table
+from swgpar.results.page import Picture, Table, TableRow
 from swgpar.results.quantity import with_unit
 from swgpar.studies import figures
 from swgpar.studies.runs_page import HEADINGS, FigureSection, runs_page, table_of_runs
 from swgpar.studies.spec import Study
 from swgpar.studies.table import (
     CaseComparison,
-    Result,
+    JobResult,
     by_case,
     complete,
     estimate_of,
@@ -38,7 +38,7 @@ class Failure:
 
 def make_report(
     study: Study,
-    results: Sequence[Result],
+    results: Sequence[JobResult],
     comparisons: Sequence[CaseComparison],
     out: Path,
     missing: int = 0,
@@ -66,7 +66,7 @@ def make_report(
     )
 
 
-def _cases(results: Sequence[Result]) -> Table:
+def _cases(results: Sequence[JobResult]) -> Table:
     notes = {job.case.name: job.case.section.note for job, _ in results}
     rows = []
     for row in study_rows(results):
@@ -77,7 +77,7 @@ def _cases(results: Sequence[Result]) -> Table:
     return table_of_runs(rows, units, ranked=True)
 
 
-def _extremes(results: Sequence[Result]) -> Table:
+def _extremes(results: Sequence[JobResult]) -> Table:
     """Which case has the smallest and the largest value of every quantity, each case on its finest
     mesh."""
     finest = [(case.name, outcomes[-1].values) for case, outcomes in by_case(results)]
@@ -86,22 +86,22 @@ def _extremes(results: Sequence[Result]) -> Table:
         ordered = sorted((values[name], case) for case, values in finest if name in values)
         if len(ordered) > 1:
             (low, of_low), (high, of_high) = ordered[0], ordered[-1]
-            rows.append(Row([with_unit(name, quantity.unit), low, of_low, high, of_high]))
+            rows.append(TableRow([with_unit(name, quantity.unit), low, of_low, high, of_high]))
     return Table(["quantity", "smallest", "of case", "largest", "of case"], rows)
 
 
 def _comparisons(comparisons: Sequence[CaseComparison]) -> Table:
     rows = published_rows(comparisons)
     heads = [HEADINGS.get(name, name) for name in rows[0]]
-    return Table(heads, [Row(list(row.values()), row["verdict"] == "MISS") for row in rows])
+    return Table(heads, [TableRow(list(row.values()), row["verdict"] == "MISS") for row in rows])
 
 
-def _meanings(results: Sequence[Result]) -> Table:
-    rows = [Row([name, q.meaning, q.unit]) for name, q in shown_quantities(results).items()]
+def _meanings(results: Sequence[JobResult]) -> Table:
+    rows = [TableRow([name, q.meaning, q.unit]) for name, q in shown_quantities(results).items()]
     return Table(["quantity", "meaning", "unit"], rows)
 
 
-def _estimates(results: Sequence[Result]) -> Table:
+def _estimates(results: Sequence[JobResult]) -> Table:
     rows = []
     for case, outcomes in by_case(results):
         for name in case.shown:
@@ -111,12 +111,12 @@ def _estimates(results: Sequence[Result]) -> Table:
                 percent = 100.0 * estimate.error / abs(fine) if fine else None
                 title = with_unit(name, case.known[name].unit if name in case.known else "")
                 numbers = [coarse, fine, estimate.converged, estimate.error, percent]
-                rows.append(Row([case.name, title, *numbers]))
+                rows.append(TableRow([case.name, title, *numbers]))
     header = ["case", "quantity", "coarser mesh", "finest mesh", "converged"]
     return Table([*header, "error estimate", "error estimate (%)"], rows)
 
 
-def _failures(results: Sequence[Result], out: Path) -> list[Failure]:
+def _failures(results: Sequence[JobResult], out: Path) -> list[Failure]:
     failures = []
     for job, outcome in results:
         if outcome.status == "failed":
@@ -128,7 +128,7 @@ def _failures(results: Sequence[Result], out: Path) -> list[Failure]:
     return failures
 
 
-def _figures(study: Study, results: Sequence[Result]) -> list[FigureSection]:
+def _figures(study: Study, results: Sequence[JobResult]) -> list[FigureSection]:
     over_angle = [Picture(png, "stresses against angle") for png in figures.over_angle(results)]
     sections = [FigureSection("Stresses against the angle of the wave generator", over_angle)]
     for key in dict.fromkeys(key for job, _ in results for key in job.case.varied):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from swgpar.results.figure_set import import_matplotlib
-from swgpar.results.page import RANK, Picture, Row, Table, page
+from swgpar.results.page import RANK, Picture, Table, TableRow, page
 from swgpar.results.quantity import with_unit
 from swgpar.studies.run_file import RunFile
 from swgpar.version import __version__
@@ -69,5 +69,5 @@ def table_of_runs(
 ) -> Table:
     """Rows of runs with a status. units : of columns that are keys or quantities"""
     heads = [HEADINGS.get(name) or with_unit(name, units.get(name, "")) for name in rows[0]]
-    cells = [Row(list(row.values()), row.get("status") == "failed") for row in rows]
+    cells = [TableRow(list(row.values()), row.get("status") == "failed") for row in rows]
     return Table(heads, cells, ranked)

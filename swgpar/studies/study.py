@@ -27,7 +27,7 @@ from swgpar.studies.report import make_report
 from swgpar.studies.spec import Study, load_study, make_study
 from swgpar.studies.table import (
     CaseComparison,
-    Result,
+    JobResult,
     compare_cases,
     complete,
     published_rows,
@@ -56,7 +56,7 @@ class StudyResult:
     >>> pandas.DataFrame(found.table)[["load.torque", "mean.fs_s1"]]
     """
 
-    results: list[Result]
+    results: list[JobResult]
     folder: Path | None = None
 
     @property
@@ -124,7 +124,7 @@ class _Book:
         end = time.perf_counter()
         self.next_writing = end + (end - begin) / SHARE
 
-    def results(self) -> list[Result]:
+    def results(self) -> list[JobResult]:
         """Jobs that have ended, in the order of the study."""
         return [(self.jobs[number], self.outcomes[number]) for number in sorted(self.outcomes)]
 
@@ -253,7 +253,7 @@ def queue(jobs: Sequence[Job], statuses: Sequence[str | None]) -> list[int]:
 
 
 def _write(
-    study: Study, results: Sequence[Result], out: Path, comm: MPI.Comm, missing: int = 0
+    study: Study, results: Sequence[JobResult], out: Path, comm: MPI.Comm, missing: int = 0
 ) -> None:
     """Write tables and report; collective. missing : number of jobs that have not ended"""
     comparisons = compare_cases(complete(results))

@@ -12,7 +12,7 @@ from swgpar.input.toml_file import toml_value
 from swgpar.results.quantity import Quantity
 from swgpar.studies.case import Case, Job, Outcome
 
-Result = tuple[Job, Outcome]
+JobResult = tuple[Job, Outcome]
 
 OF_MESHES = ("mesh", "converged", "error_estimate")
 """Columns of published.csv."""
@@ -41,7 +41,7 @@ class CaseComparison:
     error_estimate: float | None
 
 
-def by_case(results: Sequence[Result]) -> list[tuple[Case, list[Outcome]]]:
+def by_case(results: Sequence[JobResult]) -> list[tuple[Case, list[Outcome]]]:
     """Cases with the outcomes on their meshes, coarse to fine."""
     groups: dict[str, tuple[Case, list[Outcome]]] = {}
     for job, outcome in results:
@@ -49,7 +49,7 @@ def by_case(results: Sequence[Result]) -> list[tuple[Case, list[Outcome]]]:
     return list(groups.values())
 
 
-def complete(results: Sequence[Result]) -> list[Result]:
+def complete(results: Sequence[JobResult]) -> list[JobResult]:
     """Results of the cases that have ended on all of their meshes."""
     ended = {
         case.name
@@ -59,7 +59,7 @@ def complete(results: Sequence[Result]) -> list[Result]:
     return [(job, outcome) for job, outcome in results if job.case.name in ended]
 
 
-def shown_quantities(results: Sequence[Result]) -> dict[str, Quantity]:
+def shown_quantities(results: Sequence[JobResult]) -> dict[str, Quantity]:
     """The quantities in tables and figures, of all cases."""
     return {
         name: job.case.known[name]
@@ -69,7 +69,7 @@ def shown_quantities(results: Sequence[Result]) -> dict[str, Quantity]:
     }
 
 
-def units_of_keys(results: Sequence[Result]) -> dict[str, str]:
+def units_of_keys(results: Sequence[JobResult]) -> dict[str, str]:
     """Units of the varied keys, by the first case whose design has them."""
     units: dict[str, str] = {}
     for job, _ in results:
@@ -92,7 +92,7 @@ def estimate_of(case: Case, outcomes: Sequence[Outcome], name: str) -> Estimate 
     return estimate(coarse, fine, n_coarse, n_fine, case.system.dimensions(case.design))
 
 
-def compare_cases(results: Sequence[Result]) -> list[CaseComparison]:
+def compare_cases(results: Sequence[JobResult]) -> list[CaseComparison]:
     """All published values."""
     rows = []
     for case, outcomes in by_case(results):
@@ -128,7 +128,7 @@ def compare_cases(results: Sequence[Result]) -> list[CaseComparison]:
     return rows
 
 
-def study_rows(results: Sequence[Result]) -> list[dict[str, Any]]:
+def study_rows(results: Sequence[JobResult]) -> list[dict[str, Any]]:
     """Rows of study.csv."""
     keys = list(dict.fromkeys(key for job, _ in results for key in job.case.varied))
     names = list(dict.fromkeys(name for job, _ in results for name in job.case.shown))

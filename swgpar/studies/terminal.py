@@ -12,7 +12,7 @@ from swgpar.log import console, progress_bar
 from swgpar.results.page import number
 from swgpar.studies.case import Job, Outcome
 from swgpar.studies.many_runs import print_line
-from swgpar.studies.table import CaseComparison, Result, shown_quantities
+from swgpar.studies.table import CaseComparison, JobResult, shown_quantities
 
 COLUMNS = 5
 """Quantities that the table on the terminal shows: study.csv has all of them."""
@@ -65,7 +65,7 @@ class StudyProgress:
             self._bar.stop()
 
 
-def print_results(results: Sequence[Result], comparisons: Sequence[CaseComparison]) -> None:
+def print_results(results: Sequence[JobResult], comparisons: Sequence[CaseComparison]) -> None:
     """Print the first quantities of all cases, then published beside computed values."""
     quantities = list(shown_quantities(results).items())[:COLUMNS]
     cases = folded_table("case")  # long names are folded into 80 columns

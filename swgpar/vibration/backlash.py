@@ -13,26 +13,26 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import ndtr
 
-Array = np.ndarray | float
+Values = np.ndarray | float
 
 
-def dead_zone(deflection: Array, half_backlash: Array) -> np.ndarray:
+def dead_zone(deflection: Values, half_backlash: Values) -> np.ndarray:
     """The part of a deflection beyond the backlash, m."""
     return deflection - np.clip(deflection, -half_backlash, half_backlash)
 
 
-def force(stiffness: Array, deflection: Array, half_backlash: Array) -> np.ndarray:
+def force(stiffness: Values, deflection: Values, half_backlash: Values) -> np.ndarray:
     """f, N."""
     return stiffness * dead_zone(deflection, half_backlash)
 
 
-def energy(stiffness: Array, deflection: Array, half_backlash: Array) -> np.ndarray:
+def energy(stiffness: Values, deflection: Values, half_backlash: Values) -> np.ndarray:
     """P, J."""
     return 0.5 * stiffness * dead_zone(deflection, half_backlash) ** 2
 
 
 def _beyond(
-    mean: Array, deviation: Array, half_backlash: Array
+    mean: Values, deviation: Values, half_backlash: Values
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Expectations (2, ...) of 1, x and x² over x = d - b > 0 and over x = -d - b > 0."""
     m, s = np.asarray(mean, dtype=float), np.asarray(deviation, dtype=float)
@@ -44,20 +44,22 @@ def _beyond(
     return share, first, (x * x + s * s) * share + x * tail
 
 
-def mean_force(stiffness: Array, mean: Array, deviation: Array, half_backlash: Array) -> np.ndarray:
+def mean_force(
+    stiffness: Values, mean: Values, deviation: Values, half_backlash: Values
+) -> np.ndarray:
     """E[f], N (eq. 4.50)."""
     return mean_force_and_stiffness(stiffness, mean, deviation, half_backlash)[0]
 
 
 def mean_stiffness(
-    stiffness: Array, mean: Array, deviation: Array, half_backlash: Array
+    stiffness: Values, mean: Values, deviation: Values, half_backlash: Values
 ) -> np.ndarray:
     """E[df/dd], N/m: the equivalent stiffness of the force-based linearisation (eq. 3.39)."""
     return mean_force_and_stiffness(stiffness, mean, deviation, half_backlash)[1]
 
 
 def mean_force_and_stiffness(
-    stiffness: Array, mean: Array, deviation: Array, half_backlash: Array
+    stiffness: Values, mean: Values, deviation: Values, half_backlash: Values
 ) -> tuple[np.ndarray, np.ndarray]:
     """E[f] and E[df/dd], which is also the derivative of E[f] with respect to the mean."""
     share, first, _ = _beyond(mean, deviation, half_backlash)
@@ -65,14 +67,14 @@ def mean_force_and_stiffness(
 
 
 def mean_energy(
-    stiffness: Array, mean: Array, deviation: Array, half_backlash: Array
+    stiffness: Values, mean: Values, deviation: Values, half_backlash: Values
 ) -> np.ndarray:
     """E[P], J."""
     return 0.5 * stiffness * _beyond(mean, deviation, half_backlash)[2].sum(axis=0)
 
 
 def energy_stiffness(
-    stiffness: Array, mean: Array, deviation: Array, half_backlash: Array
+    stiffness: Values, mean: Values, deviation: Values, half_backlash: Values
 ) -> np.ndarray:
     """The equivalent stiffness of the energy-based linearisation, N/m.
 

@@ -11,8 +11,9 @@ from collections.abc import Mapping
 from support.paths import DRIVERS
 from swgpar import load_design
 from swgpar.gear_trains.common_sections import TrainDesign
-from swgpar.gear_trains.result import Table, TrainResult, TrainSummary
+from swgpar.gear_trains.result import TrainResult, TrainSummary
 from swgpar.results.quantity import Quantity
+from swgpar.results.table import Columns
 
 SMALL = {
     "cascade": (
@@ -39,7 +40,7 @@ SMALL = {
 
 
 def result_with(
-    quantities: Mapping[str, float | list[float]], history: Table
+    quantities: Mapping[str, float | list[float]], history: Columns
 ) -> TrainResult[TrainDesign]:
     """A result of a ring with these quantities, that took 2 s."""
     design = load_design(DRIVERS / "ring_moving_load.toml")

@@ -23,8 +23,9 @@ from swgpar.gear_trains.cascade.static_sharing import (
 )
 from swgpar.gear_trains.cascade.tolerance_stack_up import contributions, sample_stack_up
 from swgpar.gear_trains.published import number_label
-from swgpar.gear_trains.result import Computed, Table
+from swgpar.gear_trains.result import Computed
 from swgpar.log import logger
+from swgpar.results.table import Columns
 from swgpar.vibration.sampling import Tasks, block_sizes, run_tasks
 
 DIRECTIONS: tuple[Direction, ...] = ("B", "A")
@@ -111,7 +112,7 @@ def _shares_at_forces(design: CascadeDesign, cycle: LoadCycle) -> dict[str, list
     return values
 
 
-def _history(cycle: LoadCycle) -> Table:
+def _history(cycle: LoadCycle) -> Columns:
     return {
         "time_s": cycle.time,
         "rack_force_kN": 1e-3 * cycle.rack_force,
@@ -122,7 +123,7 @@ def _history(cycle: LoadCycle) -> Table:
     }
 
 
-def _static(design: CascadeDesign) -> Table:
+def _static(design: CascadeDesign) -> Columns:
     """Load shares at rest against the rack force."""
     force = np.linspace(0.0, design.load.peak, 201)[1:]
     table = {"rack_force_kN": force}
@@ -132,7 +133,7 @@ def _static(design: CascadeDesign) -> Table:
     return table | {"B_equal_odd": equal[:, 0], "B_equal_even": equal[:, 1]}
 
 
-def _flex_unit(design: CascadeDesign) -> Table:
+def _flex_unit(design: CascadeDesign) -> Columns:
     """The mean curve of the flexible units."""
     units, section = FlexUnits.of(design), design.flex_unit
     deformation = np.linspace(0.0, CURVE_END * section.linear_above, 101)
@@ -146,7 +147,7 @@ def _flex_unit(design: CascadeDesign) -> Table:
 
 def _spearman(
     design: CascadeDesign, stacks: dict[str, tuple[np.ndarray, dict[str, float]]]
-) -> Table:
+) -> Columns:
     rows = [
         (kind, name, 1e6 * limit, stacks[kind][1][name])
         for kind in MESH_COUNTS

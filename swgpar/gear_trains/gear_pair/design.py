@@ -17,7 +17,7 @@ from swgpar.gear_trains.common_sections import (
 from swgpar.input.quantities import Section, quantity
 from swgpar.input.require import require
 
-Torques = Annotated[list[Positive], Len(1)]
+PositiveTorques = Annotated[list[Positive], Len(1)]
 
 
 class Train(GearTrain):
@@ -45,10 +45,10 @@ class Mesh(Section):
 
 
 class Load(Section):
-    input: Torques = quantity(
+    input: PositiveTorques = quantity(
         text="torques on the first gear, one for each case (N·m), each above 0"
     )
-    output: Torques = quantity(
+    output: PositiveTorques = quantity(
         text="torques on the second gear, one for each case (N·m), each above 0"
     )
     noise: float = quantity(

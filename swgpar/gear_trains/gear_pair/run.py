@@ -19,8 +19,9 @@ from swgpar.gear_trains.gear_pair.model import (
 )
 from swgpar.gear_trains.gear_pair.monte_carlo import BLOCK_SIZE, simulate
 from swgpar.gear_trains.gear_pair.quantities import VALUES
-from swgpar.gear_trains.result import Computed, Table
+from swgpar.gear_trains.result import Computed
 from swgpar.log import logger
+from swgpar.results.table import Columns
 from swgpar.vibration.linearisation import EQUIVALENT, Criterion, linearise
 from swgpar.vibration.moments import (
     Moments,
@@ -92,7 +93,7 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> Computed:
     return Computed(history, tables, values, seconds)
 
 
-def _density(final: np.ndarray, ends: Mapping[Criterion, Moments]) -> Table:
+def _density(final: np.ndarray, ends: Mapping[Criterion, Moments]) -> Columns:
     """Probability densities of the mesh deflection at the end, per µm. final : (samples,) m"""
     counts, edges = np.histogram(1e6 * final, bins=BINS, density=True)
     middle = 0.5 * (edges[1:] + edges[:-1])

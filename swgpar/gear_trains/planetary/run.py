@@ -15,8 +15,9 @@ from swgpar.gear_trains.planetary.monte_carlo import BLOCK_SIZE, simulate
 from swgpar.gear_trains.planetary.time_stepping import TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
 from swgpar.gear_trains.published import number_label
-from swgpar.gear_trains.result import Computed, Table
+from swgpar.gear_trains.result import Computed
 from swgpar.log import logger
+from swgpar.results.table import Columns
 from swgpar.vibration.dominant_cycles import dominant_cycles
 from swgpar.vibration.moments import (
     SampleMoments,
@@ -116,7 +117,7 @@ def _times(design: PlanetaryDesign) -> np.ndarray:
     return design.end * np.arange(1, design.time.rows + 1) / design.time.rows
 
 
-def _forces(design: PlanetaryDesign, moments: TrainMoments) -> Table:
+def _forces(design: PlanetaryDesign, moments: TrainMoments) -> Columns:
     """Mean and mean square of the linearised forces of the meshes of planet 1 after every step."""
     steps = len(moments.force)
     table = {"time_s": design.end * np.arange(1, steps + 1) / steps}
@@ -126,7 +127,7 @@ def _forces(design: PlanetaryDesign, moments: TrainMoments) -> Table:
     return table
 
 
-def _rims(design: PlanetaryDesign, moments: dict[float, TrainMoments]) -> Table:
+def _rims(design: PlanetaryDesign, moments: dict[float, TrainMoments]) -> Columns:
     """Means and standard deviations of the linearisation in blocks by rim, µm."""
     return {
         "rim_mm": np.repeat(design.ring.rims, design.time.rows),

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swgpar.gear_trains.drawing import MomentCurve, axes, draw_moments
-from swgpar.gear_trains.result import Table, TrainResult
+from swgpar.gear_trains.result import TrainResult
 from swgpar.gear_trains.ring.design import RingDesign
 from swgpar.gear_trains.ring.quantities import POINTS
 from swgpar.results.figure_set import Drawings
+from swgpar.results.table import Columns
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -53,7 +54,7 @@ def _shapes(result: TrainResult) -> Figure:
     return figure
 
 
-def _at_speed(table: Table, point: str, speed: float, label: str, style: str) -> MomentCurve:
+def _at_speed(table: Columns, point: str, speed: float, label: str, style: str) -> MomentCurve:
     rows = table["speed_rad_s"] == speed
     mean, deviation = (1e6 * table[f"{kind}_{point}_m"][rows] for kind in ("mean", "deviation"))
     return MomentCurve(table["angle_rad"][rows], mean, deviation, label, style)

@@ -9,12 +9,13 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.gear_trains.published import number_label
-from swgpar.gear_trains.result import Computed, Table
+from swgpar.gear_trains.result import Computed
 from swgpar.gear_trains.ring.design import MovingLoad, RingDesign
 from swgpar.gear_trains.ring.moving_load import MovingLoads, Response
 from swgpar.gear_trains.ring.natural_frequencies import distinct_frequencies
 from swgpar.gear_trains.ring.quantities import POINTS
 from swgpar.log import logger
+from swgpar.results.table import Columns
 from swgpar.vibration.curved_beam import free_frequencies
 from swgpar.vibration.dominant_cycles import dominant_cycles
 from swgpar.vibration.moments import HasMoments, Moments, SampleMoments, columns, largest_moments
@@ -60,7 +61,7 @@ def compute(design: RingDesign, comm: MPI.Comm) -> Computed:
 
 def _moving(
     design: RingDesign, comm: MPI.Comm
-) -> tuple[list[Response], Table, Table, Mapping[str, TaskSeconds]]:
+) -> tuple[list[Response], Columns, Columns, Mapping[str, TaskSeconds]]:
     """Responses at all speeds, the curve of critical speeds, Monte Carlo at the first speed, and
     the times of all tasks."""
     load, loads, seed = design.moving_load, MovingLoads(design), design.gear_train.seed
@@ -88,7 +89,7 @@ def _moving(
     return responses, curve, simulated, seconds
 
 
-def _peaks(curve: Table) -> list[float]:
+def _peaks(curve: Columns) -> list[float]:
     """Speeds of the highest local peaks of the middle node, ascending, NaN for
     those that there are not."""
     speed, mean = curve["speed_rad_s"], curve["mean_middle_node_m"]
@@ -97,7 +98,7 @@ def _peaks(curve: Table) -> list[float]:
     return [*highest.tolist(), *[float("nan")] * (PEAKS - len(highest))]
 
 
-def _shapes(design: RingDesign, shapes: np.ndarray) -> Table:
+def _shapes(design: RingDesign, shapes: np.ndarray) -> Columns:
     """Outward and tangential displacement around the ring, the largest of each mode is 1."""
     ring, angle = design.elastic_ring(), np.linspace(0.0, 2.0 * np.pi, AROUND)
     values = np.array([ring.interpolation(a)[:2] @ shapes for a in angle])
@@ -108,7 +109,7 @@ def _shapes(design: RingDesign, shapes: np.ndarray) -> Table:
     return table
 
 
-def _history(design: RingDesign, responses: list[Response]) -> Table:
+def _history(design: RingDesign, responses: list[Response]) -> Columns:
     """Means and standard deviations in the last revolution, in blocks by speed."""
     load = design.moving_load
     angle = responses[0].angle[_rows(load)]
