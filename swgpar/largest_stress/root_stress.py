@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -260,19 +261,12 @@ def _ring_stresses(
     nodal = nodal_by_sector(model, state, RING_GEAR, averages)
     stresses = ("s1", "vm") if kind == "plane" else ("s1",)
     teeth = {int(nodal[f"rg_{stress}{OF_REGION}{TOOTH_ROOT}"].argmax()) for stress in stresses}
-    readings = WindowReadings(skipped)
-    first = model.partition.layouts[RING_GEAR].first_tooth
+    readings, states = WindowReadings(skipped), dict[int, WindowState]()
     for tooth in sorted(teeth):
-        coarser = None
         for level in range(skipped, min(levels, RING_LEVELS[kind])):
             recipe = window_recipe(kind, level)
-            window = LocalProblem(model, state, first + tooth, recipe, RING_GEAR, coarser)
-            try:
-                window.solve()
+            with _solved(model, state, tooth, recipe, states, RING_GEAR) as window:
                 readings.add(tooth, window.by_region())
-                coarser = window.equilibrium()
-            finally:
-                window.destroy()
     return readings.stresses(model, RING_GEAR, nodal, RATIO[kind])
 
 
@@ -347,19 +341,34 @@ def _solve(
     states : equilibria of coarser windows by tooth, which those of these windows replace
     """
     states = {} if states is None else states
-    first = model.partition.layouts[FLEXIBLE_SPLINE].first_tooth
     found: dict[tuple[int, bool], WindowStress] = {}
     for tooth in dict.fromkeys(tooth for tooth, _ in places):
-        window = LocalProblem(model, state, first + tooth, recipe, coarser=states.get(tooth))
-        try:
-            window.solve()
-            states[tooth] = window.equilibrium()
+        with _solved(model, state, tooth, recipe, states) as window:
             found |= {place: window.largest(place[1]) for place in places if place[0] == tooth}
             if readings is not None:
                 readings.add(tooth, window.by_region())
-        finally:
-            window.destroy()
     return found
+
+
+@contextmanager
+def _solved(
+    model: DriveModel,
+    state: LoadState,
+    tooth: int,
+    recipe: MeshRecipe,
+    states: dict[int, WindowState],
+    gear: str = FLEXIBLE_SPLINE,
+) -> Iterator[LocalProblem]:
+    """The window around a modelled tooth in its equilibrium, which replaces that of the coarser one
+    in `states`; collective."""
+    first = model.partition.layouts[gear].first_tooth
+    window = LocalProblem(model, state, first + tooth, recipe, gear, states.get(tooth))
+    try:
+        window.solve()
+        states[tooth] = window.equilibrium()
+        yield window
+    finally:
+        window.destroy()
 
 
 def _place(
