@@ -23,11 +23,13 @@ from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import MeshRecipe
 from swgpar.results.quantity import Quantity
 from swgpar.run_options import RunOptions
-from swgpar.systems.drive_quantities import describe_names, main_quantities, quantities
 from swgpar.systems.protocol import Measured, System
 
 if TYPE_CHECKING:
     from swgpar.presentation.drive_result import DriveResult
+
+MAIN = ("mean.fs_s1", "mean.fs_s3", "mean.fs_vm", "mean.rg_vm", "mean.wg_torque_Nmm")
+"""Quantities that tables and figures show of a drive whose output rotates."""
 
 
 class Drives(System[DriveDesign, "DriveResult"]):
@@ -77,13 +79,25 @@ class Drives(System[DriveDesign, "DriveResult"]):
         )
 
     def quantities(self, design: DriveDesign) -> dict[str, Quantity]:
-        return quantities(design)
+        from swgpar.drive_results.summary import known_answers
+
+        return {
+            name: Quantity(kind.text, kind.unit) for name, kind in known_answers(design).items()
+        }
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
-        return main_quantities(known)
+        if MAIN[0] in known:
+            return MAIN
+        of_program = tuple(name for name in known if name.startswith(("stiffness.", "ratcheting.")))
+        return of_program or tuple(
+            name for name in known if name.endswith((".torque_Nm", ".rotation_arcmin"))
+        )
 
     def describe_names(self, known: Mapping[str, Quantity]) -> str:
-        return describe_names(known)
+        names = [name for name in known if not name.startswith("step")]
+        steps = len(names) < len(known)
+        words = ", or step1. to step4. with a column of history.csv" if steps else ""
+        return f"{', '.join(names)}{words}"
 
     def check_published(self, design: DriveDesign, names: Iterable[str]) -> None:
         for name in names:
