@@ -29,7 +29,7 @@ from swgpar.geometry.cams import Cam, make_cam
 from swgpar.geometry.cams.arcs import arcs
 from swgpar.geometry.cams.elliptical import EllipticalCam
 from swgpar.geometry.cams.harmonic import HarmonicCam
-from swgpar.geometry.cams.keys import Points, Polar
+from swgpar.geometry.cams.keys import CamPoints, Polar
 from swgpar.geometry.cams.parabolic import Side, parabolic, solve_quarter
 from swgpar.geometry.cams.piecewise import Parabola
 from swgpar.geometry.cams.rollers import RollerCam, rollers
@@ -232,7 +232,7 @@ def draw_polar(ax: Axes) -> None:
 
 def draw_points(ax: Axes) -> None:
     points = EllipticalCam(A, B).outline(72)[:37]
-    keys = Points(type="points", face_width=1.0, points=points[:19].tolist())
+    keys = CamPoints(type="points", face_width=1.0, points=points[:19].tolist())
     base(ax, make_cam(keys, A), "points")
     ax.plot(*points[:19].T, "o", color=NOTE, ms=4)
     ax.plot(*points[19:].T, "o", mfc="none", mec=NOTE, ms=4)

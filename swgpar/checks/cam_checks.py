@@ -9,7 +9,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.geometry.bracketed_root import root_between
 from swgpar.geometry.cams import FourRoller, OffsetCam, TwoRoller
-from swgpar.geometry.cams.keys import Harmonic, Points, Polar, Reduced, Simplified
+from swgpar.geometry.cams.keys import CamPoints, Harmonic, Polar, Reduced, Simplified
 from swgpar.input.require import require, require_available
 
 UNIQUE = 0.25
@@ -32,7 +32,7 @@ def check_cam(design: DriveDesign) -> None:
     """Raise InputError for the first key of the cam that does not fit the others or the bore."""
     wave = design.wave_generator
     require_available(
-        wave.lobes == 2 or isinstance(wave, Harmonic | Polar | Points),
+        wave.lobes == 2 or isinstance(wave, Harmonic | Polar | CamPoints),
         f"wave_generator.lobes = {wave.lobes}",
         f'wave_generator.type = "{wave.type}"',
         'with "harmonic", "polar" or "points"',
@@ -49,7 +49,7 @@ def check_cam(design: DriveDesign) -> None:
         _check_offset(design)
     if isinstance(wave, Harmonic) and not wave.offset:
         _check_concave(design, wave)
-    elif isinstance(wave, Harmonic | Polar | Points):
+    elif isinstance(wave, Harmonic | Polar | CamPoints):
         _check_curve(design)
     width, widest = wave.width, design.drive.face_width
     allowed = f"above 0 to {widest:g} mm (drive.face_width)"
@@ -61,7 +61,7 @@ def check_cam(design: DriveDesign) -> None:
 def _check_deflection(design: DriveDesign) -> None:
     """A deflection from one key, above 0 and below half the bore."""
     wave, bore, deflection = design.wave_generator, design.inner_radius, 0.5 * design.deflection
-    if isinstance(wave, Points):
+    if isinstance(wave, CamPoints):
         _require_points_fit(wave, bore, deflection)
         return
     given = [key for key in DEFLECTION_KEYS if getattr(wave, key, None) is not None]
@@ -104,7 +104,7 @@ def _check_discs(design: DriveDesign, wave: TwoRoller) -> None:
     require(reach > 0.0, "wave_generator.r_2", wave.r_2, f"below {design.major_semi_axis:.6g} mm")
 
 
-def _require_points_fit(wave: Points, bore: float, deflection: float) -> None:
+def _require_points_fit(wave: CamPoints, bore: float, deflection: float) -> None:
     """Points set the deflection, and lie outside of the bore at the major axis."""
     if wave.deflection is not None:
         raise InputError(

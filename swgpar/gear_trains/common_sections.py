@@ -30,7 +30,7 @@ class GearTrain(Section):
     seed: int = quantity(1, text="seed of all random samples", ge=0)
 
 
-class Damping(Section):
+class TrainDamping(Section):
     mass: float = quantity(unit="1/s", text="damping over mass", ge=0.0)
     stiffness: float = quantity(
         unit="s", text="damping over stiffness, of meshes over their mean stiffness", ge=0.0
@@ -41,7 +41,7 @@ class MonteCarlo(Section):
     samples: int = quantity(text="simulations of each case", ge=2, le=100_000_000)
 
 
-class Output(Section):
+class TrainOutput(Section):
     figures: bool = quantity(True, text="draw the figures")
 
 
@@ -51,4 +51,4 @@ class TrainDesign(Design):
     system: ClassVar[str] = "gear_train"
 
     published: dict[str, Any] = quantity({}, text="published values by quantity")
-    output: Output = Output()
+    output: TrainOutput = TrainOutput()

@@ -117,3 +117,16 @@ def test_the_rooms_are_described_as_they_are() -> None:
         f"| `{room}` | {purpose} |" for room, purpose in PURPOSE.items()
     ]
     assert not lines[first + len(PURPOSE)].startswith("|")
+
+
+def test_no_two_classes_or_aliases_of_types_have_one_name() -> None:
+    places: dict[str, list[str]] = {}
+    for module in MODULES:
+        for node in ast.parse((ROOT / module).read_text(encoding="utf-8")).body:
+            targets = node.targets if isinstance(node, ast.Assign) else [node]
+            names = [getattr(one, "id", getattr(one, "name", "")) for one in targets]
+            for name in names:
+                # constants are upper-case, and so are type variables, of one letter
+                if name[:1].isupper() and not name.isupper():
+                    places.setdefault(name, []).append(str(module))
+    assert not {name: found for name, found in places.items() if len(found) > 1}

@@ -17,7 +17,7 @@ Forces = Annotated[list[Positive], Len(1)]
 GRADES: dict[str, Any] = {"ge": 0.0, "le": 12.0}
 
 
-class Train(GearTrain):
+class CascadeTrain(GearTrain):
     model: Literal["cascade"] = quantity(text="the gear train")
 
 
@@ -30,7 +30,7 @@ class Rack(Section):
     runout_grade: float = quantity(text="ISO 1328 grade of the runout", **GRADES)
 
 
-class Gear(Section):
+class CascadeGear(Section):
     teeth: int = quantity(text="number of teeth", ge=6, le=1000)
     inertia: float = quantity(unit="kg·m²", text="moment of inertia", gt=0.0)
     face_width: float = quantity(unit="mm", text="face width", gt=0.0)
@@ -44,7 +44,7 @@ class Gear(Section):
     )
 
 
-class Mesh(Section):
+class CascadeMesh(Section):
     module: float = quantity(unit="mm", text="module", gt=0.0)
     stiffness: float = quantity(unit="N/m", text="mean mesh stiffness", gt=0.0)
     variation: float = quantity(
@@ -92,7 +92,7 @@ class Flywheel(Section):
     )
 
 
-class Damping(Section):
+class CascadeDamping(Section):
     metal: float = quantity(
         unit="s", text="damping over stiffness of meshes in contact and of shafts", ge=0.0
     )
@@ -105,7 +105,7 @@ class Damping(Section):
     )
 
 
-class Load(Section):
+class CascadeLoad(Section):
     forces: Forces = quantity(
         text="rack forces for which load shares are reported (kN), each above 0"
     )
@@ -163,22 +163,22 @@ class CascadeDesign(TrainDesign):
     """A cascade gearbox, its load and its tolerances. Attributes are the sections of the design
     file."""
 
-    gear_train: Train
+    gear_train: CascadeTrain
     rack: Rack
-    pinion: Gear
-    g1: Gear
-    g2: Gear
-    g3: Gear
-    g4: Gear
-    rack_pinion: Mesh
-    g1_g1: Mesh
-    g1_g2: Mesh
-    g3_g4: Mesh
+    pinion: CascadeGear
+    g1: CascadeGear
+    g2: CascadeGear
+    g3: CascadeGear
+    g4: CascadeGear
+    rack_pinion: CascadeMesh
+    g1_g1: CascadeMesh
+    g1_g2: CascadeMesh
+    g3_g4: CascadeMesh
     flex_unit: FlexUnit
     shafts: Shafts
     flywheel: Flywheel
-    damping: Damping
-    load: Load
+    damping: CascadeDamping
+    load: CascadeLoad
     tolerances: Tolerances
     population: Population
 

@@ -7,10 +7,10 @@ from typing import Annotated, Literal
 from annotated_types import Len
 
 from swgpar.gear_trains.common_sections import (
-    Damping,
     GearTrain,
     MonteCarlo,
     Positive,
+    TrainDamping,
     TrainDesign,
     require_steps,
 )
@@ -20,11 +20,11 @@ from swgpar.input.require import require
 PositiveTorques = Annotated[list[Positive], Len(1)]
 
 
-class Train(GearTrain):
+class PairTrain(GearTrain):
     model: Literal["gear_pair"] = quantity(text="the gear train")
 
 
-class Gear(Section):
+class PairGear(Section):
     mass: float = quantity(unit="kg", text="mass", gt=0.0)
     inertia: float = quantity(unit="kg·m²", text="moment of inertia", gt=0.0)
     radius: float = quantity(unit="mm", text="pitch radius", gt=0.0)
@@ -33,7 +33,7 @@ class Gear(Section):
     )
 
 
-class Mesh(Section):
+class PairMesh(Section):
     stiffness: float = quantity(unit="N/m", text="mean mesh stiffness", gt=0.0)
     half_backlash: float = quantity(unit="µm", text="half of the backlash", ge=0.0)
     variation: float = quantity(
@@ -44,7 +44,7 @@ class Mesh(Section):
     harmonics: int = quantity(3, text="Fourier terms of the mesh stiffness", ge=1, le=100)
 
 
-class Load(Section):
+class PairLoad(Section):
     input: PositiveTorques = quantity(
         text="torques on the first gear, one for each case (N·m), each above 0"
     )
@@ -59,7 +59,7 @@ class Load(Section):
     )
 
 
-class Time(Section):
+class PairTime(Section):
     end: float = quantity(unit="s", text="end of the simulation; densities belong to it", gt=0.0)
     step: float = quantity(unit="s", text="time step", gt=0.0)
     rows: int = quantity(100, text="moments of time that are kept", ge=1, le=100_000)
@@ -68,13 +68,13 @@ class Time(Section):
 class GearPairDesign(TrainDesign):
     """A gear pair and its load. Attributes are the sections of the design file."""
 
-    gear_train: Train
-    gear_1: Gear
-    gear_2: Gear
-    mesh: Mesh
-    damping: Damping
-    load: Load
-    time: Time
+    gear_train: PairTrain
+    gear_1: PairGear
+    gear_2: PairGear
+    mesh: PairMesh
+    damping: TrainDamping
+    load: PairLoad
+    time: PairTime
     monte_carlo: MonteCarlo
 
     @property

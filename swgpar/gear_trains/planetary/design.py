@@ -8,10 +8,10 @@ from typing import Annotated, Literal
 from annotated_types import Len
 
 from swgpar.gear_trains.common_sections import (
-    Damping,
     GearTrain,
     MonteCarlo,
     Positive,
+    TrainDamping,
     TrainDesign,
 )
 from swgpar.input.quantities import Section, quantity
@@ -21,7 +21,7 @@ from swgpar.vibration.curved_beam import BeamSection, Ring, supports_restrain_ri
 Thicknesses = Annotated[list[Positive], Len(1)]
 
 
-class Train(GearTrain):
+class PlanetaryTrain(GearTrain):
     model: Literal["planetary"] = quantity(text="the gear train")
 
 
@@ -99,7 +99,7 @@ class Wind(Section):
     power_coefficient: float = quantity(text="power coefficient", gt=0.0, le=0.593)
 
 
-class Time(Section):
+class PlanetaryTime(Section):
     revolutions: float = quantity(
         1.0, text="carrier revolutions that are computed", gt=0.0, le=1000.0
     )
@@ -111,15 +111,15 @@ class Time(Section):
 class PlanetaryDesign(TrainDesign):
     """A planetary gear train and its wind. Attributes are the sections of the design file."""
 
-    gear_train: Train
+    gear_train: PlanetaryTrain
     sun: Sun
     planet: Planet
     carrier: Carrier
     ring: RingGear
     mesh: Meshes
-    damping: Damping
+    damping: TrainDamping
     wind: Wind
-    time: Time
+    time: PlanetaryTime
     monte_carlo: MonteCarlo
 
     @property

@@ -15,7 +15,7 @@ from swgpar.vibration.curved_beam import BeamSection, Ring, supports_restrain_ri
 Speeds = Annotated[list[Positive], Len(1)]
 
 
-class Train(GearTrain):
+class RingTrain(GearTrain):
     model: Literal["ring"] = quantity(text="the gear train")
 
 
@@ -71,7 +71,7 @@ class RingDesign(TrainDesign):
     """A ring, what holds it and what moves in it. Attributes are the sections of the design
     file."""
 
-    gear_train: Train
+    gear_train: RingTrain
     ring: RingBody
     supports: RingSupports | None = None
     teeth: RingTeeth | None = None

@@ -20,11 +20,11 @@ from swgpar.geometry.cams.harmonic import HarmonicCam
 from swgpar.geometry.cams.keys import (
     Arcs,
     AsymmetricParabolic,
+    CamPoints,
     Elliptical,
     FourRoller,
     Harmonic,
     Parabolic,
-    Points,
     Polar,
     Simplified,
     TwoRoller,
@@ -97,7 +97,7 @@ def make_cam(
         return parabolic(a, b, right, left, float(np.radians(keys.rotational_angle)))
     if isinstance(keys, Polar):
         return expression_cam(keys, a, b, name)
-    if isinstance(keys, Points):
+    if isinstance(keys, CamPoints):
         return points_cam(keys, name)
     raise TypeError(f"no curve for {type(keys).__name__}")
 

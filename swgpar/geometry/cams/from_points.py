@@ -9,7 +9,7 @@ import scipy
 
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats
-from swgpar.geometry.cams.keys import Points
+from swgpar.geometry.cams.keys import CamPoints
 from swgpar.geometry.cams.polar import PolarCam, mirrored_lobe
 
 STEPS = 2048
@@ -43,7 +43,7 @@ ALONG = 0.9
 
 
 @lru_cache(maxsize=16)
-def points_cam(keys: Points, name: str = "wave_generator") -> PolarCam:
+def points_cam(keys: CamPoints, name: str = "wave_generator") -> PolarCam:
     """Curve of the section [wave_generator].
 
     Raises InputError where the points give no curve around the axis, with the place.
@@ -85,7 +85,7 @@ def points_cam(keys: Points, name: str = "wave_generator") -> PolarCam:
     return cam
 
 
-def _require_upright(theta: Floats, radius: Floats, keys: Points, name: str) -> None:
+def _require_upright(theta: Floats, radius: Floats, keys: CamPoints, name: str) -> None:
     """Refuse a major axis that is not near +y: it lies where the first harmonic of the lobes has
     its maximum."""
     away = radius - radius.mean()
@@ -99,7 +99,7 @@ def _require_upright(theta: Floats, radius: Floats, keys: Points, name: str) -> 
         )
 
 
-def _polar(keys: Points, key: str) -> tuple[Floats, Floats, np.ndarray]:
+def _polar(keys: CamPoints, key: str) -> tuple[Floats, Floats, np.ndarray]:
     """Angles (n,) rad from +y, counter-clockwise and growing by less than half a turn from point
     to point, radii (n,) mm, and the numbers (n,) of the points, from 1."""
     if len(keys.points) < FEWEST:
@@ -152,7 +152,7 @@ def _covered(theta: Floats, numbers: np.ndarray, key: str) -> float:
     return covered
 
 
-def _fitted(place: Floats, radius: Floats, keys: Points) -> tuple[PolarCam, int, bool]:
+def _fitted(place: Floats, radius: Floats, keys: CamPoints) -> tuple[PolarCam, int, bool]:
     """Curve through points at the angles `place` (n,) rad from the tip of a lobe, the point that
     is farthest from it, and whether the points scatter by more than the tolerance."""
     samples = _samples(place, radius, keys)
@@ -173,7 +173,7 @@ def _fitted(place: Floats, radius: Floats, keys: Points) -> tuple[PolarCam, int,
     return PolarCam(values, keys.lobes, float(away[worst])), worst, scattered
 
 
-def _samples(place: Floats, radius: Floats, keys: Points) -> tuple[Floats, Floats]:
+def _samples(place: Floats, radius: Floats, keys: CamPoints) -> tuple[Floats, Floats]:
     """Angles (n + 1,) rad of the points of a lobe in order, and mean radii (n + 1,) mm; the first
     one comes again at the end."""
     lobe = 2.0 * np.pi / keys.lobes
@@ -189,7 +189,7 @@ def _samples(place: Floats, radius: Floats, keys: Points) -> tuple[Floats, Float
     return np.append(place, place[0] + lobe), np.append(radius, radius[0])
 
 
-def _values(spline: tuple[Floats, Floats, int], first: float, keys: Points) -> Floats:
+def _values(spline: tuple[Floats, Floats, int], first: float, keys: CamPoints) -> Floats:
     """Radius and its derivatives (3, n) by a spline around a lobe whose first point is at `first`
     rad."""
     lobe = 2.0 * np.pi / keys.lobes

@@ -155,7 +155,7 @@ class Polar(Reduced):
         return hash(self.model_dump_json())
 
 
-class Points(_WaveGenerator):
+class CamPoints(_WaveGenerator):
     """A curve through points of the whole cam, of a lobe or of half a lobe, with two lobes or
     three."""
 
@@ -259,7 +259,7 @@ WaveGenerator = Annotated[
     | Parabolic
     | AsymmetricParabolic
     | Polar
-    | Points
+    | CamPoints
     | TwoRoller
     | FourRoller,
     Field(discriminator="type"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from swgpar.geometry.cams.from_points import points_cam
-from swgpar.geometry.cams.keys import FourRoller, Points, Reduced, TwoRoller, WaveGenerator
+from swgpar.geometry.cams.keys import CamPoints, FourRoller, Reduced, TwoRoller, WaveGenerator
 
 
 def roller_radius(keys: FourRoller | TwoRoller) -> float:
@@ -18,7 +18,7 @@ def radial_deflection(keys: WaveGenerator, inner_radius: float, standard: float)
     inner_radius : mm, of the undeformed flexible spline
     standard : mm, deflection of a cam without a key for it
     """
-    if isinstance(keys, Points):
+    if isinstance(keys, CamPoints):
         return float(points_cam(keys).values[0, 0]) + keys.offset - inner_radius
     if keys.deflection is not None:
         return keys.deflection
