@@ -146,9 +146,11 @@ def solve(case: dict[str, Any]) -> dict[str, dict[str, Any]]:
     """The case's numbers by stage; collective."""
     part, model = case["part"], case["table"]["drive"]["model"]
     recipe, values = swgpar.load_mesh(case["mesh"]), DESIGNS[part]
+    design = swgpar.load_design(case["table"])
     if part == "period":
-        values = {**values, "steps.samples": case["samples"] * SAMPLES[model]}
-    design = swgpar.load_design(case["table"]).with_values(values)
+        samples = design.kinematics.apart(case["samples"] * SAMPLES[model])
+        values = {**values, "steps.samples": samples}
+    design = design.with_values(values)
     if case["times"] == 1.0:
         return {"usual": run(design, replaced(recipe, case["counts"]))}
     done = {}

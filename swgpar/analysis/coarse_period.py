@@ -7,7 +7,7 @@ from swgpar.analysis.drive_mesh_error import ORDER, SAFETY, smallest_ratio
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.predictor import KnownState
 from swgpar.errors import ConvergenceError
-from swgpar.evaluation.period_ranges import INPUT_TORQUE, CoarsePeriod, period_ranges
+from swgpar.evaluation.period_ranges import INPUT_TORQUE, CoarsePeriod, period_curves
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.model.drive_model import DriveModel
@@ -45,7 +45,7 @@ def coarse_period(
         loaded.copy(model.problem.x)
     run.guides = guides
     factor = SAFETY / (smallest_ratio(coarse, fine) ** ORDER - 1.0)
-    return CoarsePeriod(period_ranges(sequence.kinematics, rows, INPUT_TORQUE), factor)
+    return CoarsePeriod(period_curves(sequence.kinematics, rows, INPUT_TORQUE), factor)
 
 
 def _on_mesh_of(run: LoadStepper, stepper: LoadStepper) -> KnownState:

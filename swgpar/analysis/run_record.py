@@ -33,7 +33,7 @@ class RunRecord:
     loaded : MPa, the averages of the loaded state by the names of `places`
     coarse_wall : stresses of the wall on a coarser mesh; None where they are not known
     contact_errors : by coarser meshes, of what contacts of flanks give
-    coarse_period : ranges over the sampled period on a coarser mesh
+    coarse_period : curves over the sampled period on a coarser mesh
     pairs, contact_lines : rows of pairs.csv and contact_lines.csv
     cam_forces : N, of all increments, with [losses]
     torque_points : states of a prescribed rotation of the output, with [ratcheting] all of them

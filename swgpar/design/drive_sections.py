@@ -76,9 +76,8 @@ class DriveSections(Design):
     @property
     def kinematics(self) -> Kinematics:
         """Speeds and angles."""
-        return make_kinematics(
-            self.drive, self.wave_generator.lobes, self.dynamic_spline is not None
-        )
+        lobes, alike = self.wave_generator.lobes, self.wave_generator.lobes_are_alike
+        return make_kinematics(self.drive, lobes, alike, self.dynamic_spline is not None)
 
     @property
     def has_program(self) -> bool:

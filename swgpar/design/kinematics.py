@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ class Kinematics:
     """What the layout and the numbers of teeth make of the motion of a drive.
 
     teeth_fs, teeth_rg : numbers of teeth; a dynamic spline has those of the flexible spline
-    lobes : of the wave generator
+    lobes, lobes_are_alike : of the wave generator
     output_gear : the gear that is the output
     standing_gear : the gear that stands in the frame in which the drive is computed: the fixed one,
     or the driven ring gear
@@ -25,6 +26,7 @@ class Kinematics:
     teeth_fs: int
     teeth_rg: int
     lobes: int
+    lobes_are_alike: bool
     output_gear: GearName
     standing_gear: GearName
     wave_generator_is_fixed: bool
@@ -71,6 +73,22 @@ class Kinematics:
         return 2.0 * np.pi / self.teeth(self.standing_gear)
 
     @property
+    def repeats(self) -> int:
+        """How often the drive comes to the same state within a period, apart from names of teeth
+        and lobes: where like lobes do not divide the teeth of the standing gear, they reach the
+        middle of a tooth one after another."""
+        if not self.lobes_are_alike:
+            return 1
+        return self.lobes // math.gcd(self.lobes, self.teeth(self.standing_gear))
+
+    def apart(self, samples: int) -> int:
+        """The largest number of angles, evenly spaced in a period and at most `samples`, of which
+        no two show the same state."""
+        while math.gcd(samples, self.repeats) > 1:
+            samples -= 1
+        return samples
+
+    @property
     def output_pitch(self) -> float:
         """Angle of a pitch of the output, deg: a rotation by it with the wave generator locked
         renames its teeth."""
@@ -100,7 +118,7 @@ class Kinematics:
         return angle - wave_generator if self.wave_generator_is_fixed else angle
 
 
-def make_kinematics(drive: Drive, lobes: int, pancake: bool) -> Kinematics:
+def make_kinematics(drive: Drive, lobes: int, lobes_are_alike: bool, pancake: bool) -> Kinematics:
     """The motion of a drive. In a pancake drive the dynamic spline is the output or stands where
     the flexible spline does in others."""
     output: GearName = "dynamic_spline" if pancake else "flexible_spline"
@@ -108,4 +126,6 @@ def make_kinematics(drive: Drive, lobes: int, pancake: bool) -> Kinematics:
     if drive.layout == "spline_fixed":
         output, standing = standing, output
     fixed = drive.layout == "wave_generator_fixed"
-    return Kinematics(drive.teeth_fs, drive.teeth_rg, lobes, output, standing, fixed)
+    return Kinematics(
+        drive.teeth_fs, drive.teeth_rg, lobes, lobes_are_alike, output, standing, fixed
+    )

@@ -209,12 +209,12 @@ def _history_at(
 def _change_by_half(values: np.ndarray, cycle: StressCycle, safety: float) -> float | None:
     """Largest change of Goodman's safety with one or the other half of the angles.
 
-    None for an odd number of them, and for a load program.
+    None for a load program.
     """
-    if cycle.sequence.points or cycle.sequence.samples % 2:
+    if cycle.sequence.points:
         return None
-    halves = values.reshape(-1, 2)
-    high, low = halves.max(axis=0), halves.min(axis=0)
+    halves = [values[first::2] for first in (0, 1)]
+    high, low = (np.array([limit(half) for half in halves]) for limit in (np.max, np.min))
     utilisation = goodman(0.5 * (high - low), 0.5 * (high + low), cycle.model.design.fatigue)
     return float(np.abs(1.0 / utilisation - safety).max())
 

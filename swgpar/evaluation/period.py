@@ -11,10 +11,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from swgpar.design.kinematics import Kinematics
 from swgpar.errors import InputError
 from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import LoadState, Stage
-from swgpar.results.history import Row
+from swgpar.results.history import Row, column
+
+PLACE_DIGITS = 6
+"""Digits in which places of a period that are the same agree."""
 
 
 def of_period(sequence: LoadSequence, rows: list[Row]) -> list[Row]:
@@ -50,19 +54,32 @@ def require_samples(sequence: LoadSequence, sections: Sequence[str]) -> None:
         )
 
 
+def places(kinematics: Kinematics, rows: Sequence[Row]) -> np.ndarray:
+    """Places (n,) of rows in the part of the period after which the state repeats, 0 to 1."""
+    part = np.degrees(kinematics.period_angle) / kinematics.repeats
+    return np.round(column(rows, "wg_angle_deg") / part % 1.0, PLACE_DIGITS) % 1.0
+
+
+def in_order(place: np.ndarray) -> np.ndarray:
+    """Indices of different places in ascending order, one for each."""
+    return np.unique(place, return_index=True)[1]
+
+
 def sampling_error(
     sequence: LoadSequence, rows: list[Row], names: tuple[str, ...]
 ) -> dict[str, float]:
-    """Differences of the means over the period from those of half as many samples; empty for odd
-    numbers of samples."""
-    if sequence.samples % 2:
-        return {}
+    """Differences of the means over the period from those over every other place of its samples;
+    empty for a single place."""
     period = of_period(sequence, rows)
+    place = places(sequence.kinematics, period)
+    half = in_order(place)[::2]
+    if len(half) == len(np.unique(place)):
+        return {}
+    gaps = np.diff(place[half], append=place[half[0]] + 1.0)
+    weights = 0.5 * (gaps + np.roll(gaps, 1))
     return {
-        name: abs(
-            float(np.mean([r[name] for r in period]) - np.mean([r[name] for r in period[::2]]))
-        )
-        for name in names
+        name: abs(float(values.mean() - weights @ values[half]))
+        for name, values in ((name, column(period, name)) for name in names)
     }
 
 

@@ -1,25 +1,28 @@
 """Ranges over a sampled period: of the transmission error and of the input torque, with their
 errors.
 
-The error has two parts. The angles may miss the largest and the smallest value: the range over
-every other angle shows how much. The mesh is shown by the same period on a coarser one.
+The error has two parts. The angles may miss the largest and the smallest value: the ranges over
+every other angle show how much. The mesh is shown by the same angles on a coarser one. Its curve
+may have another shape and the same range, so the whole curves are compared.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from swgpar.design.kinematics import Kinematics
+from swgpar.evaluation.missed_peaks import FEWEST, missed_range
+from swgpar.evaluation.period import in_order, places
 from swgpar.results.history import Row, column, transmission_error
 
 INPUT_TORQUE = "wg_torque_Nmm"
 
-MISSED = 1.0 / 3.0
-"""Error of a largest value by the angles, over what every other angle changes: a smooth curve rises
-between angles by the square of their distance."""
+MISSED = 0.75
+"""Error of a range by the angles over the most that they can miss."""
 
 
 @dataclass(frozen=True)
@@ -34,38 +37,57 @@ class PeriodRanges:
 
 
 @dataclass(frozen=True)
-class CoarsePeriod:
-    """Ranges on a coarser mesh.
+class PeriodCurves:
+    """Values at the angles of a period.
 
+    transmission_error : (n,) arc seconds;  torque : (n,) N mm, of the input
+    """
+
+    transmission_error: list[float]
+    torque: list[float]
+
+    @property
+    def ranges(self) -> PeriodRanges:
+        """Largest less smallest."""
+        return PeriodRanges(
+            float(np.ptp(self.transmission_error)),
+            float(np.ptp(self.torque)),
+        )
+
+
+@dataclass(frozen=True)
+class CoarsePeriod:
+    """A period on a coarser mesh.
+
+    curves : at the angles of the run
     factor : on the changes from there, which gives the errors by the mesh
     """
 
-    ranges: PeriodRanges
+    curves: PeriodCurves
     factor: float
 
 
-def period_ranges(kinematics: Kinematics, rows: Sequence[Row], torque: str) -> PeriodRanges:
-    """Ranges over rows of the history. torque : column of the input torque"""
+def period_curves(kinematics: Kinematics, rows: Sequence[Row], torque: str) -> PeriodCurves:
+    """Curves over rows of the history. torque : column of the input torque"""
     angles = column(rows, "wg_angle_deg"), column(rows, "output_angle_deg")
-    return PeriodRanges(
-        float(np.ptp(transmission_error(*angles, kinematics.ratio))),
-        float(np.ptp(column(rows, torque))),
-    )
+    error = transmission_error(*angles, kinematics.ratio)
+    return PeriodCurves(error.tolist(), column(rows, torque).tolist())
 
 
 def range_errors(
     kinematics: Kinematics, rows: Sequence[Row], torque: str, coarse: CoarsePeriod | None
 ) -> PeriodRanges | None:
     """Errors of the ranges over the rows of a period; None where they are not known: without a
-    coarser mesh, or with an odd number of angles."""
-    if coarse is None or len(rows) % 2:
+    coarser mesh, or with fewer than four angles that show different states."""
+    order = in_order(places(kinematics, rows))
+    if coarse is None or len(order) < FEWEST:
         return None
-    every = period_ranges(kinematics, rows, torque)
-    halves = [period_ranges(kinematics, rows[first::2], torque) for first in (0, 1)]
+    curves = period_curves(kinematics, rows, torque)
 
     def error(name: str) -> float:
-        value = getattr(every, name)
-        missed = MISSED * (value - min(getattr(half, name) for half in halves))
-        return float(missed + coarse.factor * abs(value - getattr(coarse.ranges, name)))
+        value, before = (np.array(getattr(one, name)) for one in (curves, coarse.curves))
+        by_angles = MISSED * missed_range(value[order])
+        by_mesh = coarse.factor * float(np.ptp(value - before))
+        return math.hypot(by_angles, by_mesh)
 
     return PeriodRanges(error("transmission_error"), error("torque"))

@@ -23,7 +23,7 @@ from swgpar.evaluation.period_ranges import (
     INPUT_TORQUE,
     CoarsePeriod,
     PeriodRanges,
-    period_ranges,
+    period_curves,
     range_errors,
 )
 from swgpar.evaluation.result_frame import InputTorque, input_torque
@@ -174,7 +174,7 @@ def evaluate_rotation(
         means = {name: float(np.mean([row[name] for row in sampled])) for name in names}
         maxima = {name: float(column(sampled, name).max()) for name in names}
         name = "tooth_torque_Nmm" if driven else INPUT_TORQUE
-        over = period_ranges(kinematics, sampled, name)
+        over = period_curves(kinematics, sampled, name).ranges
         deviation, torque = over.transmission_error, column(sampled, name)
         if sequence.samples:
             half = sampling_error(sequence, list(rows), tuple(names))

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -9,15 +12,18 @@ import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.design.kinematics import Kinematics
+from swgpar.evaluation.missed_peaks import missed_range
 from swgpar.evaluation.period_ranges import (
     INPUT_TORQUE,
-    MISSED,
     CoarsePeriod,
+    PeriodCurves,
     PeriodRanges,
-    period_ranges,
+    period_curves,
     range_errors,
 )
 from swgpar.results.history import Row
+
+Curve = Callable[[np.ndarray], np.ndarray]
 
 
 @pytest.fixture
@@ -25,38 +31,94 @@ def kinematics() -> Kinematics:
     return swgpar.load_design(DESIGN, PLANE).kinematics
 
 
-def rows_of(kinematics: Kinematics, errors: list[float], torques: list[float]) -> list[Row]:
-    """Rows with these transmission errors (arc seconds) and torques (N mm)."""
-    angles = np.linspace(0.0, 5.0, len(errors), endpoint=False)
+def rows_of(kinematics: Kinematics, errors: np.ndarray, torques: np.ndarray) -> list[Row]:
+    """Rows at even angles of a period with these transmission errors (arc seconds) and torques
+    (N mm)."""
+    angles = np.degrees(kinematics.period_angle) * np.arange(len(errors)) / len(errors)
     return [
         {
-            "wg_angle_deg": angle,
-            "output_angle_deg": angle / kinematics.ratio + error / 3600.0,
-            INPUT_TORQUE: torque,
+            "wg_angle_deg": float(angle),
+            "output_angle_deg": float(angle / kinematics.ratio + error / 3600.0),
+            INPUT_TORQUE: float(torque),
         }
         for angle, error, torque in zip(angles, errors, torques, strict=True)
     ]
 
 
-def test_the_errors_add_what_angles_miss_and_what_the_mesh_changes(kinematics: Kinematics) -> None:
-    rows = rows_of(kinematics, [0.0, 4.0, 1.0, -2.0], [30.0, 33.0, 31.0, 29.0])
-    every = period_ranges(kinematics, rows, INPUT_TORQUE)
-    assert every.transmission_error == pytest.approx(6.0) and every.torque == 4.0
-    coarse = CoarsePeriod(PeriodRanges(5.0, 5.5), factor=1.6)
+def kinked(x: np.ndarray) -> np.ndarray:
+    """A curve (n,) that falls over 0.65 of a period and rises over the rest, along straight
+    lines."""
+    x = x % 1.0
+    return np.where(x < 0.65, 1.0 - 2.0 / 0.65 * x, 2.0 / 0.35 * (x - 0.65) - 1.0)
+
+
+def smooth(x: np.ndarray) -> np.ndarray:
+    """A smooth curve (n,)."""
+    return np.sin(2.0 * np.pi * x) + 0.3 * np.sin(4.0 * np.pi * x)
+
+
+def errors_of(kinematics: Kinematics, values: np.ndarray, before: np.ndarray) -> PeriodRanges:
+    """Errors of curves (n,) that are those of transmission error and torque alike, from those of a
+    coarser mesh."""
+    rows = rows_of(kinematics, values, values)
+    coarse = CoarsePeriod(PeriodCurves(before.tolist(), before.tolist()), factor=1.6)
     found = range_errors(kinematics, rows, INPUT_TORQUE, coarse)
     assert found is not None
-    # of the first and third angle the ranges are 1 and 1, of the others 6 and 4
-    assert found.transmission_error == pytest.approx(MISSED * 5.0 + 1.6 * 1.0)
-    assert found.torque == pytest.approx(MISSED * 3.0 + 1.6 * 1.5)
+    return found
 
 
-def test_without_a_coarser_mesh_or_with_odd_angles_nothing_is_known(
+@pytest.mark.parametrize("angles", [5, 6])
+@pytest.mark.parametrize(("curve", "most"), [(kinked, 1.01), (smooth, 0.6)])
+def test_what_angles_miss_of_known_curves(curve: Curve, most: float, angles: int) -> None:
+    """Where the curve is straight up to its kink all of it is known, of a smooth one less is
+    missed: with the first angle at any place."""
+    true = np.ptp(curve(np.linspace(0.0, 1.0, 10001)))
+    shares = []
+    for first in np.linspace(0.0, 1.0, 200, endpoint=False):
+        values = curve(first + np.arange(angles) / angles)
+        shares.append((true - np.ptp(values)) / missed_range(values))
+    print(f"{curve.__name__}, {angles}: {min(shares):.2f} to {max(shares):.2f}")
+    assert 0.0 <= min(shares) and 0.25 < max(shares) < most
+
+
+def test_a_coarser_mesh_with_another_curve_of_the_same_range_shows_an_error(
     kinematics: Kinematics,
 ) -> None:
-    rows = rows_of(kinematics, [0.0, 4.0, 1.0, -2.0], [30.0, 33.0, 31.0, 29.0])
+    values = np.array([0.0, 2.0, 0.0, 0.0, 2.0, 0.0])
+    before = np.roll(values, 1) + 7.0  # its mean does not count
+    errors = errors_of(kinematics, values, before)
+    assert np.ptp(values) == np.ptp(before)
+    assert errors.torque >= 1.6 * 2.0 and errors.transmission_error >= 1.6 * 2.0
+
+
+def test_lobes_that_do_not_divide_the_teeth_repeat_a_state_within_the_period(
+    kinematics: Kinematics,
+) -> None:
+    """With two lobes and an odd number of teeth six angles show three states, five show five."""
+    assert kinematics.repeats == 1 and kinematics.apart(6) == 6
+    odd = dataclasses.replace(kinematics, teeth_fs=41, teeth_rg=43)
+    assert odd.repeats == 2 and odd.apart(6) == 5 and odd.apart(4) == 3
+    assert dataclasses.replace(odd, lobes_are_alike=False).repeats == 1
+    three = dataclasses.replace(odd, teeth_fs=40, lobes=3)
+    assert three.repeats == 3 and three.apart(6) == 5 and three.apart(4) == 4
+    assert dataclasses.replace(three, teeth_rg=42).repeats == 1
+    values = np.arange(6.0)
+    coarse = CoarsePeriod(PeriodCurves(values.tolist(), values.tolist()), factor=1.6)
+    rows = rows_of(odd, values, values)
+    assert range_errors(odd, rows, INPUT_TORQUE, coarse) is None  # half of three shows nothing
+
+
+def test_without_a_coarser_mesh_or_with_few_angles_nothing_is_known(
+    kinematics: Kinematics,
+) -> None:
+    values = np.array([0.0, 4.0, 1.0, -2.0])
+    rows = rows_of(kinematics, values, values)
+    every = period_curves(kinematics, rows, INPUT_TORQUE).ranges
+    assert every.transmission_error == pytest.approx(6.0) and every.torque == 6.0
     assert range_errors(kinematics, rows, INPUT_TORQUE, None) is None
-    coarse = CoarsePeriod(PeriodRanges(5.0, 5.5), factor=1.6)
-    assert range_errors(kinematics, rows[:3], INPUT_TORQUE, coarse) is None
+    coarse = CoarsePeriod(PeriodCurves([0.0] * 3, [0.0] * 3), factor=1.6)
+    few = rows_of(kinematics, values[:3], values[:3])
+    assert range_errors(kinematics, few, INPUT_TORQUE, coarse) is None
 
 
 def test_a_run_states_them(kinematics: Kinematics) -> None:
