@@ -1,9 +1,9 @@
 """Ranges over a sampled period: of the transmission error and of the input torque, with their
 errors.
 
-The error has two parts. The angles may miss the largest and the smallest value: the ranges over
-every other angle show how much. The mesh is shown by the same angles on a coarser one. Its curve
-may have another shape and the same range, so the whole curves are compared.
+The error has two parts, of which one does not know of the other. The angles may miss the largest
+and the smallest value (`missed_peaks`). The mesh is shown by the same angles on a coarser one. Its
+curve may have another shape and the same range, so the whole curves are compared.
 """
 
 from __future__ import annotations

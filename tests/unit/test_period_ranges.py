@@ -11,8 +11,10 @@ import pytest
 import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
+from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.design.kinematics import Kinematics
 from swgpar.evaluation.missed_peaks import missed_range
+from swgpar.evaluation.period import places, sampling_error
 from swgpar.evaluation.period_ranges import (
     INPUT_TORQUE,
     CoarsePeriod,
@@ -21,7 +23,8 @@ from swgpar.evaluation.period_ranges import (
     period_curves,
     range_errors,
 )
-from swgpar.results.history import Row
+from swgpar.load.load_sequence import load_sequence
+from swgpar.results.history import Row, transmission_error
 
 Curve = Callable[[np.ndarray], np.ndarray]
 
@@ -106,6 +109,45 @@ def test_lobes_that_do_not_divide_the_teeth_repeat_a_state_within_the_period(
     coarse = CoarsePeriod(PeriodCurves(values.tolist(), values.tolist()), factor=1.6)
     rows = rows_of(odd, values, values)
     assert range_errors(odd, rows, INPUT_TORQUE, coarse) is None  # half of three shows nothing
+
+
+@pytest.mark.parametrize(("teeth", "angles"), [(42, 6), (43, 5)])
+def test_means_of_half_of_the_angles(kinematics: Kinematics, teeth: int, angles: int) -> None:
+    """Of a curve along straight lines between every other place both means agree."""
+    kinematics = dataclasses.replace(kinematics, teeth_rg=teeth)
+    design = swgpar.load_design(DESIGN, [*PLANE, f"steps.samples={angles}", "steps.rotation=9"])
+    sequence = dataclasses.replace(load_sequence(design), kinematics=kinematics)
+    rows = rows_of(kinematics, np.zeros(angles), np.zeros(angles))
+    known = np.unique(places(kinematics, rows))
+    every = known[::2]
+    heights = np.arange(len(every)) ** 2.0
+
+    def of(place: float) -> float:
+        return float(np.interp(place, [*every, 1.0], [*heights, heights[0]]))
+
+    for row, place in zip(rows, places(kinematics, rows), strict=True):
+        row["fs_s1"] = of(place)
+    gaps = np.diff([*every, 1.0])
+    mean = float(gaps @ (0.5 * (heights + np.roll(heights, -1))))
+    found = sampling_error(sequence, rows, ("fs_s1",))["fs_s1"]
+    assert found == pytest.approx(abs(np.mean([row["fs_s1"] for row in rows]) - mean), abs=1e-12)
+
+
+def test_a_run_takes_angles_that_show_different_states() -> None:
+    """The transmission error of an odd number of teeth repeats after half of a period."""
+    odd = {"drive.teeth_fs": 41, "drive.teeth_rg": 43, "steps.increment": 1.0}
+    design = swgpar.load_design(DESIGN, PLANE).with_values({**odd, "steps.rotation": 9.0})
+    taken = with_shortcuts(design, swgpar.load_mesh(RECIPE)).design
+    assert taken.steps.samples == 5
+    result = swgpar.run(taken.with_values({"steps.samples": 4}), RECIPE, progress=False)
+    kinematics = taken.kinematics
+    assert kinematics.repeats == 2
+    history = {name: result.history[name][:4] for name in ("wg_angle_deg", "output_angle_deg")}
+    errors = transmission_error(*history.values(), kinematics.ratio)
+    torques = result.history[INPUT_TORQUE][:4]
+    for values in (errors, torques):
+        assert values[:2] == pytest.approx(values[2:], rel=1e-4)
+        assert abs(values[1] - values[0]) > 1e-3 * abs(values[0])
 
 
 def test_without_a_coarser_mesh_or_with_few_angles_nothing_is_known(
