@@ -49,11 +49,13 @@ class MatrixKind:
     comm : communicator
     positions : (n_own, 2 or 3) mm, of this rank's nodes; a matrix has as many unknowns per node
     symmetric : whether the matrices are; `DiscreteProblem.tangent` says what else they are
+    thin : whether they are those of a whole drive, thin all around, and not of a part cut out of it
     """
 
     comm: MPI.Comm
     positions: np.ndarray
     symmetric: bool
+    thin: bool = False
 
     @property
     def unknowns_per_node(self) -> int:

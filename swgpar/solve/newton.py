@@ -93,7 +93,10 @@ class NewtonSolver:
         self._trial_cache: tuple[np.ndarray, np.ndarray] | None = None
         positions = problem.positions()[: problem.partition.n_own]
         kind = MatrixKind(
-            problem.partition.comm, positions[:, : problem.partition.dims], problem.symmetric
+            problem.partition.comm,
+            positions[:, : problem.partition.dims],
+            problem.symmetric,
+            thin=bool(problem.flanks),
         )
         if problem.blocks.linear is None:
             problem.blocks.linear = make_linear_solver(settings.linear, kind, "stiffness_")

@@ -21,7 +21,7 @@ from swgpar.meshing import load_recipe
 from swgpar.model.drive_model import DriveModel, build_drive_model
 from swgpar.petsc import PETSc
 from swgpar.solve.bordered_system import BorderedSystem
-from swgpar.solve.factors import NESTED_DISSECTION, QUASI_DENSE
+from swgpar.solve.factors import FEW_UNKNOWNS, MINIMUM_DEGREE, NESTED_DISSECTION
 from swgpar.solve.linear_solver import MatrixKind
 from swgpar.solve.linear_solvers import make_linear_solver
 
@@ -263,9 +263,23 @@ def test_options_of_one_model_are_not_those_of_the_next() -> None:
         model, _ = system(overrides, "rotation")
         bordered(model, "direct", "both_")
         assert options.getInt("mat_mumps_icntl_7") == (
-            QUASI_DENSE if dims == 2 else NESTED_DISSECTION
+            MINIMUM_DEGREE if dims == 2 else NESTED_DISSECTION
         )
         assert options.getInt("mat_mumps_icntl_13") == 0
+
+
+@pytest.mark.parallel([1, 2])
+def test_unknowns_of_coarse_meshes_of_drives_are_ordered_by_minimum_degree() -> None:
+    """Those of fine meshes and of parts that are cut out by nested dissection."""
+    coarse, fine = np.zeros((10, 3)), np.zeros((FEW_UNKNOWNS // 3, 3))
+    for positions, thin, expected in (
+        (coarse, True, MINIMUM_DEGREE),
+        (coarse, False, NESTED_DISSECTION),
+        (fine, True, NESTED_DISSECTION),
+    ):
+        kind = MatrixKind(MPI.COMM_WORLD, positions, symmetric=True, thin=thin)
+        make_linear_solver("direct", kind, "ordered_").destroy()
+        assert PETSc.Options("ordered_").getInt("mat_mumps_icntl_7") == expected
 
 
 @pytest.mark.parametrize("overrides", [(), ("drive.layout=spline_fixed",), PLANE])
