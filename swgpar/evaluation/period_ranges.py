@@ -21,9 +21,6 @@ from swgpar.results.history import Row, column, transmission_error
 
 INPUT_TORQUE = "wg_torque_Nmm"
 
-MISSED = 0.75
-"""Error of a range by the angles over the most that they can miss."""
-
 
 @dataclass(frozen=True)
 class PeriodRanges:
@@ -86,8 +83,7 @@ def range_errors(
 
     def error(name: str) -> float:
         value, before = (np.array(getattr(one, name)) for one in (curves, coarse.curves))
-        by_angles = MISSED * missed_range(value[order])
         by_mesh = coarse.factor * float(np.ptp(value - before))
-        return math.hypot(by_angles, by_mesh)
+        return math.hypot(missed_range(value[order]), by_mesh)
 
     return PeriodRanges(error("transmission_error"), error("torque"))
