@@ -126,7 +126,7 @@ class Refinement:
         self._replace(recipe)
         found = resolve_root_stress(self.model, self.loaded, self.levels)
         contacts = pair_contacts(self.model, self.loaded)
-        least = least_error(self.model, contacts)
+        least = least_error(self.model, contacts, found.part)
         error = drive_error(meshes, recipe, found, least, before)
         logger.info(
             "%d elements: s1 %.1f MPa under load; error by the windows %.2g %%, by the mesh of the "

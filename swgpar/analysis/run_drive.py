@@ -333,7 +333,7 @@ class DriveRun:
         record.contact_errors = contact_errors(
             known, self.recipe, contacts, self.model.design.wave_generator.lobes
         )
-        least = least_error(self.model, contacts)
+        least = least_error(self.model, contacts, found.part)
         error = drive_error(known, self.recipe, found, least)
         regions = region_errors(known, self.recipe, found, least, contacts)
         return replace(found, drive_error=error, regions=regions)

@@ -50,6 +50,10 @@ STRIPS = 48
 """Strips of a line on which its pressure is reported in the plane."""
 
 
+FACE_END = "end of the face width"
+"""Edge on which the load of a pair may lie, in words."""
+
+
 @dataclass(frozen=True)
 class PairContact:
     """Contact of two flanks.
@@ -277,7 +281,7 @@ def _with_pressure(
     foot = gap.foot(ends, np.array([top.z_mm]))
     on_ring_tip = bool(on_ring_tip or foot.min() < ring_cell)
     places = {
-        "end of the face width": reaches,
+        FACE_END: reaches,
         f"tip of the {tooth.body.replace('_', ' ')}": at_end,
         f"tip of the {facing.body.replace('_', ' ')}": on_ring_tip,
     }

@@ -48,8 +48,13 @@ end are outside."""
 MOST_LEVELS = {"plane": 5, "cup": 4}
 """Windows that there are; the last one has some 200,000 and 60,000 elements."""
 
-END_RATIO = 3.0
-"""Middle elements along the face width over those at both ends."""
+END_RATIO = (3.0, 6.0, 6.0, 6.0)
+"""Middle elements along the face width over those at both ends, coarse to fine. With few elements
+longer ones in the middle find the contact of the cam in more iterations."""
+
+UNDER_RATIO = 3.0
+"""Thickness of the lowest layer below the roots of a cup drive over that of the one at the root. In
+the plane there are many equal ones."""
 
 LEVELS = {"plane": 4, "cup": 3}
 """Windows in the loaded state."""
@@ -70,7 +75,9 @@ def window_recipe(model: str, level: int) -> MeshRecipe:
         section: {name: values[level] for name, values in counts.items()}
         for section, counts in COUNTS[model].items()
     }
-    if "face_width" in content:
-        content["face_width"]["end_ratio"] = END_RATIO
     content.setdefault("ring_gear", content["flexible_spline"])
+    if "face_width" in content:
+        content["face_width"]["end_ratio"] = END_RATIO[level]
+        for gear in ("flexible_spline", "ring_gear"):
+            content[gear]["under_ratio"] = UNDER_RATIO
     return make_recipe(content)

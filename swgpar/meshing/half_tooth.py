@@ -137,9 +137,10 @@ class HalfTooth:
         inner, centre = self._core_sides(side, i, a, j, w)
         k_to_i, q_to_j = line(k, i, fractions), line(q, j, fractions)
         w_to_q = np.concatenate((line(w, j, even(n_core))[:-1], q_to_j[::-1]))
-        down = even(recipe.under)
+        down = graded(recipe.under, recipe.under_ratio ** (1.0 / max(recipe.under - 1, 1)))
         q_to_b, w_to_c = line(q, b, down), line(w, bottom[0], down)
         root_angles, root_bottom = self._root_bottom(theta_b)
+        e_to_bottom = line(self.root[-1], root_bottom[-1], down)
         radii = interface + (self.free - interface) * even(recipe.rim)
         rim = [polar(radii, angle)[::-1] for angle in (0.0, theta_b, self.half_pitch)]
         cap_bottom = line(a, i, even(n_core))
@@ -149,7 +150,7 @@ class HalfTooth:
             (q_to_j[::-1], side[::-1], k_to_i[::-1], inner[::-1]),
             (w_to_q[: n_core + 1], inner[::-1], cap_bottom, centre[::-1]),
             (bottom, q_to_b[::-1], w_to_q, w_to_c[::-1]),
-            (root_bottom, line(root_bottom[-1], self.root[-1], down), self.root, q_to_b[::-1]),
+            (root_bottom, e_to_bottom[::-1], self.root, q_to_b[::-1]),
             (polar(self.free, theta_b * even(n_core + n_layer)), rim[1], bottom, rim[0]),
             (polar(self.free, root_angles), rim[2], root_bottom, rim[1]),
         ]

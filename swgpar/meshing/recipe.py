@@ -32,6 +32,9 @@ class ToothRecipe(Section):
     under: int = quantity(
         text="layers of elements between the root and the lower rim", ge=1, le=100
     )
+    under_ratio: float = quantity(
+        1.0, text="thickness of the lowest of these layers over that at the root", ge=1.0, le=20.0
+    )
     rim: int = quantity(
         text="layers of elements in the lower rim (flexible spline: through the cup)", ge=1, le=100
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,7 @@ from swgpar.analysis.accuracy import with_accuracy
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.drive_mesh_error import (
     LEAST,
+    LEAST_AT_LOADED_ENDS,
     LEAST_WITH_EDGES,
     ORDER,
     SAFETY,
@@ -27,7 +29,7 @@ from swgpar.analysis.drive_mesh_error import (
 from swgpar.analysis.mesh_refinement import ChosenMesh, choose_mesh
 from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.errors import InputError
-from swgpar.flank_pressure.pair_contact import pair_contacts
+from swgpar.flank_pressure.pair_contact import FACE_END, pair_contacts
 from swgpar.input.toml_file import to_toml
 from swgpar.largest_stress.root_stress import BETWEEN, ENDS, RootStress, resolve_root_stress
 from swgpar.largest_stress.window_recipes import LEVELS
@@ -214,7 +216,12 @@ def test_contacts_on_edges_leave_more_of_an_error() -> None:
     for values, least in ((profiles, LEAST_WITH_EDGES), ({}, LEAST["plane"])):
         design = with_shortcuts(load_design(PLANE_DRIVE, values), recipe, levels=False).design
         model = solve_to_load(design, recipe, MPI.COMM_SELF)
-        assert least_error(model, pair_contacts(model, load_sequence(design).loaded)) == least
+        contacts = pair_contacts(model, load_sequence(design).loaded)
+        assert least_error(model, contacts, BETWEEN) == least_error(model, contacts, ENDS) == least
+        # at the ends of teeth, where the load is on an end of the face width
+        at_end = [replace(contacts[0], edge=1, edge_place=f"{FACE_END} and the tip")]
+        assert least_error(model, at_end, ENDS) == LEAST_AT_LOADED_ENDS > LEAST_WITH_EDGES
+        assert least_error(model, at_end, BETWEEN) == LEAST_WITH_EDGES
 
 
 def test_the_error_holds() -> None:

@@ -497,6 +497,11 @@ def test_whole_drive_is_watertight(recipe: Path, overrides: tuple[str, ...]) -> 
             "layers = 1\nlayer_ratio = 0.5",
             ("flexible_spline.layer_ratio = 0.5", "1 to 3"),
         ),
+        (
+            "layers = 1",
+            "layers = 1\nunder_ratio = 0.5",
+            ("flexible_spline.under_ratio = 0.5", "1 to 20"),
+        ),
         ("rim = 1\n", "", ("flexible_spline.rim is missing",)),
         ("[face_width]\nelements = 2\n", "[face_width]\n", ("face_width.elements is missing",)),
         ("[face_width]\nelements = 2\n", "face_width = 3\n", ("ring_gear.face_width = 3",)),
@@ -649,6 +654,17 @@ def coarsest(**counts: float) -> MeshRecipe:
     """The smallest recipe of the plane with other counts on both gears."""
     section = {"tip": 2, "flank": 2, "root": 2, "under": 1, "rim": 1, **counts}
     return make_recipe({"flexible_spline": section, "ring_gear": section})
+
+
+@pytest.mark.parametrize("gear", ["flexible_spline", "ring_gear"])
+def test_layers_below_the_root_are_graded(gear: str) -> None:
+    """The lowest of three layers is four times as thick as the one at the root, twice the middle
+    one; the rim below has one layer."""
+    recipe = coarsest(under=3, under_ratio=4.0)
+    mesh = build_sector_meshes(plane_design().geometry, recipe)[gear]
+    radii = np.unique(np.hypot(*mesh.coords[mesh.ccw_nodes, :2].T).round(9))
+    thickness = np.diff(radii if gear == "ring_gear" else radii[::-1])
+    assert np.abs(thickness[1:3] / thickness[0]) == pytest.approx([2.0, 4.0], rel=1e-6)
 
 
 def test_an_inverted_quadrilateral_is_refused() -> None:
