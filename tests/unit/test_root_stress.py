@@ -83,7 +83,8 @@ def test_a_root_is_followed_below_a_stress_that_falls() -> None:
     ("region", "value", "level", "expected"),
     [
         ("tooth root", 99.6, 0, True),
-        ("tooth root", 99.0, 1, False),
+        ("tooth root", 99.6, 1, False),
+        ("tooth root", 99.9, 1, True),
         ("tooth end", 91.0, 0, True),
         ("tooth end", 89.0, 0, False),
         ("tooth end", 99.0, 1, False),
