@@ -23,8 +23,12 @@ from swgpar.analysis.drive_mesh_error import (
     shown_error,
     smallest_ratio,
 )
-from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares, error_of_largest
-from swgpar.evaluation.period_ranges import MISSED
+from swgpar.evaluation.contact_error_shares import (
+    MISSED,
+    UNKNOWN,
+    ContactErrorShares,
+    error_of_largest,
+)
 from swgpar.flank_pressure.pair_contact import PairContact
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe_counts import RATIO
