@@ -1,36 +1,43 @@
-"""The largest stresses of every region of the loaded drives on meshes of one family, with observed
-orders.
+"""Answers of several drives on meshes of one family, with observed orders.
 
 Runs under mpirun. The meshes of a family have elements smaller by one ratio in every direction, but
-for rounding to whole numbers. A stress is a nodal average, the largest one of its region.
+for rounding to whole numbers. Drives are those that scripts/bench/effectivity draws, and the
+reference drives. Finished runs are stored and not computed again: remove the file to compute them
+anew.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-import numpy as np
+from effectivity import MOST_MODELLED, SEED, Store, reference_drive
 from mpi4py import MPI
 from page import markdown, write_results
 from scipy.optimize import brentq
 
-from swgpar import load_design
-from swgpar.analysis.coarse_start import solve_to_load
-from swgpar.design.sections import GEARS
-from swgpar.meshing import load_recipe
+import swgpar
+from support.sensible_drives import MESHES, sensible_drives
 from swgpar.meshing.recipe_counts import RATIO, resized
-from swgpar.model.drive_model import DriveModel
 
-FAMILIES = {
-    "plane": ("drivers/plane_half_turn.toml", "plane_coarse", (1.0, RATIO, RATIO**2, RATIO**3)),
-    "cup": ("drivers/cup_45deg.toml", "forces", (1.0 / RATIO, 1.0, RATIO)),
-}
-"""Design, recipe, and elements in every direction over those of the recipe, coarse to fine."""
+OUT = Path("results/bench/convergence.jsonl")
 
-LOADED = ["steps.rotation=0", "steps.bent_start=true", "solver.rtol=1e-6"]
+RUN: dict[str, dict[str, Any]] = {"plane": {}, "cup": {"steps.rotation": 0.0}}
+"""Values of the design. A period of a cup drive would cost too much on the finest mesh."""
 
-QUANTITIES = ("s1", "s3", "vm")
+STIFFNESS = {"stiffness.positions": 1, "output.root_stress": False}
+"""The same of a stiffness loop at one angle of the wave generator."""
+
+OF_A_RUN = (
+    "root.s1",
+    "contact.pressure_off_edges",
+    "sharing.largest_force_share",
+    "rotation.transmission_error",
+)
+OF_STIFFNESS = "stiffness.K1", "stiffness.K2", "stiffness.K3", "stiffness.lost_motion"
 
 ORDERS = 0.1, 8.0
 """Smallest and largest order that is looked for."""
@@ -38,17 +45,84 @@ ORDERS = 0.1, 8.0
 Row = dict[str, Any]
 
 
-def by_region(model: DriveModel) -> dict[tuple[str, str, str], float]:
-    """Largest s1, |s3| and von Mises stress (MPa) by body, region and quantity; collective."""
-    found: dict[tuple[str, str, str], float] = {}
-    _, fields = model.stresses()
-    for k, (name, field) in enumerate(zip(GEARS, fields, strict=True)):
-        regions = model.regions[k][False]
-        for quantity in QUANTITIES:
-            values = -field["s3"] if quantity == "s3" else field[quantity]
-            for region in np.unique(regions):
-                here = float(values[:, regions == region].max(initial=-np.inf))
-                found[name, str(region), quantity] = model.comm.allreduce(here, op=MPI.MAX)
+@dataclass(frozen=True)
+class Family:
+    """A drive on meshes of several ratios of elements to those of the usual mesh."""
+
+    name: str
+    model: str
+    table: dict[str, Any]
+    ratios: tuple[float, ...]
+    torque: float | None = None
+    "Of the stiffness loop, N·m; None: that of the load."
+
+
+PLANE_RATIOS = 1.0, RATIO, RATIO**2, RATIO**3
+CUP_RATIOS = 1.0 / RATIO, 1.0, RATIO
+
+
+def families() -> list[Family]:
+    """Reference drives, the plane one with narrow teeth of the ring gear, and drawn drives."""
+    plane = reference_drive("plane").table
+    narrow = {**plane, "ring_gear": {**plane["ring_gear"], "c_P": 0.97}}
+    found = [
+        Family("reference", "plane", plane, PLANE_RATIOS, 2.0),
+        Family("reference, c_P 0.97", "plane", narrow, PLANE_RATIOS, 2.0),
+    ]
+    for model, names, ratios in (
+        ("plane", ("p004", "p006", "p012", "p017"), PLANE_RATIOS),
+        ("cup", ("c064", "c075"), CUP_RATIOS),
+    ):
+        count = 60 if model == "plane" else 20
+        drawn = {one.name: one for one in sensible_drives(count, SEED, model, MOST_MODELLED[model])}
+        found += [Family(name, model, drawn[name].table, ratios) for name in names]
+    cup = reference_drive("cup").table
+    return [*found, Family("reference cup", "cup", cup, CUP_RATIOS)]
+
+
+def measure(family: Family, store: Store) -> list[Row]:
+    """Rows of one family; collective."""
+    levels = []
+    for ratio in family.ratios:
+        recipe = resized(swgpar.load_mesh(MESHES[family.model]), ratio)
+        name = f"{family.name} {ratio:.4g}"
+        done = MPI.COMM_WORLD.bcast(store.found().get(name))
+        if done is None:
+            done = {"drive": name, "answers": solve(family, recipe)}
+            if MPI.COMM_WORLD.rank == 0:
+                store.keep(done)
+                print(name, flush=True)
+        levels.append(done["answers"])
+    rows = []
+    for answer in (*OF_A_RUN, *OF_STIFFNESS):
+        found = [level.get(answer) for level in levels]
+        if None in found:
+            continue
+        values = [one["value"] for one in found if one is not None]
+        rows.append(
+            {
+                "drive": family.name,
+                "answer": answer,
+                "ratios": [round(ratio, 3) for ratio in family.ratios],
+                "values": values,
+                "errors": [one["error"] for one in found if one is not None],
+                "order": order(values, [1.0 / ratio for ratio in family.ratios]),
+            }
+        )
+    return rows
+
+
+def solve(family: Family, recipe: swgpar.MeshRecipe) -> dict[str, dict[str, Any]]:
+    """Values and errors of the answers on one mesh; collective."""
+    torque = {"stiffness.torque": family.torque} if family.torque else {}
+    design = swgpar.load_design(family.table)
+    found: dict[str, dict[str, Any]] = {}
+    for names, values in ((OF_A_RUN, RUN[family.model]), (OF_STIFFNESS, STIFFNESS | torque)):
+        summary = swgpar.run(design.with_values(values), recipe, progress=False).summary
+        for name in names:
+            answer = summary.get(name)
+            if answer is not None and answer.value is not None:
+                found[name] = {"value": answer.value, "error": answer.error}
     return found
 
 
@@ -56,7 +130,7 @@ def order(values: list[float], sizes: list[float]) -> float | None:
     """Order observed on the last three meshes; None where their differences do not fall with one
     sign.
 
-    values : of a stress that converges as size**order;  sizes : of the elements, by their number
+    values : of an answer that converges as size**order;  sizes : of the elements
     """
     (a, b, c), (r, s, t) = values[-3:], sizes[-3:]
     if (b - a) * (c - b) <= 0.0:
@@ -69,73 +143,36 @@ def order(values: list[float], sizes: list[float]) -> float | None:
     return float(brentq(mismatch, low, high)) if mismatch(low) * mismatch(high) < 0.0 else None
 
 
-def measure(family: str) -> list[Row]:
-    """Rows of one family; collective."""
-    path, name, ratios = FAMILIES[family]
-    design = load_design(path, LOADED)
-    model = None
-    levels = []
-    elements = []
-    for ratio in ratios:
-        recipe = resized(load_recipe(name), ratio)
-        model = solve_to_load(design, recipe, MPI.COMM_WORLD, model)
-        levels.append(by_region(model))
-        elements.append(model.n_elements())
-        if MPI.COMM_WORLD.rank == 0:
-            print(f"{family}: {elements[-1]:,} elements", flush=True)
-    model.destroy()
-    rows = []
-    sizes = [count ** (-1.0 / (2 if name.startswith("plane") else 3)) for count in elements]
-    for body, region, quantity in levels[0]:
-        values = [level[body, region, quantity] for level in levels]
-        row = {
-            "model": family,
-            "body": body,
-            "region": region,
-            "quantity": quantity,
-            "elements": elements,
-        }
-        rows.append(
-            {**row, "values": [round(value, 2) for value in values], "order": order(values, sizes)}
-        )
-    return rows
-
-
 def table(rows: list[Row]) -> str:
     """The page's table."""
-    found = [
-        [
-            "drive",
-            "body",
-            "region",
-            "stress",
-            "MPa, coarse to fine",
-            "last change, %",
-            "observed order",
-        ]
-    ]
+    head = ["drive", "answer", "values, coarse to fine", "stated error of the usual mesh, %"]
+    found = [[*head, "change of the last three, %", "observed order"]]
     for row in rows:
-        values, seen = row["values"], row["order"]
-        change = 100.0 * (values[-1] / values[-2] - 1.0)
-        cells = [row["model"], row["body"].replace("_", " "), row["region"], row["quantity"]]
-        cells += [
-            ", ".join(f"{value:.1f}" for value in values),
-            f"{change:.1f}",
-            "" if seen is None else f"{seen:.1f}",
-        ]
-        found.append(cells)
+        values, seen, usual = row["values"], row["order"], row["ratios"].index(1.0)
+        last, error = values[-3:], row["errors"][usual]
+        cells = [row["drive"], row["answer"], ", ".join(f"{value:.5g}" for value in values)]
+        cells += ["no estimate" if error is None else f"{100.0 * error / abs(values[usual]):.1f}"]
+        cells += [f"{100.0 * (max(last) - min(last)) / abs(last[-1]):.2f}"]
+        found.append([*cells, "" if seen is None else f"{seen:.1f}"])
     return markdown(found)
 
 
 def main() -> None:
     """Measure the families, and write the page."""
-    options = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    options.parse_args()
-    rows = [row for family in FAMILIES for row in measure(family)]
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--out", type=Path, default=OUT, help="file of finished runs")
+    options.add_argument("--only", nargs="+", default=None, help="names of the drives to run")
+    arguments = options.parse_args()
+    store = Store(arguments.out)
     if MPI.COMM_WORLD.rank == 0:
+        arguments.out.parent.mkdir(parents=True, exist_ok=True)
+    every = families()
+    chosen = [one for one in every if arguments.only is None or one.name in arguments.only]
+    rows = [row for family in chosen for row in measure(family, store)]
+    if MPI.COMM_WORLD.rank == 0 and chosen == every:
         write_results("convergence", tuple(rows[0]), rows, table(rows))
+    elif MPI.COMM_WORLD.rank == 0:
+        print(json.dumps(rows, indent=1))
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ from support.commands import environment, on_ranks
 from support.paths import DRIVERS
 from support.sensible_drives import MESHES, SensibleDrive, sensible_drives
 from swgpar.answers.answer import NO_LIMIT
-from swgpar.input.toml_file import read_toml
+from swgpar.input.toml_file import read_toml, with_value
 
 OUT = Path("results/bench/effectivity")
 
@@ -95,7 +95,8 @@ class Store:
 def reference_drive(model: str) -> SensibleDrive:
     """The reference drive of a model."""
     name = REFERENCE_DRIVES[model]
-    return SensibleDrive(name, model, read_toml(DRIVERS / f"{name}.toml"), "reference drive")
+    table = with_value(read_toml(DRIVERS / f"{name}.toml"), "drive.model", model)
+    return SensibleDrive(name, model, table, "reference drive")
 
 
 def solve(

@@ -1,140 +1,128 @@
 """Run time against the true error of the largest tension at the teeth under load, for the reference
-drives.
+drives and drawn ones, before and now.
 
-Two ways are compared: windows, as `swgpar run` resolves that stress, and nodal averages on finer
-and finer meshes of the whole drive, in one period with a start on coarser meshes. `--nodal
-CHECKOUT` runs the second one by another installation. The true stress is that of the references of
-the effectivity benchmark. All runs take place in one sitting.
+`--before CHECKOUT` runs the same by another installation. The true stress is that of the references
+of the effectivity benchmark. Seconds are those of the processor, of one process: on a machine that
+others use they change less than wall seconds. A run that has finished is not computed again: remove
+the folder to compute it anew.
 """
 
 from __future__ import annotations
 
 import argparse
-import csv
 import json
-import shutil
+import resource
 import subprocess
-import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from effectivity import MOST_MODELLED, SEED, Store, reference_drive
 from effectivity import OUT as EFFECTIVITY
-from effectivity import REFERENCE_DRIVES, Store
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from page import markdown, write_results
 
 import swgpar
 from support.commands import environment
+from support.paths import ROOT
+from support.sensible_drives import SensibleDrive, sensible_drives
+from swgpar.input.toml_file import to_toml
 
 OUT, PICTURE = Path("results/bench/time_error"), Path("docs/verification/data/time_error.png")
 
-DESIGNS = {"cup": "drivers/cup_45deg.toml", "plane": "drivers/plane_half_turn.toml"}
+DRAWN = {"plane": ("p012", "p017", "p063"), "cup": ("c064", "c075")}
+"""Drives of scripts/bench/effectivity that are run as well."""
 
-FAST = ["steps.samples=8", "steps.pins=false", "solver.rtol=1e-5"]
-"""Shortcuts of a run by nodal averages."""
+RUNS: dict[str, list[str]] = {
+    "default": [],
+    "accuracy 0.02": ["--accuracy", "0.02"],
+    "accuracy 0.01": ["--accuracy", "0.01"],
+}
+"""Arguments of `swgpar run DESIGN`."""
 
-WAYS = ("windows", "nodal averages")
+NOW = "now"
 
-Run = tuple[str, str, str, list[str]]
-"""Model, way, label, and arguments of `swgpar run DESIGN`."""
+COLUMNS = ("drive", "commit", "run", "cpu_s", "s1", "stated", "error")
 
-RUNS: list[Run] = [
-    ("cup", WAYS[0], "default", []),
-    ("cup", WAYS[0], "accuracy 0.05", ["--accuracy", "0.05"]),
-    ("cup", WAYS[0], "accuracy 0.02", ["--accuracy", "0.02"]),
-    ("cup", WAYS[0], "accuracy 0.01", ["--accuracy", "0.01"]),
-    ("cup", WAYS[0], "full", ["--mesh", "full"]),
-    ("cup", WAYS[1], "coarse", ["--mesh", "coarse", "--set", *FAST]),
-    ("cup", WAYS[1], "medium", ["--mesh", "medium", "--set", *FAST]),
-    ("cup", WAYS[1], "full", ["--mesh", "full", "--set", *FAST, "steps.start_levels=2"]),
-    ("plane", WAYS[0], "default", []),
-    ("plane", WAYS[0], "accuracy 0.02", ["--accuracy", "0.02"]),
-    ("plane", WAYS[0], "accuracy 0.005", ["--accuracy", "0.005"]),
-    ("plane", WAYS[1], "plane_coarse", ["--mesh", "plane_coarse", "--set", *FAST]),
-    ("plane", WAYS[1], "plane", ["--mesh", "plane", "--set", *FAST, "steps.start_levels=2"]),
-    (
-        "plane",
-        WAYS[1],
-        "plane_fine",
-        ["--mesh", "plane_fine", "--set", *FAST, "steps.start_levels=3"],
-    ),
-    ("plane", WAYS[1], "accuracy 0.02", ["--mesh", "plane_coarse", "--accuracy", "0.02"]),
-]
+HEAD = ["drive", "commit", "run", "processor s", "s1 under load, MPa", "stated error, %"]
+HEAD += ["true error, %"]
 
-COLUMNS = ("model", "way", "run", "wall_s", "s1", "stated", "error")
-
-HEAD = ["drive", "way", "run", "s", "s1 under load", "stated error", "true error, %"]
+Row = dict[str, Any]
 
 
-def references() -> dict[str, float]:
-    """True s1 (MPa) by model, of `scripts/bench/effectivity --references plane cup`."""
-    runs = Store(EFFECTIVITY / "loaded_reference.jsonl").found()
-    return {
-        model: runs[name]["answers"]["root.s1"]["value"] for model, name in REFERENCE_DRIVES.items()
-    }
+@dataclass(frozen=True)
+class Installation:
+    """A built checkout. name : of its commit"""
+
+    name: str
+    folder: Path
+
+    def variables(self) -> dict[str, str]:
+        """Environment of a run; that of another checkout has not the packages of this one."""
+        own = environment() | {"OMP_NUM_THREADS": "1"}
+        return own if self.name == NOW else own | {"PYTHONPATH": str(self.folder)}
 
 
-def measure(run: Run, ranks: int, other: Path | None, true: float) -> dict[str, Any]:
+def drives() -> list[SensibleDrive]:
+    """Reference drives and drawn ones."""
+    found = []
+    for model, names in DRAWN.items():
+        found.append(reference_drive(model))
+        count = 1 + max(int(name[1:]) for name in names)
+        drawn = sensible_drives(count, SEED, model, MOST_MODELLED[model])
+        found += [drive for drive in drawn if drive.name in names]
+    return found
+
+
+def measure(drive: SensibleDrive, run: str, by: Installation, true: float, out: Path) -> Row:
     """Run it; ends the benchmark where it fails. true : s1, MPa"""
-    model, way, label, options = run
-    here = other if way == WAYS[1] and other else Path.cwd()
-    meshes = {"--mesh": lambda name: name if here == Path.cwd() else f"mesh/{name}.toml"}
-    options = [meshes.get(before, str)(option) for before, option in zip(["", *options], options)]
-    options += [] if "--set" in options else ["--set"]
-    folder = (OUT / f"{model}_{way}_{label}".replace(" ", "_")).absolute()
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    command = ["mpirun", "-n", str(ranks), str(here / ".venv/bin/swgpar"), "run", DESIGNS[model]]
-    command += [*options, "output.figures=false", "--out", str(folder)]
-    begin = time.perf_counter()
-    # not the packages of this checkout in another one
-    variables = {
-        name: value
-        for name, value in environment().items()
-        if here == Path.cwd() or name != "PYTHONPATH"
-    }
-    done = subprocess.run(command, cwd=here, capture_output=True, text=True, env=variables)
-    seconds = time.perf_counter() - begin
+    folder = (out / f"{drive.name}_{by.name}_{run}".replace(" ", "_")).absolute()
+    stored = folder.with_suffix(".json")
+    if stored.exists():
+        row: Row = json.loads(stored.read_text(encoding="utf-8"))
+        return row | {"error": abs(row["s1"] - true) / true}
+    design = folder.with_suffix(".toml")
+    design.parent.mkdir(parents=True, exist_ok=True)
+    design.write_text(to_toml(drive.table), encoding="utf-8")
+    command = [str(ROOT / ".venv/bin/python"), "-c", MAIN, "run", str(design), *RUNS[run]]
+    command += ["--set", "output.figures=false", "--out", str(folder), "--overwrite"]
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    done = subprocess.run(
+        command, cwd=by.folder, capture_output=True, text=True, env=by.variables()
+    )
+    seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
     if done.returncode:
         raise SystemExit(f"{' '.join(command)}: {done.stderr or done.stdout}")
-    with (folder / "history.csv").open(encoding="utf-8") as file:
-        loaded = next(row for row in csv.DictReader(file) if int(row["step"]) >= 3)
-    s1, stated = float(loaded["fs_s1"]), None
-    if way == WAYS[0]:
-        root = swgpar.open_result(folder).summary.root_stress
-        s1, stated = root.s1, root.total_error
-    row = {
-        "model": model,
-        "way": way,
-        "run": label,
-        "wall_s": round(seconds, 1),
-        "s1": round(s1, 2),
-    }
-    return {
-        **row,
-        "stated": stated and round(stated, 2),
-        "error": abs(s1 - true) / true,
-    }
+    root = swgpar.open_result(folder).summary.root_stress
+    s1, stated = root.s1, root.total_error
+    row = {"drive": drive.name, "commit": by.name, "run": run, "cpu_s": round(seconds, 1)}
+    row |= {"s1": round(s1, 2), "stated": stated and round(stated, 2)}
+    stored.write_text(json.dumps(row), encoding="utf-8")
+    return row | {"error": abs(s1 - true) / true}
 
 
-def draw(rows: list[dict[str, Any]]) -> None:
-    """Error over seconds, log-log."""
-    figure = Figure(figsize=(9.0, 4.5), layout="constrained")
-    for axes, model in zip(figure.subplots(1, 2), DESIGNS):
-        for way, style in zip(WAYS, ("o", "s")):
-            mine = [row for row in rows if (row["model"], row["way"]) == (model, way)]
+MAIN = "import sys; from swgpar.cli import main; sys.exit(main())"
+
+
+def draw(rows: list[Row], names: list[str]) -> None:
+    """Error over seconds, log-log; a line from before to now for every kind of run."""
+    figure = Figure(figsize=(9.0, 3.2 * (len(names) + 1) // 2), layout="constrained")
+    panels = figure.subplots((len(names) + 1) // 2, 2).ravel()
+    commits = list(dict.fromkeys(row["commit"] for row in rows))
+    for axes, name in zip(panels, names, strict=False):
+        for commit, style in zip(commits, ("o", "s"), strict=False):
+            mine = [row for row in rows if (row["drive"], row["commit"]) == (name, commit)]
             axes.loglog(
-                [r["wall_s"] for r in mine], [100.0 * r["error"] for r in mine], style, label=way
+                [r["cpu_s"] for r in mine],
+                [100.0 * max(r["error"], SMALLEST) for r in mine],
+                style,
+                label=commit,
             )
             for row in mine:
-                place = row["wall_s"], 100.0 * row["error"]
-                axes.annotate(
-                    row["run"], place, (2, 4), textcoords="offset points", fontsize=7, rotation=50
-                )
-        axes.set(
-            title=f"{model} drive", xlabel="wall seconds on 2 ranks", ylabel="true error of s1 (%)"
-        )
+                place = row["cpu_s"], 100.0 * max(row["error"], SMALLEST)
+                axes.annotate(row["run"], place, (3, 4), textcoords="offset points", fontsize=7)
+        axes.set(title=name, xlabel="processor seconds", ylabel="true error of s1 (%)")
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
@@ -142,45 +130,51 @@ def draw(rows: list[dict[str, Any]]) -> None:
         axes.grid(alpha=0.3, which="both")
         axes.margins(0.25)
         axes.legend(fontsize=8)
+    for axes in panels[len(names) :]:
+        axes.remove()
     figure.savefig(PICTURE, dpi=120)
 
 
-def write(rows: list[dict[str, Any]]) -> None:
+SMALLEST = 1e-4
+"""Least error that is drawn: the references are known no better."""
+
+
+def write(rows: list[Row], names: list[str]) -> None:
     """Picture, data and table of the page."""
-    draw(rows)
+    draw(rows, names)
     cells = [HEAD]
     for row in rows:
-        stated = "" if row["stated"] is None else f"{row['stated']:.1f}"
-        numbers = [
-            f"{row['wall_s']:.0f}",
-            f"{row['s1']:.1f}",
-            stated,
-            f"{100.0 * row['error']:.2f}",
-        ]
-        cells.append([row["model"], row["way"], row["run"], *numbers])
+        stated = row["stated"]
+        cells.append([row["drive"], row["commit"], row["run"], f"{row['cpu_s']:.0f}"])
+        cells[-1] += [f"{row['s1']:.1f}"]
+        cells[-1] += ["no estimate" if stated is None else f"{100.0 * stated / row['s1']:.2f}"]
+        cells[-1] += [f"{100.0 * row['error']:.2f}"]
     write_results("time_error", COLUMNS, rows, markdown(cells))
 
 
 def main() -> None:
     """Measure, and write table and picture."""
-    options = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    options.add_argument("--ranks", type=int, default=2)
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--out", type=Path, default=OUT, help="folder of finished runs")
     options.add_argument(
-        "--nodal", type=Path, metavar="CHECKOUT", help="built checkout for the nodal averages"
+        "--references", type=Path, default=EFFECTIVITY, help="finished runs of the effectivity"
     )
+    options.add_argument("--before", type=Path, metavar="CHECKOUT", help="another built checkout")
+    options.add_argument("--name", default="a902ee9", help="commit of the other checkout")
     arguments = options.parse_args()
-    true = references()
+    installations = [Installation(NOW, Path.cwd())]
+    if arguments.before:
+        installations.insert(0, Installation(arguments.name, arguments.before.absolute()))
+    references = Store(arguments.references / "loaded_reference.jsonl").found()
     rows = []
-    for run in RUNS:
-        rows.append(
-            measure(
-                run, arguments.ranks, arguments.nodal and arguments.nodal.absolute(), true[run[0]]
-            )
-        )
-        print(json.dumps(rows[-1]), flush=True)
-    write(rows)
+    every = drives()
+    for drive in every:
+        true = references[drive.name]["answers"]["root.s1"]["value"]
+        for run in RUNS:
+            for by in installations:
+                rows.append(measure(drive, run, by, true, arguments.out))
+                print(json.dumps(rows[-1]), flush=True)
+    write(rows, [drive.name for drive in every])
 
 
 if __name__ == "__main__":
