@@ -106,9 +106,8 @@ def test_own_profile(tmp_path: Path) -> None:
     *_, curve, keys, branch = examples(HOWTO / "own_cam_or_profile.md", "python")
     profiles = copied_package(tmp_path) / "profiles"
     (profiles / "straight_sided.py").write_text(curve, encoding="utf-8")
-    insert(profiles / "keys.py", "ExternalProfile = ", f"{keys}\n\n")
-    for involute in ("RackInvolute", "ShaperInvolute"):
-        insert(profiles / "keys.py", f"{involute}\n    | Conjugate,", "StraightSided | ")
+    insert(profiles / "keys.py", "_EitherGear = ", f"{keys}\n\n")
+    insert(profiles / "keys.py", "QuadrupleArc | DoubleArc | ", "StraightSided | ")
     factory = profiles / "__init__.py"
     insert(factory, "    else:\n        profile = involute(", branch)
     insert(factory, "    Trapezoid,\n)\n", "    StraightSided,\n")
