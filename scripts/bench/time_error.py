@@ -130,12 +130,17 @@ def draw(rows: list[Row], names: list[str]) -> None:
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_formatter(NullFormatter())
         axes.grid(alpha=0.3, which="both")
-        axes.margins(0.25)
+        for limits, kept in ((axes.get_xlim, axes.set_xlim), (axes.get_ylim, axes.set_ylim)):
+            low, high = limits()
+            kept(low / MARGIN, high * MARGIN)  # so that small differences look small
         axes.legend(fontsize=8)
     for axes in panels[len(names) :]:
         axes.remove()
     figure.savefig(PICTURE, dpi=120)
 
+
+MARGIN = 2.0
+"""Factor by which axes reach beyond the values."""
 
 SMALLEST = 1e-4
 """Least error that is drawn: the references are known no better."""
@@ -147,7 +152,7 @@ def write(rows: list[Row], names: list[str]) -> None:
     cells = [HEAD]
     for row in rows:
         stated = row["stated"]
-        cells.append([row["drive"], row["commit"], row["run"], f"{row['cpu_s']:.0f}"])
+        cells.append([row["drive"], row["commit"], row["run"], f"{row['cpu_s']:.1f}"])
         cells[-1] += [f"{row['s1']:.1f}"]
         cells[-1] += ["no estimate" if stated is None else f"{100.0 * stated / row['s1']:.2f}"]
         cells[-1] += [f"{100.0 * row['error']:.2f}"]
