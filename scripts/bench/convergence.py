@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,6 @@ from typing import Any
 from effectivity import SEED, Store, reference_drive
 from mpi4py import MPI
 from page import markdown, write_results
-from scipy.optimize import brentq
 
 import swgpar
 from support.sensible_drives import MESHES, sensible_drives
@@ -37,19 +37,21 @@ OF_A_RUN = (
 OF_STIFFNESS = "stiffness.K1", "stiffness.K2", "stiffness.K3", "stiffness.lost_motion"
 
 ORDERS = 0.1, 8.0
-"""Smallest and largest order that is looked for."""
+"""Smallest and largest order that is told of."""
 
 Row = dict[str, Any]
 
 
 @dataclass(frozen=True)
 class Family:
-    """A plane drive on meshes of several ratios of elements to those of the usual mesh."""
+    """A plane drive on the meshes of `RATIOS`.
+
+    torque : of the stiffness loop, N·m; None: that of the load
+    """
 
     name: str
     table: dict[str, Any]
     torque: float | None = None
-    "Of the stiffness loop, N·m; None: that of the load."
 
 
 RATIOS = 1.0, RATIO, RATIO**2, RATIO**3
@@ -83,20 +85,20 @@ def measure(family: Family, store: Store) -> list[Row]:
                 store.keep(done)
                 print(name, flush=True)
         levels.append(done["answers"])
-    rows = []
+    rows: list[Row] = []
     for answer in (*OF_A_RUN, *OF_STIFFNESS):
-        found = [level.get(answer) for level in levels]
-        if None in found:
+        found = [level[answer] for level in levels if answer in level]
+        if len(found) < len(RATIOS):
             continue
-        values = [one["value"] for one in found if one is not None]
+        values = [one["value"] for one in found]
         rows.append(
             {
                 "drive": family.name,
                 "answer": answer,
                 "ratios": [round(ratio, 3) for ratio in RATIOS],
                 "values": values,
-                "errors": [one["error"] for one in found if one is not None],
-                "order": order(values, [1.0 / ratio for ratio in RATIOS]),
+                "errors": [one["error"] for one in found],
+                "order": order(values),
             }
         )
     return rows
@@ -116,21 +118,15 @@ def solve(family: Family, recipe: swgpar.MeshRecipe) -> dict[str, dict[str, Any]
     return found
 
 
-def order(values: list[float], sizes: list[float]) -> float | None:
-    """Order observed on the last three meshes; None where their differences do not fall with one
-    sign.
-
-    values : of an answer that converges as size**order;  sizes : of the elements
-    """
-    (a, b, c), (r, s, t) = values[-3:], sizes[-3:]
+def order(values: list[float]) -> float | None:
+    """Order observed on the last three meshes, of a value that converges as the size of elements to
+    this power; None where their differences do not fall with one sign, or it is not in `ORDERS`."""
+    a, b, c = values[-3:]
     if (b - a) * (c - b) <= 0.0:
         return None
-
-    def mismatch(p: float) -> float:
-        return (b - a) / (c - b) - (r**p - s**p) / (s**p - t**p)
-
     low, high = ORDERS
-    return float(brentq(mismatch, low, high)) if mismatch(low) * mismatch(high) < 0.0 else None
+    seen = math.log((b - a) / (c - b)) / math.log(RATIO)
+    return seen if low < seen < high else None
 
 
 def five_digits(value: float) -> str:
@@ -143,10 +139,10 @@ def table(rows: list[Row]) -> str:
     head = ["drive", "answer", "values, coarse to fine", "stated error of the usual mesh, %"]
     found = [[*head, "change of the last three, %", "observed order"]]
     for row in rows:
-        values, seen, usual = row["values"], row["order"], row["ratios"].index(1.0)
-        last, error = values[-3:], row["errors"][usual]
+        values, seen = row["values"], row["order"]
+        last, error = values[-3:], row["errors"][0]  # the first mesh is the usual one
         cells = [row["drive"], row["answer"], "; ".join(five_digits(value) for value in values)]
-        cells += ["no estimate" if error is None else f"{100.0 * error / abs(values[usual]):.1f}"]
+        cells += ["no estimate" if error is None else f"{100.0 * error / abs(values[0]):.1f}"]
         cells += [f"{100.0 * (max(last) - min(last)) / abs(last[-1]):.2f}"]
         found.append([*cells, "" if seen is None else f"{seen:.1f}"])
     return markdown(found)

@@ -43,7 +43,15 @@ RUNS: dict[str, list[str]] = {
 OF_MODEL = {"plane": tuple(RUNS), "cup": ("default",)}
 """Runs of the drives of a model. With an accuracy of 1 % a cup drive takes minutes."""
 
+MAIN = "import sys; from swgpar.cli import main; sys.exit(main())"
+
 NOW = "now"
+
+MARGIN = 2.0
+"""Factor by which axes of the picture reach beyond the values."""
+
+SMALLEST = 1e-4
+"""Least error that is drawn: the references are known no better."""
 
 COLUMNS = ("drive", "commit", "run", "cpu_s", "s1", "stated", "error")
 
@@ -77,14 +85,13 @@ def drives() -> list[SensibleDrive]:
     return found
 
 
-def measure(drive: SensibleDrive, run: str, by: Installation, true: float, out: Path) -> Row:
-    """Run it; ends the benchmark where it fails. true : s1, MPa"""
+def measure(drive: SensibleDrive, run: str, by: Installation, out: Path) -> Row:
+    """Run it; ends the benchmark where it fails."""
     folder = (out / f"{drive.name}_{by.name}_{run}".replace(" ", "_")).absolute()
-    stored = folder.with_suffix(".json")
+    stored, design = (folder.with_name(folder.name + end) for end in (".json", ".toml"))
     if stored.exists():
         row: Row = json.loads(stored.read_text(encoding="utf-8"))
-        return row | {"error": abs(row["s1"] - true) / true}
-    design = folder.with_suffix(".toml")
+        return row
     design.parent.mkdir(parents=True, exist_ok=True)
     design.write_text(to_toml(drive.table), encoding="utf-8")
     command = [str(ROOT / ".venv/bin/python"), "-c", MAIN, "run", str(design), *RUNS[run]]
@@ -101,14 +108,11 @@ def measure(drive: SensibleDrive, run: str, by: Installation, true: float, out: 
     row = {"drive": drive.name, "commit": by.name, "run": run, "cpu_s": round(seconds, 1)}
     row |= {"s1": round(s1, 2), "stated": stated and round(stated, 2)}
     stored.write_text(json.dumps(row), encoding="utf-8")
-    return row | {"error": abs(s1 - true) / true}
-
-
-MAIN = "import sys; from swgpar.cli import main; sys.exit(main())"
+    return row
 
 
 def draw(rows: list[Row], names: list[str]) -> None:
-    """Error over seconds, log-log; a line from before to now for every kind of run."""
+    """Error over seconds, log-log, a panel for each drive."""
     figure = Figure(figsize=(9.0, 3.2 * (len(names) + 1) // 2), layout="constrained")
     panels = figure.subplots((len(names) + 1) // 2, 2).ravel()
     commits = list(dict.fromkeys(row["commit"] for row in rows))
@@ -137,13 +141,6 @@ def draw(rows: list[Row], names: list[str]) -> None:
     for axes in panels[len(names) :]:
         axes.remove()
     figure.savefig(PICTURE, dpi=120)
-
-
-MARGIN = 2.0
-"""Factor by which axes reach beyond the values."""
-
-SMALLEST = 1e-4
-"""Least error that is drawn: the references are known no better."""
 
 
 def write(rows: list[Row], names: list[str]) -> None:
@@ -179,7 +176,8 @@ def main() -> None:
         true = references[drive.name]["answers"]["root.s1"]["value"]
         for run in OF_MODEL[drive.model]:
             for by in installations:
-                rows.append(measure(drive, run, by, true, arguments.out))
+                row = measure(drive, run, by, arguments.out)
+                rows.append(row | {"error": abs(row["s1"] - true) / true})
                 print(json.dumps(rows[-1]), flush=True)
     write(rows, [drive.name for drive in every])
 

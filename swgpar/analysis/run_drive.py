@@ -244,8 +244,10 @@ class DriveRun:
                 logger.info("the error by the mesh of the drive is not known: %s", error)
                 self.coarser.append(None)
                 return
-            self._keep_coarse(model, recipe)
-            model.destroy()
+            try:
+                self._keep_coarse(model, recipe)
+            finally:
+                model.destroy()
 
     def go_through(self, states: Sequence[LoadState]) -> None:
         """Compute and record the increments that are left."""

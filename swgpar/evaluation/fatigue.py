@@ -214,7 +214,8 @@ def _change_by_half(values: np.ndarray, cycle: StressCycle, safety: float) -> fl
     if cycle.sequence.points:
         return None
     halves = [values[first::2] for first in (0, 1)]
-    high, low = (np.array([limit(half) for half in halves]) for limit in (np.max, np.min))
+    high = np.array([half.max() for half in halves])
+    low = np.array([half.min() for half in halves])
     utilisation = goodman(0.5 * (high - low), 0.5 * (high + low), cycle.model.design.fatigue)
     return float(np.abs(1.0 / utilisation - safety).max())
 
