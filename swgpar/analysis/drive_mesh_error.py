@@ -86,6 +86,28 @@ class CoarserMesh:
     regions: Mapping[str, RegionStress] = field(default_factory=dict)
 
 
+@dataclass(frozen=True)
+class MeshComparison:
+    """A mesh of the drive and the coarser ones with which it is compared.
+
+    coarser : the coarsest first;  contacts : of all touching pairs on the mesh
+    before : see `drive_error`
+    """
+
+    recipe: MeshRecipe
+    coarser: Sequence[CoarserMesh]
+    contacts: Sequence[PairContact]
+    before: RootStress | None = None
+
+    def with_errors(self, found: RootStress) -> RootStress:
+        """Stresses by windows on the mesh, with their errors by the mesh of the drive. More windows
+        may find the largest stress in another part of the teeth, of another error."""
+        least = least_error(self.recipe.model, self.contacts, found.part)
+        error = drive_error(self.coarser, self.recipe, found, least, self.before)
+        regions = region_errors(self.coarser, self.recipe, found, least, self.contacts)
+        return replace(found, drive_error=error, regions=regions)
+
+
 def coarser_recipes(recipe: MeshRecipe) -> list[MeshRecipe]:
     """Recipes with which a mesh is compared, the coarsest first; none where the coarser one would
     not find the contacts."""
@@ -128,13 +150,14 @@ def drive_error(
     recipe: MeshRecipe,
     fine: RootStress,
     least: float,
-    before: float | None = None,
+    before: RootStress | None = None,
 ) -> float | None:
     """Error (MPa) by the mesh of the drive; None where no coarser mesh shows it.
 
     coarser : of the same windows, the coarsest first;  recipe, fine : the mesh itself
     least : share of the stress, see `least_error`
-    before : error on the coarsest mesh, if it is known
+    before : on the coarsest mesh, with its error, if it is known; of no account where another part
+        of the teeth has the largest stress
 
     A change that is small by chance is no convergence: the error is at least what remains of that
     before, and `least` of the stress.
@@ -150,7 +173,8 @@ def drive_error(
     if any(math.isnan(s1) for _, s1 in meshes):  # a part that was followed on no shared window
         return None
     error = shown_error(meshes) * abs(fine.s1 / fine.levels[shared])
-    remains = 0.0 if before is None else before / ratio**ORDER
+    known = before.drive_error if before is not None and before.part == fine.part else None
+    remains = 0.0 if known is None else known / ratio**ORDER
     return max(error, remains, least * abs(fine.s1))
 
 
@@ -246,9 +270,9 @@ def smallest_ratio(coarse: MeshRecipe, fine: MeshRecipe) -> float:
     return min(ratio for ratio in ratios if ratio is not None)
 
 
-def least_error(model: DriveModel, contacts: Sequence[PairContact], part: str) -> float:
+def least_error(model: str, contacts: Sequence[PairContact], part: str) -> float:
     """Least error that two meshes of the drive can show, as a share of the largest stress in this
-    part of the teeth."""
+    part of the teeth. model : kind"""
     if part == ENDS and any(FACE_END in contact.edge_place for contact in contacts):
         return LEAST_AT_LOADED_ENDS
-    return LEAST_WITH_EDGES if touches_edges(contacts) else LEAST[model.design.drive.model]
+    return LEAST_WITH_EDGES if touches_edges(contacts) else LEAST[model]

@@ -8,7 +8,7 @@ The larger of both is reduced until they are small enough together (docs/theory/
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from mpi4py import MPI
 
@@ -17,11 +17,9 @@ from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.coarse_wall import coarse_wall
 from swgpar.analysis.contact_errors import contact_errors
 from swgpar.analysis.drive_mesh_error import (
+    MeshComparison,
     coarser_mesh,
     coarser_recipes,
-    drive_error,
-    least_error,
-    region_errors,
     with_finer_flanks,
 )
 from swgpar.analysis.forecast import fits, forecast
@@ -64,6 +62,7 @@ class ChosenMesh:
 class Refined:
     """What a mesh gives in comparison with coarser ones; see `Refinement`."""
 
+    comparison: MeshComparison
     compared: CoarseWall | None
     found: RootStress
     contact_errors: ContactErrorShares
@@ -83,7 +82,8 @@ class Refinement:
     Attributes
     ----------
     model, recipe, found : the present mesh and the stress by its windows
-    compared : stresses of the wall on the coarsest mesh that it is compared with
+    comparison : of the present mesh with coarser ones
+    compared : stresses of the wall on the coarsest of these
     contact_errors : of the contacts of flanks on the present mesh
     """
 
@@ -108,15 +108,14 @@ class Refinement:
         except SwgparError:
             self.model.destroy()
             raise
-        self.recipe, self.compared, self.found = recipe, first.compared, first.found
-        self.contact_errors = first.contact_errors
+        self._take(recipe, first)
 
     def _refined(
-        self, coarser: list[MeshRecipe], recipe: MeshRecipe, before: float | None = None
+        self, coarser: list[MeshRecipe], recipe: MeshRecipe, before: RootStress | None = None
     ) -> Refined:
         """Go from the present mesh, the first of `coarser`, by way of the others to `recipe`.
 
-        before : error (MPa) of the present mesh by the mesh of the drive, if it is known
+        before : stress on the present mesh with its error, if it is known
         """
         compared = coarse_wall(self.model, self.loaded, coarser[0], recipe)
         meshes = [coarser_mesh(self.model, coarser[0], self.loaded, coarsest=True)]
@@ -125,23 +124,26 @@ class Refinement:
             meshes.append(coarser_mesh(self.model, between, self.loaded, coarsest=False))
         self._replace(recipe)
         found = resolve_root_stress(self.model, self.loaded, self.levels)
-        contacts = pair_contacts(self.model, self.loaded)
-        least = least_error(self.model, contacts, found.part)
-        error = drive_error(meshes, recipe, found, least, before)
+        comparison = MeshComparison(recipe, meshes, pair_contacts(self.model, self.loaded), before)
+        found = comparison.with_errors(found)
+        self._log(found)
+        lobes = self.design.wave_generator.lobes
+        errors = contact_errors(meshes, recipe, comparison.contacts, lobes)
+        return Refined(comparison, compared, found, errors)
+
+    def _log(self, found: RootStress) -> None:
         logger.info(
             "%d elements: s1 %.1f MPa under load; error by the windows %.2g %%, by the mesh of the "
             "drive %.2g %%",
             self.model.n_elements(),
             found.s1,
             100.0 * _bound(found.error) / found.s1,
-            100.0 * _bound(error) / found.s1,
+            100.0 * _bound(found.drive_error) / found.s1,
         )
-        errors = contact_errors(meshes, recipe, contacts, self.design.wave_generator.lobes)
-        regions = region_errors(meshes, recipe, found, least, contacts)
-        return Refined(compared, replace(found, drive_error=error, regions=regions), errors)
 
     def _take(self, recipe: MeshRecipe, refined: Refined) -> None:
-        self.recipe, self.compared, self.found = recipe, refined.compared, refined.found
+        self.recipe, self.comparison = recipe, refined.comparison
+        self.compared, self.found = refined.compared, refined.found
         self.contact_errors = refined.contact_errors
 
     def _solved(self, recipe: MeshRecipe, coarse: DriveModel | None = None) -> DriveModel:
@@ -171,11 +173,8 @@ class Refinement:
             logger.warning("no finer window: %s", error)
             return False
         self.levels += 1
-        known = {name: one.drive_error for name, one in self.found.regions.items()}
-        regions = {
-            name: replace(one, drive_error=known.get(name)) for name, one in found.regions.items()
-        }
-        self.found = replace(found, drive_error=self.found.drive_error, regions=regions)
+        self.found = self.comparison.with_errors(found)
+        self._log(self.found)
         return True
 
     def refine_drive(self) -> bool:
@@ -191,7 +190,7 @@ class Refinement:
             return False
         try:
             coarser = with_finer_flanks(self.recipe, finer)
-            self._take(finer, self._refined(coarser, finer, self.found.drive_error))
+            self._take(finer, self._refined(coarser, finer, self.found))
         except (ConvergenceError, InputError) as error:
             logger.warning("no finer mesh of the drive: %s", error)
             self.model.destroy()

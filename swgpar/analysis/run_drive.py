@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -16,11 +15,9 @@ from swgpar.analysis.coarse_wall import coarse_wall
 from swgpar.analysis.contact_errors import contact_errors
 from swgpar.analysis.drive_mesh_error import (
     CoarserMesh,
+    MeshComparison,
     coarser_mesh,
     coarser_recipes,
-    drive_error,
-    least_error,
-    region_errors,
 )
 from swgpar.analysis.evaluate_run import evaluate_run
 from swgpar.analysis.follow_turns import follow_turns
@@ -335,10 +332,7 @@ class DriveRun:
         record.contact_errors = contact_errors(
             known, self.recipe, contacts, self.model.design.wave_generator.lobes
         )
-        least = least_error(self.model, contacts, found.part)
-        error = drive_error(known, self.recipe, found, least)
-        regions = region_errors(known, self.recipe, found, least, contacts)
-        return replace(found, drive_error=error, regions=regions)
+        return MeshComparison(self.recipe, known, contacts).with_errors(found)
 
     def _wall_stress(self, state: LoadState) -> WallStress | None:
         """Largest stresses of the wall behind the teeth; None where they cannot be computed."""

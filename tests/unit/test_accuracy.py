@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from swgpar.analysis.drive_mesh_error import (
     ORDER,
     SAFETY,
     CoarserMesh,
+    MeshComparison,
     coarser_recipes,
     drive_error,
     least_error,
@@ -187,7 +189,10 @@ def test_the_error_of_the_drive_s_mesh_follows_from_coarser_ones() -> None:
     # changes that are small by chance
     same, fine = compared([270.0, 290.0], [270.0, 290.0]), windows([270.0, 290.0, 300.0])
     assert drive_error(same, recipe, fine, 0.004) == pytest.approx(0.004 * 300.0)
-    assert drive_error(same, recipe, fine, 0.004, before=9.0) == pytest.approx(9.0 * left)
+    before = replace(windows([280.0]), drive_error=9.0)
+    assert drive_error(same, recipe, fine, 0.004, before) == pytest.approx(9.0 * left)
+    at_ends = replace(before, part=ENDS)
+    assert drive_error(same, recipe, fine, 0.004, at_ends) == pytest.approx(0.004 * 300.0)
 
 
 def test_the_same_part_of_the_teeth_is_compared_between_meshes() -> None:
@@ -206,6 +211,20 @@ def test_the_same_part_of_the_teeth_is_compared_between_meshes() -> None:
     assert drive_error(unknown, recipe, alone, 0.0) is None
 
 
+def test_another_part_has_another_error() -> None:
+    """A further window may find the largest stress in another part of the teeth."""
+    recipe, shown = load_recipe("plane_fine"), SAFETY / (RATIO**ORDER - 1.0)
+    coarser = [
+        CoarserMesh(one, {BETWEEN: [math.nan, 280.0], ENDS: [math.nan, 250.0]})
+        for one in coarser_recipes(recipe)
+    ]
+    comparison = MeshComparison(recipe, coarser, [])
+    at_ends = comparison.with_errors(windows([270.0, 290.0], ENDS))
+    assert at_ends.drive_error == pytest.approx(40.0 * shown)
+    between = comparison.with_errors(windows([270.0, 285.0, 290.0]))
+    assert between.drive_error == pytest.approx(5.0 * shown * 290.0 / 285.0)
+
+
 def test_contacts_on_edges_leave_more_of_an_error() -> None:
     involute = {"type": "involute", "pressure_angle": 20.0, "cutter_radius": 0.2}
     profiles = {
@@ -217,11 +236,12 @@ def test_contacts_on_edges_leave_more_of_an_error() -> None:
         design = with_shortcuts(load_design(PLANE_DRIVE, values), recipe, levels=False).design
         model = solve_to_load(design, recipe, MPI.COMM_SELF)
         contacts = pair_contacts(model, load_sequence(design).loaded)
-        assert least_error(model, contacts, BETWEEN) == least_error(model, contacts, ENDS) == least
+        for part in (BETWEEN, ENDS):
+            assert least_error("plane", contacts, part) == least
         # at the ends of teeth, where the load is on an end of the face width
         at_end = [replace(contacts[0], edge=1, edge_place=f"{FACE_END} and the tip")]
-        assert least_error(model, at_end, ENDS) == LEAST_AT_LOADED_ENDS > LEAST_WITH_EDGES
-        assert least_error(model, at_end, BETWEEN) == LEAST_WITH_EDGES
+        assert least_error("plane", at_end, ENDS) == LEAST_AT_LOADED_ENDS > LEAST_WITH_EDGES
+        assert least_error("plane", at_end, BETWEEN) == LEAST_WITH_EDGES
 
 
 def test_the_error_holds() -> None:
