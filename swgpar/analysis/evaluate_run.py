@@ -27,6 +27,7 @@ from swgpar.evaluation.rotation import evaluate_rotation, sampled_rows
 from swgpar.evaluation.slip_error import evaluate_slip
 from swgpar.evaluation.step_values import step_values
 from swgpar.evaluation.stiffness import torsional_stiffness
+from swgpar.evaluation.strains import largest_strains
 from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.evaluation.stress_factors import root_factor, stress_factors
 from swgpar.evaluation.transmission_error import evaluate_turns
@@ -94,6 +95,7 @@ def evaluate_run(
         design=design,
         rotation=rotation,
         stresses=LargestStresses.of(places),
+        strains=largest_strains(LargestStresses.of(places).places, design.materials),
         steps=step_values(shown),
         numerics=evaluate_numerics(
             rows, model.omitted_bending_stress() if design.solver.condensed_sectors else None

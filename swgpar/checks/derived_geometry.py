@@ -6,6 +6,7 @@ import numpy as np
 
 from swgpar.checks.clearance import WORDS, Clearance, clearances
 from swgpar.checks.inertia import negligible_speeds
+from swgpar.checks.strain_checks import deflection_strain
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.cams import Cam, OffsetCam, PolarCam, pin_travel, taut_length
 from swgpar.geometry.cup_wall import thicknesses
@@ -47,6 +48,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         / (2.0 * np.pi * design.inner_radius)
         - 1.0,
         "stretch of the neutral line": line.stretch,
+        "largest strain of a rim without teeth": deflection_strain(design),
         "radial deflection at the major axis (mm)": lobe,
         "radial deflection at the major axis (modules)": lobe / design.drive.module,
         "travel of the pins (mm)": pin_travel(

@@ -12,8 +12,8 @@ from swgpar.checks.deviation_checks import check_deviations
 from swgpar.checks.frequency_checks import check_frequencies
 from swgpar.checks.growth_checks import check_growth
 from swgpar.checks.program_checks import check_program
+from swgpar.checks.strain_checks import check_strains
 from swgpar.checks.tooth_checks import check_teeth
-from swgpar.checks.torque_checks import check_torques
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.linear_solvers import LINEAR_SOLVERS
 from swgpar.design.sections import GEARS, OMITTED_BENDING
@@ -44,8 +44,8 @@ def check_fit(design: DriveDesign) -> None:
     check_teeth(design)
     if design.has_cup:
         check_cup(design)
-    check_torques(design)
     check_outline(design)
+    check_strains(design)
     if design.deviations is not None:
         check_deviations(design, design.deviations)
     if design.bearing is not None:

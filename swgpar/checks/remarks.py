@@ -6,6 +6,7 @@ from __future__ import annotations
 from swgpar.checks.clearance import clearances
 from swgpar.checks.growth_checks import growth_remarks
 from swgpar.checks.inertia import inertia_remarks
+from swgpar.checks.strain_checks import strain_remarks
 from swgpar.checks.tooth_checks import tooth_remarks
 from swgpar.design.drive_design import DriveDesign
 
@@ -26,6 +27,7 @@ def remarks(design: DriveDesign) -> list[str]:
         )
     sentences += [
         *tooth_remarks(design),
+        *strain_remarks(design),
         *growth_remarks(design),
         *inertia_remarks(design.rim_inertia, design.kinematics, design.load),
     ]

@@ -15,8 +15,9 @@ from swgpar.evaluation.jamming import ENERGY
 from swgpar.evaluation.largest_contact import LargestContact
 from swgpar.evaluation.numerics import BALANCE, Numerics
 from swgpar.evaluation.rotation import Rotation
+from swgpar.evaluation.strains import LargestStrains
 from swgpar.largest_stress.accuracy import Accuracy
-from swgpar.largest_stress.places import APART, LargestStresses
+from swgpar.largest_stress.places import APART, BODIES, LargestStresses
 from swgpar.largest_stress.root_stress import RootStress
 from swgpar.results.history import loaded_increments
 
@@ -51,6 +52,7 @@ def checks(summary: DriveSummary, history: Mapping[str, np.ndarray]) -> list[Che
         _resolution(summary.root_stress, summary.accuracy),
         _meshed(summary.stresses),
         _elements(summary.bodies),
+        *([_strains(summary.strains)] if summary.strains else []),
         *strength_checks(summary),
     ]
 
@@ -177,6 +179,20 @@ def _meshed(stresses: LargestStresses) -> Check:
         f"table of stresses"
     )
     return Check("places of the stresses", None, text)
+
+
+def _strains(strains: LargestStrains) -> Check:
+    known = {BODIES["fs"]: strains.fs, BODIES["rg"]: strains.rg}
+    found = {body: strain for body, strain in known.items() if strain is not None}
+    if not found:
+        return Check("strains", None, "there is no increment under load")
+    text = ", ".join(f"{body} {strain:.2g} %" for body, strain in found.items())
+    return Check(
+        "strains",
+        max(found.values()) <= strains.limit,
+        f"largest strain apart from the contact: {text}; the linear law holds up to "
+        f"{strains.limit:g} %",
+    )
 
 
 def _elements(bodies: Mapping[str, BodySizes]) -> Check:

@@ -23,6 +23,7 @@ from swgpar.evaluation.safety_and_life import SafetyAndLife
 from swgpar.evaluation.slip_error import SlipError
 from swgpar.evaluation.step_values import StepValues
 from swgpar.evaluation.stiffness import TorsionalStiffness
+from swgpar.evaluation.strains import LargestStrains
 from swgpar.evaluation.transmission_error import TransmissionError
 from swgpar.largest_stress.accuracy import Accuracy
 from swgpar.largest_stress.places import LargestStresses
@@ -45,6 +46,7 @@ ANSWER_GROUPS: dict[str, type[AnswerGroup]] = {
     "frequencies": NaturalFrequencies,
     "housing": HousingStresses,
     "stresses": LargestStresses,
+    "strains": LargestStrains,
     "steps": StepValues,
     "clearance": RigidClearance,
     "numerics": Numerics,
@@ -124,6 +126,7 @@ class DriveSummary(AnswerTable):
     frequencies: NaturalFrequencies | None = None
     housing: HousingStresses | None = None
     slip: SlipError | None = None
+    strains: LargestStrains | None = None
 
     def groups(self) -> list[AnswerGroup]:
         """The evaluations that the run has, in the order of `ANSWER_GROUPS`."""
