@@ -38,6 +38,7 @@ from swgpar.largest_stress.window_recipes import LEVELS
 from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe_counts import (
+    FEWEST_ALONG_ROOT,
     RATIO,
     body_ratio,
     coarsened,
@@ -148,11 +149,14 @@ def test_few_elements_along_flanks_stay() -> None:
 
 @pytest.mark.parametrize("name", ["coarse", "forces", "medium", "full", "plane", "plane_fine"])
 def test_no_ratio_is_below_the_one_that_is_meant(name: str) -> None:
-    """Rounding makes meshes coarser, or finer, than that ratio."""
+    """Rounding makes meshes coarser, or finer, than that ratio. Of four elements along the root
+    three are left, since two show errors that four do not have."""
     recipe = load_recipe(name)
+    four = recipe.flexible_spline.root == FEWEST_ALONG_ROOT + 1
     for coarse, fine in ((coarsened(recipe), recipe), (recipe, refined(recipe))):
         ratio = body_ratio(coarse, fine)
-        assert ratio is None or ratio >= RATIO
+        least = 4 / 3 if four and fine is recipe else RATIO
+        assert ratio is None or ratio >= least
         assert contact_ratio(coarse, fine) > 1.0
         between = with_contact_of(coarse, fine)
         assert contact_ratio(between, fine) is None and body_ratio(coarse, between) is None

@@ -156,8 +156,8 @@ def test_the_error_by_the_drive_is_that_of_the_compared_window() -> None:
     found = region_errors(meshes, fine_recipe, root, 0.001, ())[ROOT]
     assert found.drive_error is not None
     share = found.drive_error / 94.0
-    # of second order, by the smallest ratio of counts: 3 / 2
-    assert share == pytest.approx(SAFETY * (5.0 / 90.0) / (1.5**2 - 1.0))
+    # of second order, by the smallest ratio of counts: four elements along the root over three
+    assert share == pytest.approx(SAFETY * (5.0 / 90.0) / ((4 / 3) ** 2 - 1.0))
     assert region_errors(meshes, fine_recipe, root, 0.5, ())[ROOT].drive_error == 47.0
     unknown = [replace(meshes[0], regions={})]
     assert region_errors(unknown, fine_recipe, root, 0.5, ())[ROOT].drive_error is None
