@@ -23,13 +23,12 @@ FIRST = RingCounts(30, 1, 1)
 mm."""
 
 
-def ellipse(deflection: float, offset: float, n: int = 7200) -> tuple[np.ndarray, np.ndarray]:
-    """Curvature (n,) 1/mm and arc length (n,) mm at n points of the curve `offset` (mm) outside the
-    cam's.
+def ellipse(a: float, b: float, offset: float, n: int = 7200) -> tuple[np.ndarray, np.ndarray]:
+    """Curvature (n,) 1/mm and arc length (n,) mm at n points of the curve `offset` (mm) outside an
+    ellipse.
 
-    deflection : mm, diametral
+    a, b : mm, semi-axes
     """
-    a, b = INNER + 0.5 * deflection, INNER - 0.5 * deflection
     t = 2.0 * np.pi * np.arange(n) / n
     speed = np.hypot(b * np.cos(t), a * np.sin(t))
     bend = a * b / speed**3
@@ -37,10 +36,16 @@ def ellipse(deflection: float, offset: float, n: int = 7200) -> tuple[np.ndarray
 
 
 def closed_form(deflection: float = DEFLECTION) -> dict[str, float]:
+    """Of the ring of the reference drive, 1 mm wide. deflection : mm, diametral"""
+    a, b = INNER + 0.5 * deflection, INNER - 0.5 * deflection
+    return tight_ring(a, b, INNER, THICKNESS, STEEL.E)
+
+
+def tight_ring(a: float, b: float, r: float, t: float, young: float) -> dict[str, float]:
     """Largest tensile stress (MPa) and integrated contact pressure (N) of a ring of 1 mm width on
     an elliptical cam.
 
-    deflection : mm, diametral
+    a, b : mm, semi-axes of the cam;  r, t : mm, inner radius and thickness of the ring
 
     The inner surface lies on the ellipse, sections stay plane and normal to it. A fibre at the
     distance y from it, of length (r + y) dphi, becomes (1 + k y) ds: its strain is s' (1 + k y) /
@@ -51,25 +56,25 @@ def closed_form(deflection: float = DEFLECTION) -> dict[str, float]:
     cam's normal growth. Shear is left out: (t / R)^2 of the bending. The fit is tight: the ring
     touches all round.
     """
-    young, r, t = STEEL.E, INNER, THICKNESS
 
     def second(k: np.ndarray) -> np.ndarray:
         inner = (1.0 - k * r) ** 2 * np.log((r + t) / r) + 2.0 * k * (1.0 - k * r) * t
         return inner + 0.5 * k**2 * ((r + t) ** 2 - r**2)
 
     def constant(offset: float) -> float:
-        k, ds = ellipse(deflection, offset)
+        k, ds = ellipse(a, b, offset)
         return float((np.sqrt(second(k)) * ds).sum() / (2.0 * np.pi))
 
     def energy(offset: float) -> float:
-        k, ds = ellipse(deflection, offset)
+        k, ds = ellipse(a, b, offset)
         return float(young * (np.pi * constant(offset) ** 2 - ((t + 0.5 * k * t**2) * ds).sum()))
 
-    k = float(ellipse(deflection, 0.0)[0][0])  # at the major axis
-    stretch = constant(0.0) / float(np.sqrt(second(np.array(k))))
-    step = 1e-3
+    k = ellipse(a, b, 0.0)[0]
+    stretch, step = constant(0.0) / np.sqrt(second(k)), 1e-3
+    # bending outside at the major axis; inside at the minor one where stretch governs
+    fibres = stretch / r, stretch * (1.0 + k * t) / (r + t)
     return {
-        "s1": young * (stretch * (1.0 + k * t) / (r + t) - 1.0),
+        "s1": young * float(np.max(fibres) - 1.0),
         "contact force": (energy(step) - energy(-step)) / (2.0 * step),
     }
 

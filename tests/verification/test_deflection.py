@@ -8,9 +8,10 @@ from mpi4py import MPI
 
 import swgpar
 from plain_ring import PlainRingDesign, RingCounts, RingModel
-from support.cam_ring import INNER, STEEL, THICKNESS, closed_form
+from support.cam_ring import INNER, STEEL, THICKNESS, closed_form, tight_ring
 from support.drive_groups import PLANE
 from swgpar.design.negligible_torque import RING_FLEXIBILITY
+from swgpar.geometry.cams import EllipticalCam
 
 HALF_ANGLE = np.radians(15.0)
 
@@ -52,6 +53,21 @@ def test_a_ring_on_a_cam_of_another_deflection(modules: float) -> None:
     stress, force = mounted(design, RingCounts(240, 4, 1))
     assert stress == pytest.approx(exact["s1"], rel=5e-3)
     assert force == pytest.approx(exact["contact force"], rel=1e-2)
+
+
+def test_a_ring_on_a_cam_longer_than_its_bore() -> None:
+    """By 1.5 %: the largest tension is inside, at the minor axis, within what radial stress and
+    Poisson's ratio change, t / R of it."""
+    a, b = 1.020 * INNER, 1.010 * INNER
+    ring = PlainRingDesign(2.0 * (INNER + THICKNESS), THICKNESS, 1.0, True, STEEL)
+    cam, counts = EllipticalCam(a, b), RingCounts(240, 4, 1)
+    model = RingModel(ring, counts, cam, HALF_ANGLE, MPI.COMM_SELF)
+    model.mount()
+    found = model.stresses()["s1"]
+    model.destroy()
+    exact = tight_ring(a, b, INNER, THICKNESS, STEEL.E)["s1"]
+    assert found == pytest.approx(exact, rel=THICKNESS / INNER)
+    assert exact > 0.015 * STEEL.E
 
 
 def test_kinematics_of_a_published_drive() -> None:
