@@ -78,7 +78,7 @@ def check_cup(design: DriveDesign) -> None:
     _check_end(sizes, rim)
     # narrower splines leave the ring gear's width (docs/verification/stability.md)
     width, narrowest = design.drive.face_width, max(design.axial_travel, 0.5 * rim)
-    allowed = f"{narrowest:.4g} mm (axial travel of the teeth, half of the rim) to inf mm"
+    allowed = f"{narrowest:.4g} mm (axial travel of the teeth, half of the rim) and more"
     require(width >= narrowest, "drive.face_width", width, allowed)
     _check_back(sizes, rim)
     _check_attachment(sizes)
@@ -226,7 +226,7 @@ def _check_end(sizes: CupSizes, rim: float) -> None:
     if cup.inside_radius is None:
         smallest = SMALLEST_FILLET * wall.thickness
         allowed = (
-            f"{smallest:g} ({SMALLEST_FILLET:g} times the cup's thickness) to inf mm, and smaller "
+            f"{smallest:g} mm ({SMALLEST_FILLET:g} times the cup's thickness) and more, smaller "
             "ones with cup.inside_radius"
         )
         require(fillet * ROUND_OFF >= smallest, "cup.fillet_radius", fillet, allowed)
@@ -249,9 +249,9 @@ def _check_corner(sizes: CupSizes, least: float) -> None:
     """Radii on both sides of the turn into closed end or flange. least : mm, thickness"""
     cup, end = sizes.section, sizes.end_thickness
     thinner = min(sizes.wall.thickness, end)
-    require(end >= least, "cup.end_thickness", end, f"{least:g} ({THINNEST:g} rims) to inf mm")
+    require(end >= least, "cup.end_thickness", end, f"{least:g} mm ({THINNEST:g} rims) and more")
     inside, smallest = cup.inside_radius, SMALLEST_INSIDE * thinner
-    allowed = f"{smallest:g} ({SMALLEST_INSIDE:g} times the thinner of wall and end) to inf mm"
+    allowed = f"{smallest:g} mm ({SMALLEST_INSIDE:g} times the thinner of wall and end) and more"
     require(inside * ROUND_OFF >= smallest, "cup.inside_radius", inside, allowed)
     most = inside + thinner
     allowed = f"0 to {most:g} mm (cup.inside_radius and the thinner of wall and end)"

@@ -97,6 +97,10 @@ def _advice(
     name = f"{gear}.profile"
     if isinstance(keys, DoubleArc) and c_l >= 1.0:
         return ""
+    if isinstance(keys, QuadrupleArc) and (
+        keys.r_tip == keys.r_addendum or keys.r_root == keys.r_dedendum
+    ):
+        return ""  # it is another type of profile
     lengths = {key: getattr(keys, key) for key in keys.typical_lengths}
     if advice := advise(name, lengths, lambda key, value: builds(**{key: value}), module):
         return advice
@@ -109,8 +113,8 @@ def _advice(
         return ""  # the reason says what is allowed
     shares = "c_P, c_l" if keys.divides_straight else "c_P"
     return (
-        f"no other {' or '.join(lengths)} is allowed: change {shares}, the pressure angle or the "
-        f"height of the teeth"
+        f"no other lengths of {name} close it: allowed are other {shares}, pressure angles or "
+        "heights of the teeth"
     )
 
 

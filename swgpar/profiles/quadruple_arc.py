@@ -54,18 +54,14 @@ def quadruple_arc(
     def root_center(angle: float) -> np.ndarray:
         return o_d - (r_dedendum - r_root) * n(star + angle)
 
-    if r_tip == r_addendum:
-        raise InputError(
-            f"{name}.r_tip = {r_tip:g} equals r_addendum: one arc cannot reach the addendum circle "
-            f'tangentially with any straight_l: allowed are other radii, and type = "trapezoid", '
-            "whose straight flank ends where its tip arc begins"
-        )
-    if r_root == r_dedendum:
-        raise InputError(
-            f"{name}.r_root = {r_root:g} equals r_dedendum: one arc cannot reach the dedendum "
-            f"circle tangentially with any straight_l: allowed are other radii, and type = "
-            f'"double_arc" or "trapezoid", whose straight flank ends where that arc begins'
-        )
+    ends = ("tip", "addendum", r_tip, r_addendum), ("root", "dedendum", r_root, r_dedendum)
+    for end, side, last, first in ends:
+        if last == first:
+            raise InputError(
+                f"{name}.r_{end} = {last:g} equals r_{side}, so that one arc would lead from "
+                f"the straight flank to the {side} circle: allowed are two different radii, or "
+                'type = "trapezoid", a straight flank with one arc at either end'
+            )
     a_a = closing_angle(
         lambda t: float(np.hypot(*tip_center(t))) + s * r_tip,
         frame.r_tip_circle,

@@ -277,7 +277,7 @@ REFUSED = [
     (
         {"fillet_radius": 0.48},
         "cup.fillet_radius = 0.48 ",
-        "0.504 (1.05 times the cup's thickness) to inf mm",
+        "0.504 mm (1.05 times the cup's thickness) and more",
     ),
     ({"shape": "hat"}, "cup.inner_radius = 6 is not available", 'cup.shape = "cup"'),
     (
@@ -290,14 +290,14 @@ REFUSED = [
     (
         {"fillet_radius": 0.0, "inside_radius": 0.05},
         "cup.inside_radius = 0.05 ",
-        "0.096 (0.2 times the thinner of wall and end) to inf mm",
+        "0.096 mm (0.2 times the thinner of wall and end) and more",
     ),
     (
         {"fillet_radius": 1.0, "inside_radius": 0.4},
         "cup.fillet_radius = 1 ",
         "0 to 0.88 mm (cup.inside_radius and the thinner of wall and end)",
     ),
-    ({"fillet_radius": 0.0}, "cup.fillet_radius = 0 ", "0.504 (1.05 times the cup's thickness)"),
+    ({"fillet_radius": 0.0}, "cup.fillet_radius = 0 ", "0.504 mm (1.05 times the cup's thickness)"),
     (
         {"fillet_radius": 0.0, "inside_radius": 1.0, "end_thickness": 11.5},
         "cup.length = 12 ",
