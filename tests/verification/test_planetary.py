@@ -22,6 +22,7 @@ from swgpar.gear_trains.planetary.model import (
     carrier_index,
     planet_index,
     ring_index,
+    ring_pitch_radius,
 )
 from swgpar.gear_trains.planetary.monitored import MONITORED_NAMES, monitored_rows
 from swgpar.gear_trains.planetary.monte_carlo import simulate
@@ -84,6 +85,73 @@ def test_kinematics(design: PlanetaryDesign) -> None:
     )
 
 
+def turned(train: PlanetaryModel) -> np.ndarray:
+    """Displacements (n,) when the whole train turns by 1 rad as one body."""
+    design, x = train.design, np.zeros(train.size)
+    sun, planets, centres = base_radii(design)
+    x[2], x[carrier_index(design) + 2] = sun, centres
+    for k in range(design.planet.count):
+        x[planet_index(k) + 1 : planet_index(k) + 3] = centres, planets
+    x[ring_index(design) :] = np.tile([0.0, train.ring.section.radius, 1.0], design.ring.elements)
+    return x
+
+
+def shifted(train: PlanetaryModel, t: float) -> np.ndarray:
+    """Displacements (n,) at a time in s when the whole train moves by 1 m along x, which turns with
+    the carrier."""
+    design, x = train.design, np.zeros(train.size)
+    x[0] = x[carrier_index(design)] = 1.0
+    for k, psi in enumerate(train.angles):
+        x[planet_index(k) : planet_index(k) + 2] = np.cos(psi), -np.sin(psi)
+    count = design.ring.elements
+    node = 2.0 * np.pi * np.arange(count) / count - design.carrier.speed * t
+    x[ring_index(design) :] = np.stack([np.cos(node), -np.sin(node), 0.0 * node], axis=1).ravel()
+    return x
+
+
+RIMS = [
+    ["ring.rim=87"],
+    ["ring.rim=128"],
+    ["ring.rim=168"],
+    ["planet.count=4", "ring.supports=9", "ring.rim=40", "sun.pitch_diameter=215.7"],
+]
+
+
+@pytest.mark.parametrize("overrides", RIMS)
+def test_rigid_motions_strain_no_mesh(overrides: list[str]) -> None:
+    """Of a train that moves as one body only the springs to the ground hold energy."""
+    train = PlanetaryModel(load_design(DRIVER, overrides))
+    design, body = train.design, train.ring.elastic
+    turn = turned(train)
+    for t in (0.0, 0.7, 3.1):
+        for motion in (turn, shifted(train, t)):
+            assert np.abs(train.deflection_rows(t) @ motion).max() < 1e-12
+            elastic = motion[ring_index(design) :] @ body @ motion[ring_index(design) :]
+            assert abs(elastic) < 1e-9 * np.abs(body).max()
+    ring = design.ring
+    held = ring.torsional + ring.tangential * train.ring.section.radius**2
+    springs = design.sun.torsional + ring.supports * held
+    assert turn @ train.constant @ turn == pytest.approx(springs, rel=1e-9)
+
+
+@pytest.mark.parametrize("overrides", RIMS)
+@pytest.mark.parametrize("torque", [1e5, -3e3])
+def test_torques_balance(overrides: list[str], torque: float) -> None:
+    """Sun shaft and ring supports carry the torque of the carrier, and the torque's work is twice
+    the strain energy, less what the backlash takes."""
+    train = PlanetaryModel(load_design(DRIVER, overrides))
+    steps = TimeStepper(train, 1e-3, 1)
+    start, flanks = steps.static_equilibrium(torque)
+    q, turn = train.shapes @ start.q[:, 0], turned(train)
+    assert turn @ train.constant @ q == pytest.approx(torque, rel=1e-10)
+    stretch, k = train.deflection_rows(0.0) @ q, steps.stiffness[0]
+    forces = force(k, stretch, train.half_backlash)
+    energy = 0.5 * q @ train.constant @ q + 0.5 * (forces**2 / k).sum()
+    taken = train.half_backlash * (flanks * forces).sum()
+    work = torque * q[carrier_index(train.design) + 2] / base_radii(train.design)[2]
+    assert work == pytest.approx(2.0 * energy + taken, rel=1e-9)
+
+
 def test_statics(design: PlanetaryDesign) -> None:
     """The carrier's torque is that of all mesh forces; the sun's shaft takes its part, the ring's
     supports the rest."""
@@ -104,10 +172,10 @@ def test_statics(design: PlanetaryDesign) -> None:
     turn = q[2] / sun
     assert design.sun.torsional * turn == pytest.approx(-3.0 * f[0] * sun, rel=1e-9)
     # virtual work of a turn of the ring: what its supports hold
-    first, radius = ring_index(design), train.ring.section.radius
-    rigid = np.tile([0.0, 1.0, 1.0 / radius], design.ring.elements)
-    held = rigid @ train.ring.stiffness @ q[first:]
-    assert held == pytest.approx(-design.planet.count * f[3] * cosine, rel=1e-6)
+    first = ring_index(design)
+    held = turned(train)[first:] @ train.ring.stiffness @ q[first:]
+    expected = -design.planet.count * f[3] * cosine * ring_pitch_radius(design)
+    assert held == pytest.approx(expected, rel=1e-9)
     # flanks load apart: forces on the sun away from planet 1, on planet 1 outward by the sun, on
     # the ring outward
     deflection_rows, outward = train.deflection_rows(0.0), first

@@ -6,18 +6,22 @@ carrier; gyroscopic terms are left out, as in print. u is a rotation times the b
 planet) or times the radius of the planet centres (carrier). With the angle ψ of a planet and the
 pressure angle a, the deflections of its meshes are
 
-    sun   d = -x sin(ψ + a) + y cos(ψ + a) + u_s + ξ sin a - η cos a + u_p
-    (eq. 3.2) ring  d = -ξ sin a - η cos a - u_p + v sin a + w cos a,    v outward, w tangential
-    displacement of the ring
+    sun   d = -x sin(ψ + a) + y cos(ψ + a) + u_s + ξ sin a - η cos a + u_p    (eq. 3.2)
+    ring  d = -ξ sin a - η cos a - u_p + v sin a + (w + (r_r - R) r) cos a,
 
-and those of its bearing ξ - x_c cos ψ - y_c sin ψ and η + x_c sin ψ - y_c cos ψ - u_c. Deviations
-from print, which is no derivative of an energy in these equations: eq. 3.16 exchanges sine and
-cosine of v and w against eqs 3.21 and 3.82; eqs 3.9 to 3.11 and 3.79, 3.80 have an unsymmetric
-carrier row; eqs 3.25 and 3.26 support the planet by the ground as well as by the carrier; eq. 3.28
-has the wind's speed squared in its linear part. In print a has the other sign (eqs 3.25, 3.26):
-forces that separate the gears would drive the planet forward, and under the wind's torque flanks
-would pull. The back flanks, which only a reversed load meets, have the same line of action, and the
-mesh dampers act inside the backlash too, both as in print.
+v outward and w tangential displacement of the ring's centre line of radius R, r the rotation of its
+section: the mesh is on the pitch circle of radius r_r. Print has v and w alone (eq. 3.16), as if
+the mesh were on the centre line; then forces do not balance, and a rigid rotation of the whole
+train strains the meshes. The deflections of the bearing of a planet are ξ - x_c cos ψ - y_c sin ψ
+and η + x_c sin ψ - y_c cos ψ - u_c.
+
+Further deviations from print, which is no derivative of an energy in these equations: eq. 3.16
+exchanges sine and cosine of v and w against eqs 3.21 and 3.82; eqs 3.9 to 3.11 and 3.79, 3.80 have
+an unsymmetric carrier row; eqs 3.25 and 3.26 support the planet by the ground as well as by the
+carrier; eq. 3.28 has the wind's speed squared in its linear part. In print a has the other sign
+(eqs 3.25, 3.26): forces that separate the gears would drive the planet forward, and under the
+wind's torque flanks would pull. The back flanks, which only a reversed load meets, have the same
+line of action, and the mesh dampers act inside the backlash too, both as in print.
 
 In the tooth cycle a planet at the angle ψ is z_r ψ ahead at the ring, and z_s ψ behind at the sun,
 whose teeth pass it in the opposite direction. As z_s + z_r is a multiple of the number of planets,
@@ -52,6 +56,11 @@ def carrier_index(design: PlanetaryDesign) -> int:
 def ring_index(design: PlanetaryDesign) -> int:
     """First coordinate of the ring."""
     return carrier_index(design) + 3
+
+
+def ring_pitch_radius(design: PlanetaryDesign) -> float:
+    """Pitch radius of the ring, m: the circle that all planets touch."""
+    return 0.5e-3 * design.sun.pitch_diameter + 1e-3 * design.planet.pitch_diameter
 
 
 def base_radii(design: PlanetaryDesign) -> tuple[float, float, float]:
@@ -143,9 +152,11 @@ class PlanetaryModel:
         """Deflections (m, n) of the meshes per coordinate at a time in s."""
         rows, count = self._fixed_rows.copy(), self.design.planet.count
         a = np.radians(self.design.mesh.pressure_angle)
+        outside = ring_pitch_radius(self.design) - self.ring.section.radius
         for k, psi in enumerate(self.angles):
-            v, w, _ = self.ring.interpolation(self.design.carrier.speed * t + psi)
-            rows[count + k, ring_index(self.design) :] = np.cos(a) * w + np.sin(a) * v
+            v, w, r = self.ring.interpolation(self.design.carrier.speed * t + psi)
+            along = np.cos(a) * (w + outside * r) + np.sin(a) * v
+            rows[count + k, ring_index(self.design) :] = along
         return rows
 
     def modal_deflection_rows(self, times: np.ndarray) -> np.ndarray:
