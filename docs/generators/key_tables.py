@@ -61,10 +61,16 @@ DRAWINGS: dict[str, tuple[str, ...]] = {
     "wave_generator": ("cams", "cam_sizes", "bearing"),
     "cup": ("drive_section", "cup_shapes", "cup_attachment"),
     "micro_geometry": ("crowning", "slope"),
+    "material": ("material",),
     "load": ("drive_front",),
     "contact": ("contact_cells",),
     "steps": ("load_stages",),
+    "solver": ("ownership",),
+    "stiffness": ("stiffness_loop",),
     "deviations": ("deviations",),
+    "fatigue": ("haigh",),
+    "losses": ("losses",),
+    "frequencies": ("modes",),
 }
 """Drawings of `docs/drawings` beside the sections of a drive: they show what the keys measure."""
 
