@@ -96,7 +96,7 @@ def strain_remarks(design: DriveDesign) -> list[str]:
     if loaded >= SAID:
         sentences.append(
             f"load.torque = {design.load.torque:g} N·m strains the {of} by {100 * loaded:.2g} % "
-            "(nominal): the spline winds up so far that teeth may jump over, and then no "
-            "equilibrium is found; a stiffer material, a thicker rim or a smaller torque holds"
+            "(nominal), more at the roots of the teeth: stresses are those of a linear law; "
+            f"{spread_text(loaded)}"
         )
     return sentences

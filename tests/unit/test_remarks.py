@@ -49,6 +49,13 @@ def test_check_looks_between_the_minor_axes() -> None:
     assert not rigid_clearance(clearances(swgpar.load_design(DESIGN))).interference
 
 
+def test_a_thin_rim_is_said_before_it_runs() -> None:
+    """0.2 modules under teeth of 1.8 modules, of a machined drive."""
+    machined = swgpar.load_design(DATA / "public" / "hd40b.toml")
+    (sentence,) = [one for one in remarks(machined) if "flexible_spline.rim = 0.08" in one]
+    assert "0.11 of the height of the teeth (0.72 mm)" in sentence
+
+
 def test_a_cam_longer_than_the_bore_is_said() -> None:
     """With a minor axis as large as the bore, an ellipse is longer by about half of the
     deflection."""
