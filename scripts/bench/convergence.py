@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from effectivity import SEED, Store, reference_drive
+from effectivity import MOST_MODELLED, SEED, Store, reference_drive
 from mpi4py import MPI
 from page import markdown, write_results
 
@@ -44,7 +44,7 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class Family:
-    """A plane drive on the meshes of `RATIOS`.
+    """A drive on the meshes of `RATIOS`.
 
     torque : of the stiffness loop, N·m; None: that of the load
     """
@@ -53,11 +53,22 @@ class Family:
     table: dict[str, Any]
     torque: float | None = None
 
+    @property
+    def model(self) -> str:
+        return str(self.table["drive"]["model"])
 
-RATIOS = 1.0, RATIO, RATIO**2, RATIO**3
-"""Elements in every direction over those of the usual mesh."""
+    @property
+    def ratios(self) -> tuple[float, ...]:
+        """Elements in every direction over those of the usual mesh, rising."""
+        return RATIOS[self.model]
+
+
+RATIOS = {"plane": (1.0, RATIO, RATIO**2, RATIO**3), "cup": (1.0 / RATIO, 1.0, RATIO)}
+"""By model. One more mesh of a cup drive would need more memory than most machines have."""
 
 DRAWN = "p004", "p039"
+
+DRAWN_CUPS = "c075", "c104"
 
 
 def families() -> list[Family]:
@@ -65,6 +76,8 @@ def families() -> list[Family]:
     plane = reference_drive("plane").table
     narrow = {**plane, "ring_gear": {**plane["ring_gear"], "c_P": 0.97}}
     drawn = [one for one in sensible_drives(60, SEED) if one.name in DRAWN]
+    cups = sensible_drives(20, SEED, "cup", MOST_MODELLED["cup"])
+    drawn += [one for one in cups if one.name in DRAWN_CUPS]
     return [
         Family("reference", plane, 2.0),
         Family("reference, c_P 0.97", narrow, 2.0),
@@ -75,8 +88,8 @@ def families() -> list[Family]:
 def measure(family: Family, store: Store) -> list[Row]:
     """Rows of one family; collective."""
     levels = []
-    for ratio in RATIOS:
-        recipe = resized(swgpar.load_mesh(MESHES["plane"]), ratio)
+    for ratio in family.ratios:
+        recipe = resized(swgpar.load_mesh(MESHES[family.model]), ratio)
         name = f"{family.name} {ratio:.4g}"
         done = MPI.COMM_WORLD.bcast(store.found().get(name))
         if done is None:
@@ -88,14 +101,14 @@ def measure(family: Family, store: Store) -> list[Row]:
     rows: list[Row] = []
     for answer in (*OF_A_RUN, *OF_STIFFNESS):
         found = [level[answer] for level in levels if answer in level]
-        if len(found) < len(RATIOS):
+        if len(found) < len(family.ratios):
             continue
         values = [one["value"] for one in found]
         rows.append(
             {
                 "drive": family.name,
                 "answer": answer,
-                "ratios": [round(ratio, 3) for ratio in RATIOS],
+                "ratios": [round(ratio, 3) for ratio in family.ratios],
                 "values": values,
                 "errors": [one["error"] for one in found],
                 "order": order(values),
@@ -140,9 +153,10 @@ def table(rows: list[Row]) -> str:
     found = [[*head, "change of the last three, %", "observed order"]]
     for row in rows:
         values, seen = row["values"], row["order"]
-        last, error = values[-3:], row["errors"][0]  # the first mesh is the usual one
+        last, usual = values[-3:], row["ratios"].index(1.0)
+        error, value = row["errors"][usual], values[usual]
         cells = [row["drive"], row["answer"], "; ".join(five_digits(value) for value in values)]
-        cells += ["no estimate" if error is None else f"{100.0 * error / abs(values[0]):.1f}"]
+        cells += ["no estimate" if error is None else f"{100.0 * error / abs(value):.1f}"]
         cells += [f"{100.0 * (max(last) - min(last)) / abs(last[-1]):.2f}"]
         found.append([*cells, "" if seen is None else f"{seen:.1f}"])
     return markdown(found)

@@ -1,11 +1,11 @@
 """Estimated over true errors of the answers of a run, of drives that are drawn at random.
 
 The true error is the distance from a reference: the same run on a mesh two levels finer, with 2.25
-times the elements in every direction, one window more and twice the angles of a period (cup drive:
-one level, 1.5 times). The drives are those of `support/sensible_drives.py`; nothing of the estimate
-was chosen with those of this seed. Finished runs are stored and not computed again: remove
-PART_usual.jsonl or PART_reference.jsonl to compute them anew. Tables of a model are written where
-drives of it are asked for.
+times the elements in every direction, one window more and twice the angles of a period. That of a
+cup drive is one level finer, or two with --cup-levels 2, in a table of its own. The drives are
+those of `support/sensible_drives.py`; nothing of the estimate was chosen with those of this seed.
+Finished runs are stored and not computed again: remove PART_usual.jsonl or PART_reference.jsonl to
+compute them anew. Tables of a model are written where drives of it are asked for.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from support.paths import DRIVERS
 from support.sensible_drives import MESHES, SensibleDrive, sensible_drives
 from swgpar.answers.answer import NO_LIMIT
 from swgpar.input.toml_file import read_toml, with_value
+from swgpar.meshing.recipe_counts import RATIO
 
 OUT = Path("results/bench/effectivity")
 
@@ -36,8 +37,9 @@ SEED = 46
 
 STAGES = ("usual", "reference")
 
-TIMES = {"plane": 2.25, "cup": 1.5}
-"""Elements of the reference in every direction over those of the usual mesh."""
+LEVELS = {"plane": 2, "cup": 1}
+"""Meshes of the reference above the usual one, each of `RATIO` times the elements in every
+direction of the one before it."""
 
 LONGEST = 3000.0
 """Seconds that a run may take; a drive that takes longer is left out."""
@@ -100,18 +102,17 @@ def reference_drive(model: str) -> SensibleDrive:
 
 
 def solve(
-    drive: SensibleDrive, part: str, stage: str, ranks: int, log: Path
+    drive: SensibleDrive, part: str, levels: int, ranks: int, log: Path
 ) -> dict[str, dict[str, Any]]:
-    """Run one drive on its usual mesh or on that of the reference; the runs by stage, since a
-    reference may need the usual run. log : file of the run's log"""
-    reference = stage == "reference"
+    """Run one drive on its usual mesh (`levels` 0) or on that of the reference; the runs by stage,
+    since a reference may need the usual run. log : file of the run's log"""
     case = {
         "part": part,
         "table": drive.table,
         "mesh": MESHES[drive.model],
-        "times": TIMES[drive.model] if reference else 1.0,
+        "times": RATIO**levels,
         "counts": {},
-        "samples": 2 if reference else 1,
+        "samples": 2 if levels else 1,
     }
     script = str(Path(__file__).with_name("effectivity_case.py"))
     command = [*on_ranks(ranks), sys.executable, script, json.dumps(case)]
@@ -126,9 +127,9 @@ def solve(
                 timeout=LONGEST,
             )
         except subprocess.TimeoutExpired:
-            return {stage: {"failed": f"takes more than {LONGEST:.0f} s"}}
+            return {STAGES[levels > 0]: {"failed": f"takes more than {LONGEST:.0f} s"}}
     if done.returncode:
-        return {stage: {"failed": log.read_text(encoding="utf-8")[-500:]}}
+        return {STAGES[levels > 0]: {"failed": log.read_text(encoding="utf-8")[-500:]}}
     return json.loads(done.stdout.splitlines()[-1])
 
 
@@ -221,8 +222,8 @@ def why_left_out(runs: Sequence[dict[str, Any]]) -> str:
     return ""
 
 
-def write(drives: Sequence[SensibleDrive], model: str, out: Path) -> None:
-    """Tables and pages of a model from what is finished."""
+def write(drives: Sequence[SensibleDrive], model: str, out: Path, levels: int) -> None:
+    """Tables and pages of a model from what is finished. levels : of the references"""
     rows: list[Row] = []
     without: list[str] = []
     for part in PARTS:
@@ -236,6 +237,9 @@ def write(drives: Sequence[SensibleDrive], model: str, out: Path) -> None:
             else:
                 rows += rows_of(drive, part, *runs)
     if not rows:
+        return
+    if levels != LEVELS[model]:
+        write_results(f"effectivity_{model}_{levels}", COLUMNS, rows, table(rows), "effectivity")
         return
     text = f"{WORDS[model]}:\n\n{table(rows)}"
     write_results(f"effectivity_{model}", COLUMNS, rows, text, "effectivity")
@@ -251,10 +255,11 @@ def main() -> None:
     options.add_argument("--seed", type=int, default=SEED)
     options.add_argument("--plane", type=int, default=60, help="number of plane drives")
     options.add_argument("--cups", type=int, default=20, help="number of cup drives")
+    options.add_argument("--cup-levels", type=int, default=LEVELS["cup"], help="of the references")
     options.add_argument("--stages", nargs="+", choices=STAGES, default=list(STAGES))
     options.add_argument("--parts", nargs="+", choices=list(PARTS), default=list(PARTS))
     options.add_argument(
-        "--references", nargs="*", choices=list(TIMES), default=[], help="run these drives as well"
+        "--references", nargs="*", choices=list(LEVELS), default=[], help="run these drives as well"
     )
     options.add_argument(
         "--only", nargs="+", default=[], help="names of the drives to run, in this order"
@@ -267,6 +272,7 @@ def main() -> None:
         model: sensible_drives(count, arguments.seed, model, MOST_MODELLED[model])
         for model, count in (("plane", arguments.plane), ("cup", arguments.cups))
     }
+    levels = {**LEVELS, "cup": arguments.cup_levels}
     own = [reference_drive(model) for model in arguments.references]
     wanted = {drive.name: drive for drive in [*own, *drives["plane"], *drives["cup"]]}
     for part in arguments.parts:
@@ -274,14 +280,15 @@ def main() -> None:
             for stage in arguments.stages:
                 if drive.name in Store(out / f"{part}_{stage}.jsonl").found():
                     continue
+                finer = levels[drive.model] if stage == "reference" else 0
                 log = out / "logs" / f"{drive.name}_{part}_{stage}.log"
-                for of_stage, one in solve(drive, part, stage, arguments.ranks, log).items():
+                for of_stage, one in solve(drive, part, finer, arguments.ranks, log).items():
                     store = Store(out / f"{part}_{of_stage}.jsonl")
                     if drive.name not in store.found():
                         store.keep({"drive": drive.name, **one})
                 print(f"{drive.name} {part} {stage}", flush=True)
     for model, of_model in drives.items():
-        write(of_model, model, out)
+        write(of_model, model, out, levels[model])
 
 
 if __name__ == "__main__":

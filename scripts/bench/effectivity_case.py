@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import json
 import logging
+import math
 import resource
 import sys
 import time
@@ -36,7 +37,7 @@ from swgpar.errors import ConvergenceError, SwgparError
 from swgpar.input.toml_file import validate
 from swgpar.largest_stress import wall_stress, window_recipes
 from swgpar.meshing import MeshRecipe
-from swgpar.meshing.recipe_counts import refined, resized
+from swgpar.meshing.recipe_counts import RATIO, refined, resized
 from swgpar.meshing.wall_sector import WallCounts
 from swgpar.model.drive_model import DriveModel
 
@@ -92,7 +93,11 @@ def found(answers: Mapping[str, Answer]) -> dict[str, dict[str, Any]]:
 
 def reference_recipe(recipe: MeshRecipe, times: float) -> MeshRecipe:
     """The recipe of a reference: counts of a cup drive are small, and rounded up."""
-    return resized(recipe, times) if recipe.face_width is None else refined(recipe)
+    if recipe.face_width is None:
+        return resized(recipe, times)
+    for _ in range(round(math.log(times, RATIO))):
+        recipe = refined(recipe)
+    return recipe
 
 
 def with_finer_windows(model: str) -> None:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from swgpar.analysis.drive_mesh_error import SAFETY, CoarserMesh, shown_error
+from swgpar.analysis.drive_mesh_error import SAFETY, SLIGHT, CoarserMesh, shown_error
 from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares
 from swgpar.flank_pressure.pair_contact import PairContact, touches_edges
 from swgpar.meshing import MeshRecipe
@@ -70,12 +70,27 @@ def contact_errors(
         share = None if alone else _error_share(meshes, measure)
         return None if share is None else max(share, least)
 
+    off_edges = None if _is_slight(contacts) else of_pressure(_pressure_off_edges)
     return ContactErrorShares(
         pressure=of_pressure(lambda pair: pair.pressure_MPa),
-        pressure_off_edges=of_pressure(lambda pair: np.nan if pair.edge else pair.pressure_MPa),
+        pressure_off_edges=off_edges,
         force=of_force(lambda pair: pair.force_N),
         force_share=of_force(lambda pair: pair.force_share),
     )
+
+
+def _pressure_off_edges(pair: PairContact) -> float:
+    return np.nan if pair.edge else pair.pressure_MPa
+
+
+def _is_slight(contacts: Sequence[PairContact]) -> bool:
+    """Whether the pair with the largest pressure off edges carries little, and others, on edges,
+    nearly all: what remains for it changes from mesh to mesh."""
+    known = [pair for pair in contacts if np.isfinite(_pressure_off_edges(pair))]
+    if not known:
+        return False
+    largest = max(pair.force_N for pair in contacts)
+    return max(known, key=_pressure_off_edges).force_N < SLIGHT * largest
 
 
 def _error_share(

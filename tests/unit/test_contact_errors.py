@@ -133,6 +133,13 @@ def test_only_counts_that_differ_decide() -> None:
         shown_error([(FINE, 1.0), (FINE, 2.0)])
 
 
+def test_a_pair_that_carries_little_beside_edges_has_no_estimate() -> None:
+    """Nearly all of the load is on edges: what remains for the other changes with the mesh."""
+    for force, known in ((29.0, False), (31.0, True)):
+        pairs = [pair(1, 60.0, force=force), pair(2, 900.0, edge=1)]
+        assert (errors(pairs, pairs, pairs).pressure_off_edges is not None) == known
+
+
 def test_forces_are_less_certain_where_a_contact_lies_on_an_edge() -> None:
     fine = [pair(1, 600.0), pair(2, 900.0, edge=1)]
     assert errors(fine, fine, fine).force == LEAST_FORCE_WITH_EDGES > LEAST_FORCE["plane"]
