@@ -1,5 +1,4 @@
-"""What the keys of answers measure: loop of the stiffness, Haigh's diagram and life, losses over
-load and speed, modes of the spline."""
+"""What the keys of answers measure: stiffness, ratcheting, fatigue, losses, modes of the spline."""
 
 from __future__ import annotations
 
@@ -11,9 +10,10 @@ from _drafting import CAM, INK, NOTE, RING, SPLINE, dimension, label, leader, re
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgpar.design.program_sections import Stiffness
+from swgpar.design.program_sections import Ratcheting, Stiffness
 from swgpar.design.sections import Fatigue, Losses
 from swgpar.evaluation.fatigue_criteria import damage, fatigue_limits, goodman
+from swgpar.evaluation.ratcheting import TorquePoint, evaluate_ratcheting
 from swgpar.evaluation.stiffness import at_position
 from swgpar.exchange.loaded_losses import LoadedLosses
 from swgpar.load.load_program import StiffnessProgram
@@ -89,6 +89,42 @@ def stiffness_loop() -> Figure:
         ax.plot([x, x], [-0.38 * TOP, 0.0], color=NOTE, lw=0.5)
     label(ax, (0.4, -0.75 * TOP), "dots: points of a branch (key points)", ha="left", color=INK)
     ax.set_xlim(1.1 * min(turns), 1.5 * right)
+    return figure
+
+
+def ratcheting() -> Figure:
+    """A torque that rises until teeth jump over, evaluated by the program."""
+    section, kinematics = Ratcheting(increment=0.05), reference("plane_half_turn").kinematics
+    pitch, over = kinematics.output_pitch, 0.62
+    at = np.sort([*np.arange(0.05, 0.81, section.increment), over - 0.01, over - 0.003, over])
+    torques = np.where(at < over, np.sin(2.1 * at), 0.35 + 0.25 * (at - over))
+    points = [
+        TorquePoint(1, float(x * pitch), float(t), float(x * pitch if x >= over else 0.0))
+        for x, t in zip(at, torques, strict=True)
+    ]
+    found = evaluate_ratcheting(kinematics, section, points, 0.0, ended_early=False)
+    peak = found.peak_rotation_pitches, found.peak_torque_Nm
+    figure, ax = plt.subplots(figsize=(8.0, 4.8), layout="constrained")
+    ended = at <= over
+    ax.plot([0.0, *at[ended]], [0.0, *torques[ended]], color=SPLINE, lw=1.4)
+    recorded = np.arange(section.increment, over, section.increment)
+    ax.plot(recorded, np.sin(2.1 * recorded), "o", color=SPLINE, ms=4)
+    ax.plot(*peak, "*", color=NOTE, ms=12)
+    leader(ax, (peak[0] - 0.2, 1.08), "largest torque, known to tolerance", peak)
+    plain_axes(ax, "rotation of the output, pitches", "torque on the output")
+    for x in recorded[2:4]:
+        ax.plot([x, x], [0.0, np.sin(2.1 * x)], color=NOTE, lw=0.6)
+    dimension(ax, (recorded[2], 0.08), (recorded[3], 0.08), "increment", at=(0.28, 0.08))
+    low = (1.0 - section.drop) * peak[1]
+    for y in (low, peak[1]):
+        ax.plot([peak[0], 0.8], [y, y], color=NOTE, lw=0.6)
+    dimension(ax, (0.76, low), (0.76, peak[1]), "drop: the run ends below", at=(0.95, low))
+    leader(ax, (0.8, 0.45), found.gave_way, (over, torques[ended][-1]), color=INK)
+    ax.axvline(1.2, ymax=0.5, color=NOTE, lw=0.8, ls=":")
+    label(ax, (1.2, 0.62), "limit: the run ends\nat the latest")
+    label(ax, (0.1, 1.0), "at one angle wave_generator", color=INK, ha="left")
+    ax.set_xlim(-0.02, 1.35)
+    ax.set_ylim(-0.03, 1.16)
     return figure
 
 
@@ -218,4 +254,12 @@ def modes() -> Figure:
 
 
 if __name__ == "__main__":
-    run({"stiffness_loop": stiffness_loop, "haigh": haigh, "losses": losses, "modes": modes})
+    run(
+        {
+            "stiffness_loop": stiffness_loop,
+            "ratcheting": ratcheting,
+            "haigh": haigh,
+            "losses": losses,
+            "modes": modes,
+        }
+    )

@@ -67,6 +67,7 @@ DRAWINGS: dict[str, tuple[str, ...]] = {
     "steps": ("load_stages",),
     "solver": ("ownership",),
     "stiffness": ("stiffness_loop",),
+    "ratcheting": ("ratcheting",),
     "deviations": ("deviations",),
     "fatigue": ("haigh",),
     "losses": ("losses",),
