@@ -158,7 +158,13 @@ class ConvergenceTest:
         return self.problem.moved_since_search() > SEARCH_DISTANCE * self.problem.module
 
     def _is_round_off(self, state: SolveState, iteration: int, norm: float) -> bool:
-        """Whether a residual is round-off of positions with 16 digits, or is near it and stalls."""
+        """Whether a residual is round-off of positions with 16 digits, or is near it and stalls.
+
+        The tangent of a distorted state has a round-off without bounds. The residual is then no
+        small one.
+        """
+        if state.residual > SOFT_TOLERANCE:
+            return False
         stalled = iteration > 1 and state.residuals[-1] > STALL * state.residuals[-2]
         return norm <= (1.0 if stalled else ROUND_OFF_SHARE) * self.problem.round_off
 

@@ -181,6 +181,18 @@ def test_contact_that_spreads_slowly(
     assert slow or decision.verdict is Verdict.GO_ON
 
 
+def test_the_round_off_of_a_distorted_state_is_no_equilibrium() -> None:
+    """Its tangent has a round-off above any force."""
+    problem = Mock(round_off=1e6, force_floor=1.0, active_sets=lambda state: [])
+    problem.partition.comm = WORLD
+    test = ConvergenceTest(problem, NewtonSettings(1e-9, 25, 0, 1.0))
+    for residual, verdict in ((700.0, Verdict.GO_ON), (1e-6, Verdict.CONVERGED)):
+        state = SolveState(Mock(stage=Stage.LOAD), [], 200, residuals=[residual])
+        last = ResidualInfo(1.0, False)
+        decision = test.decide(state, 0, residual, last, descending=True, bounded=False)
+        assert decision.verdict is verdict
+
+
 def test_sets_that_return() -> None:
     visited = VisitedSets()
     assert [
