@@ -14,6 +14,8 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from swgpar.analysis.shortcuts import finds_contacts
+from swgpar.evaluation.bearing_loads import BallLoads
+from swgpar.evaluation.loaded_bearing import loaded_bearing
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.flank_pressure.pair_contact import (
     FACE_END,
@@ -78,12 +80,14 @@ class CoarserMesh:
     stresses : s1 (MPa) on windows, coarse to fine, by part of the teeth
     contacts : of all touching pairs
     regions : largest stresses of the regions by windows, by name
+    bearing : what it gives; None without one
     """
 
     recipe: MeshRecipe
     stresses: Mapping[str, Sequence[float]]
     contacts: Sequence[PairContact] = ()
     regions: Mapping[str, RegionStress] = field(default_factory=dict)
+    bearing: BallLoads | None = None
 
 
 @dataclass(frozen=True)
@@ -134,7 +138,7 @@ def with_finer_flanks(coarse: MeshRecipe, recipe: MeshRecipe) -> list[MeshRecipe
 def coarser_mesh(
     model: DriveModel, recipe: MeshRecipe, state: LoadState, *, coarsest: bool
 ) -> CoarserMesh:
-    """What the loaded model on a coarser mesh gives in windows and contacts; collective.
+    """What the loaded model on a coarser mesh gives in windows, contacts and bearing; collective.
 
     coarsest : whether it is the coarsest one. There the ring gear has windows too: of it one change
     shows both errors.
@@ -142,7 +146,8 @@ def coarser_mesh(
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
     found = resolve_root_stress(model, state, COMPARED_LEVELS, COMPARED_LEVELS - 1, ring=coarsest)
-    return CoarserMesh(recipe, found.by_part, pair_contacts(model, state), found.regions)
+    contacts, bearing = pair_contacts(model, state), loaded_bearing(model, state)
+    return CoarserMesh(recipe, found.by_part, contacts, found.regions, bearing)
 
 
 def drive_error(

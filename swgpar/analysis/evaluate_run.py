@@ -163,7 +163,12 @@ def _bearing(recorder: Recorder) -> BallLoads | None:
     steps = np.array([int(row["step"]) for row in record.rows])
     increments = [int(k) + 1 for k in loaded_increments({"step": steps})]
     return evaluate_bearing(
-        design, record.balls, increments, record.bearing_shares, record.race_stress
+        design,
+        record.balls,
+        increments,
+        record.bearing_shares,
+        record.race_stress,
+        record.bearing_errors,
     )
 
 

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from swgpar.analysis.accuracy import require_refinable, with_accuracy
+from swgpar.analysis.bearing_errors import bearing_errors
 from swgpar.analysis.coarse_period import coarse_period
 from swgpar.analysis.coarse_start import solve_to_load, start_at_load
 from swgpar.analysis.coarse_wall import coarse_wall
@@ -34,6 +35,7 @@ from swgpar.checks.remarks import remarks
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.drive_data import DriveData
 from swgpar.errors import ConvergenceError, InputError, SwgparError, TimeLimitError
+from swgpar.evaluation.loaded_bearing import loaded_bearing
 from swgpar.evaluation.period import continued, require_samples
 from swgpar.evaluation.ratcheting import has_fallen
 from swgpar.evaluation.result_frame import history_rows
@@ -332,6 +334,9 @@ class DriveRun:
         record.contact_errors = contact_errors(
             known, self.recipe, contacts, self.model.design.wave_generator.lobes
         )
+        bearing = loaded_bearing(self.model, state)
+        if bearing is not None:
+            record.bearing_errors = bearing_errors(known, self.recipe, bearing)
         return MeshComparison(self.recipe, known, contacts).with_errors(found)
 
     def _wall_stress(self, state: LoadState) -> WallStress | None:

@@ -43,6 +43,7 @@ class RunRecord:
     race_stress : largest stresses of the outer race under load, MPa
     housing : largest values under load, by fields of `HousingStresses`
     bearing_shares : of the bearing in the compliance of the loaded state
+    bearing_errors : by coarser meshes, shares of what the bearing gives, by names of answers
     modes : natural modes of the loaded state
     components : of the nodal fields in files, by body and name
     """
@@ -67,5 +68,6 @@ class RunRecord:
     race_stress: dict[str, float] = field(default_factory=dict)
     housing: dict[str, float] = field(default_factory=dict)
     bearing_shares: dict[str, ComplianceShares] = field(default_factory=dict)
+    bearing_errors: dict[str, float] = field(default_factory=dict)
     modes: list[NaturalMode] = field(default_factory=list)
     components: dict[str, dict[str, int]] = field(default_factory=dict)

@@ -22,7 +22,7 @@ import numpy as np
 from swgpar.contact.contact import NO_KEYS, FacePressure
 from swgpar.contact.enforcement import PressedPoints
 from swgpar.contact.face_quadrature import FaceQuadrature
-from swgpar.contact.smooth_curve import NODES, STEPS, curve_nodes, shape_functions, smooth_curve
+from swgpar.contact.smooth_curve import NODES, curve_nodes, foot_points, smooth_curve
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
 from swgpar.geometry.rotation import to_images, to_owners
@@ -162,19 +162,10 @@ class RaceContact(PressedPoints):
         x = (self.coords + to_images(u[self.conn], self.sixths))[..., :2]
         point = np.einsum("qa,fai->fqi", self.shape, x[:, :4])
         curve = np.einsum("fqk,fnki->fqni", self.layers, x[:, 4:].reshape(len(x), NODES, LAYERS, 2))
-        polynomials, place = self.polynomials[:, None], self.first_place
-        for step in range(STEPS + 1):  # the last evaluation is at the foot point
-            value, rate, second = shape_functions(polynomials, place)
-            away = point - np.einsum("fqn,fqni->fqi", value, curve)
-            tangent, bend = (
-                np.einsum("fqn,fqni->fqi", weights, curve) for weights in (rate, second)
-            )
-            if step < STEPS:
-                steepness = np.sum(tangent * tangent - away * bend, axis=-1)
-                place = place + np.sum(away * tangent, axis=-1) / steepness
+        foot = foot_points(self.polynomials[:, None], curve, point, self.first_place)
+        value, rate, tangent, normal = foot.value, foot.rate, foot.tangent, foot.normal
         length = np.sum(tangent * tangent, axis=-1)
-        normal = np.stack([tangent[..., 1], -tangent[..., 0]], axis=-1) / np.sqrt(length)[..., None]
-        distance, k = np.sum(normal * away, axis=-1), np.sum(normal * bend, axis=-1)
+        distance, k = (np.sum(normal * one, axis=-1) for one in (foot.away, foot.bend))
         self.set_gap(distance + self.offset, self.inside)
 
         def on_race(weights: np.ndarray) -> np.ndarray:

@@ -8,6 +8,8 @@ each other back.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 NODES = 4
@@ -68,3 +70,45 @@ def shape_functions(
     )
     value, rate, second = (np.einsum("...np,...p->...n", polynomials, power) for power in powers)
     return value, rate, second
+
+
+@dataclass(frozen=True)
+class FootPoints:
+    """Points of pieces of the curve that are nearest to given points.
+
+    value, rate : (..., 4) shape functions of the nodes there, and their derivatives by lambda
+    away : (..., 2) mm, from there to the given points
+    tangent, bend : (..., 2) mm, first and second derivative of the curve by lambda
+    """
+
+    value: np.ndarray
+    rate: np.ndarray
+    away: np.ndarray
+    tangent: np.ndarray
+    bend: np.ndarray
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Unit vectors (..., 2) across the curve: outward where it runs counter-clockwise."""
+        x, y = self.tangent[..., 0], self.tangent[..., 1]
+        return np.stack([y, -x], axis=-1) / np.hypot(x, y)[..., None]
+
+
+def foot_points(
+    polynomials: np.ndarray, nodes: np.ndarray, points: np.ndarray, place: np.ndarray
+) -> FootPoints:
+    """Where the normal of a piece of the curve meets a point; pieces continue beyond their ends.
+
+    polynomials : (..., 4, 4);  nodes : (..., 4, 2) mm, deformed;  points : (..., 2) mm
+    place : (...) lambda, first guess
+    """
+    for step in range(STEPS + 1):  # the last evaluation is at the foot point
+        value, rate, second = shape_functions(polynomials, place)
+        away = points - np.einsum("...n,...ni->...i", value, nodes)
+        tangent, bend = (
+            np.einsum("...n,...ni->...i", weights, nodes) for weights in (rate, second)
+        )
+        if step < STEPS:
+            steepness = np.sum(tangent * tangent - away * bend, axis=-1)
+            place = place + np.sum(away * tangent, axis=-1) / steepness
+    return FootPoints(value, rate, away, tangent, bend)

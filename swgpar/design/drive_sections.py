@@ -157,8 +157,6 @@ class DriveSections(Design):
     @property
     def without_windows(self) -> str:
         """What keeps windows from resolving the stress at the teeth; empty without."""
-        if self.bearing is not None:
-            return "a bearing"
         return "" if self.dynamic_spline is None else "two ring gears"
 
     @property

@@ -3,18 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 import numpy as np
 
-from swgpar.answers.answer import AnswerGroup, AnswerKind, answer, evaluation, part_answers
+from swgpar.answers.answer import (
+    Answer,
+    AnswerGroup,
+    AnswerKind,
+    answer,
+    evaluation,
+    part_answers,
+    with_error,
+)
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.bearing_life import BearingSeries, million_turns
+from swgpar.evaluation.contact_error_shares import error_of_largest
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
 from swgpar.results.history import Row
 
 MICROMETRES = 1000.0
+
+NO_SHARES: Mapping[str, float] = MappingProxyType({})
+"""Errors that are not known."""
+
+LARGEST = {
+    "bearing.largest_load": lambda rows: max((row["load_N"] for row in rows), default=0.0),
+    "bearing.pressure": lambda rows: max((_pressure(row) for row in rows), default=0.0),
+    "bearing.approach": lambda rows: max((row["approach_um"] for row in rows), default=0.0),
+}
+"""What of rows of balls.csv the answers are that the increments may miss."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +95,7 @@ class BallLoads(AnswerGroup):
     ball_passing_deg : rotation after which the next ball is at the same place of the cam, None if
     fixed to it
     covers_ball_passing : whether the run covers it
+    errors : by names of answers
     load_ripple : None without load;  torsional_share, radial_share : None without a torque
     """
 
@@ -115,6 +136,7 @@ class BallLoads(AnswerGroup):
         default=None,
     )
     life: BearingLife
+    errors: Mapping[str, float] = field(default_factory=dict)
 
     TITLE = "ball loads and life of the bearing"
     ASKED_BY = "[wave_generator.bearing]"
@@ -125,11 +147,12 @@ class BallLoads(AnswerGroup):
         """Where the load of a ball is the largest."""
         return f"{self.cam_angle_deg:.0f} degrees from the major axis"
 
+    def answers(self) -> Iterator[Answer]:
+        for one in super().answers():
+            error = self.errors.get(one.name)
+            yield one if error is None else with_error(one, error)
+
     def remarks(self) -> Iterator[str]:
-        yield (
-            "with the bearing the stress at the teeth is not resolved by windows: it is that of "
-            "nodal averages"
-        )
         if self.balls_fixed_to_cam:
             yield "the balls are fixed to the cam: ball passing is left out"
         elif not self.covers_ball_passing:
@@ -189,6 +212,7 @@ def evaluate_bearing(
     increments: Sequence[int],
     shares: Mapping[str, ComplianceShares],
     race_stress: Mapping[str, float],
+    error_shares: Mapping[str, float] = NO_SHARES,
 ) -> BallLoads:
     """The loads over the increments under load.
 
@@ -196,6 +220,7 @@ def evaluate_bearing(
     shares : in the torsional and the radial compliance of the loaded state, where they were
     computed
     race_stress : largest stresses of the outer race under load, MPa, by name
+    error_shares : errors by the mesh as shares of the values, by names of answers
     """
     loaded = [row for row in rows if row["increment"] in set(increments)]
     loads = np.array([row["load_N"] for row in loaded]).reshape(-1, design.bearing.balls)
@@ -203,9 +228,9 @@ def evaluate_bearing(
     peaks = loads.max(axis=1)
     passing = ball_passing_angle(design.cage_speed, design.bearing.balls)
     span = np.radians(np.ptp([row["wg_angle_deg"] for row in loaded]))
-    return BallLoads(
+    found = BallLoads(
         largest_load_N=largest["load_N"],
-        largest_pressure_MPa=max(largest["inner_pressure_MPa"], largest["outer_pressure_MPa"]),
+        largest_pressure_MPa=_pressure(largest),
         largest_approach_um=largest["approach_um"],
         wg_angle_deg=largest["wg_angle_deg"],
         cam_angle_deg=largest["cam_angle_deg"],
@@ -219,8 +244,24 @@ def evaluate_bearing(
         torsional_share=shares.get("torsional"),
         radial_share=shares.get("radial"),
         life=bearing_life(design, loads),
-        **{f"{name}_MPa": value for name, value in race_stress.items()},
+        race_s1_MPa=race_stress.get("race_s1"),
+        race_s3_MPa=race_stress.get("race_s3"),
+        race_vm_MPa=race_stress.get("race_vm"),
     )
+    errors = {
+        one.name: error_shares[one.name] * abs(one.value)
+        for one in found.answers()
+        if one.name in error_shares and one.value is not None
+    }
+    for name, largest_of in LARGEST.items():
+        if name in errors:
+            errors[name] = error_of_largest(loaded, largest_of, error_shares[name])
+    return replace(found, errors=errors)
+
+
+def _pressure(row: Row) -> float:
+    """Larger pressure (MPa) of a ball on both races."""
+    return float(max(row["inner_pressure_MPa"], row["outer_pressure_MPa"]))
 
 
 def bearing_life(design: DriveDesign, loads: np.ndarray) -> BearingLife:

@@ -35,6 +35,7 @@ from swgpar.meshing.sector import SectorMesh
 from swgpar.meshing.tooth_sector import build_sector
 from swgpar.meshing.trim import trimmed
 from swgpar.model.drive_model import DriveModel
+from swgpar.model.part_contacts import contacts_of_part
 from swgpar.model.regions import END, region_of, warning_of
 from swgpar.model.torques import torques
 from swgpar.model.window_mesh import WindowMesh
@@ -191,7 +192,11 @@ class LocalProblem:
             partition=self.partition,
             elements=self.elements,
             supports=Supports(self.partition, [], scale=self.scale, share=1.0),
-            wave_generator=model.rigid_contacts(self.body) if gear == FLEXIBLE_SPLINE else None,
+            wave_generator=(
+                contacts_of_part(model, state, self.body, teeth)
+                if gear == FLEXIBLE_SPLINE
+                else None
+            ),
             boundary_terms=[self._dead_load(), self._cuts(displacement)],
             module=geometry.module,
             blocks=shared.blocks,

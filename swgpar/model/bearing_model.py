@@ -3,6 +3,8 @@ race's support."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans
@@ -73,6 +75,17 @@ def build_ball_contact(design: DriveDesign, elements: Elements) -> BallContact:
     )
 
 
+def race_relief(design: DriveDesign) -> Callable[[np.ndarray], np.ndarray]:
+    """What gives the gap (n,) mm between race and flexible spline at z (n,) mm, both undeformed."""
+    micro, width = design.micro_geometry, design.wave_generator.face_width
+
+    def relief(z: np.ndarray) -> np.ndarray:
+        removed = crowning(micro.wg_crowning, z, width, micro.crowning_shape)[0]
+        return removed - 0.5 * design.bearing.race_interference
+
+    return relief
+
+
 def build_bearing_contacts(
     design: DriveDesign, elements: Elements, pressure_limit: float, edge: float
 ) -> WaveGeneratorContacts:
@@ -81,13 +94,6 @@ def build_bearing_contacts(
     pressure_limit : as a share of the modulus;  edge : factor on the width of the race
     """
     spline, race = elements.bodies[FLEXIBLE_SPLINE], elements.bodies[OUTER_RACE]
-    micro = design.micro_geometry
-
-    def relief(z: np.ndarray) -> np.ndarray:
-        width = design.wave_generator.face_width
-        removed = crowning(micro.wg_crowning, z, width, micro.crowning_shape)[0]
-        return removed - 0.5 * design.bearing.race_interference
-
     column, layer = opposite_cells(spline.layout.mesh, race.layout.mesh)
     contact = RaceContact(
         spline,
@@ -97,7 +103,7 @@ def build_bearing_contacts(
         layer=layer,
         half_width=0.5 * design.race_width * edge,
         radius=design.inner_radius,
-        relief=relief,
+        relief=race_relief(design),
         n_quadrature=design.contact.wg_quadrature,
         penalty=design.wg_penalty,
         pressure_limit=pressure_limit * design.modulus_of("bearing"),

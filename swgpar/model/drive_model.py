@@ -21,7 +21,7 @@ from swgpar.constraints.supports import (
 )
 from swgpar.contact.contact import largest
 from swgpar.contact.flanks import FlankContact
-from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
+from swgpar.contact.rigid_surface import RigidContact, RigidSurface, cam_pose, pin_pose
 from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import ContactSection, Solver
@@ -52,6 +52,9 @@ pressure. Narrow cells of flanks have larger ones where a tip slides over a tip.
 EDGE = 1.0 + 1e-9
 """Factor on the width of a rigid surface: points on its edge belong to it."""
 
+RigidContacts = Callable[..., WaveGeneratorContacts]
+"""Arguments: elements of the flexible spline, and the surface if it is not the cam's."""
+
 
 @dataclass(eq=False, kw_only=True)
 class DriveModel:
@@ -62,7 +65,8 @@ class DriveModel:
     meshes : one sector of each body by name
     partition, elements : ownership and elements
     problem, solver : discrete problem and its Newton solver
-    rigid_contacts : makes the contacts of cam and pins on another mesh of the flexible spline
+    rigid_contacts : makes the contacts of cam and pins, or of a rigid surface in their place, on
+    another mesh of the flexible spline
     phases : wall seconds
     window_meshes : what windows on a mesh share, by gear, recipe and number of sectors
     """
@@ -75,7 +79,7 @@ class DriveModel:
     elements: Elements
     problem: DiscreteProblem
     solver: NewtonSolver
-    rigid_contacts: Callable[[BodyElements], WaveGeneratorContacts]
+    rigid_contacts: RigidContacts
     phases: PhaseTimes
     window_meshes: dict[tuple[str, MeshRecipe, int], WindowMesh] = field(default_factory=dict)
 
@@ -296,24 +300,25 @@ def build_supports(design: DriveDesign, partition: Partition, elements: Elements
     )
 
 
-def rigid_contacts(design: DriveDesign) -> Callable[[BodyElements], WaveGeneratorContacts]:
-    """What makes the contacts of cam and pins on the inner surface, of any mesh of the flexible
-    spline."""
+def rigid_contacts(design: DriveDesign) -> RigidContacts:
+    """What makes the contacts of cam and pins, or of a surface in their place, on the inner surface
+    of any mesh of the flexible spline."""
+    width = design.wave_generator.width if design.bearing is None else design.race_width
     contact = partial(
         RigidContact,
-        surface=design.grown_cam_surface(),
         radius=design.inner_radius,
-        half_width=0.5 * design.wave_generator.width * EDGE,
+        half_width=0.5 * width * EDGE,
         n_quadrature=design.contact.wg_quadrature,
         penalty=design.wg_penalty,
         pin_half_angle=float(np.radians(design.wave_generator.pin_half_angle)),
         lobes=design.wave_generator.lobes,
         pressure_limit=PRESSURE_LIMIT * design.modulus_of("flexible_spline"),
     )
+    cam = design.grown_cam_surface()
 
-    def on(spline: BodyElements) -> WaveGeneratorContacts:
+    def on(spline: BodyElements, surface: RigidSurface = cam) -> WaveGeneratorContacts:
         return WaveGeneratorContacts(
-            cam=contact(spline, pose=cam_pose), pins=contact(spline, pose=pin_pose)
+            cam=contact(spline, surface, cam_pose), pins=contact(spline, surface, pin_pose)
         )
 
     return on
