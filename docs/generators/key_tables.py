@@ -72,6 +72,7 @@ DRAWINGS: dict[str, tuple[str, ...]] = {
     "fatigue": ("haigh",),
     "losses": ("losses",),
     "frequencies": ("modes",),
+    "output_bearing": ("output_bearing",),
 }
 """Drawings of `docs/drawings` beside the sections of a drive: they show what the keys measure."""
 

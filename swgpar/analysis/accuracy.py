@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from swgpar.checks.output_bearing_checks import SIDEWAYS
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.input.require import require
@@ -27,6 +28,11 @@ def require_refinable(design: DriveDesign, accuracy: float) -> None:
         (design.has_program, "a load program", "a mesh recipe"),
         (design.bearing is not None, "wave_generator.bearing", "without it"),
         (design.is_bolted, 'cup.attachment = "bolted"', '"edge" and "clamped"'),
+        (
+            design.is_loaded_sideways,
+            SIDEWAYS,
+            "without them",
+        ),
         (design.dynamic_spline is not None, 'drive.model = "pancake"', '"cup"'),
     ):
         if given:

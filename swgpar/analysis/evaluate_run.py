@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 import resource
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from swgpar.evaluation.largest_contact import largest_contact
 from swgpar.evaluation.load_sharing import LoadSharing, load_sharing
 from swgpar.evaluation.losses import DriveLosses, evaluate_losses
 from swgpar.evaluation.numerics import evaluate_numerics
+from swgpar.evaluation.output_bearing_loads import output_bearing_loads
 from swgpar.evaluation.program_results import stage_ends
 from swgpar.evaluation.ratcheting import evaluate_ratcheting
 from swgpar.evaluation.rigid_clearance import rigid_clearance
@@ -130,6 +131,11 @@ def evaluate_run(
         fatigue=None if fatigue is None else fatigue.found,
         losses=losses,
         bearing=_bearing(recorder),
+        output_bearing=output_bearing_loads(
+            design.output_bearing, [rows[k - 1] for k in _increments_under_load(rows)]
+        )
+        if design.output_bearing
+        else None,
         clearance=rigid_clearance(clearances(design)),
         frequencies=NaturalFrequencies(modes=record.modes) if record.modes else None,
         housing=HousingStresses(**record.housing) if record.housing else None,
@@ -154,14 +160,19 @@ def _load_sharing(recorder: Recorder) -> LoadSharing | None:
     )
 
 
+def _increments_under_load(rows: Sequence[Row]) -> list[int]:
+    """Numbers of the increments under load, from 1."""
+    steps = np.array([int(row["step"]) for row in rows])
+    return [int(k) + 1 for k in loaded_increments({"step": steps})]
+
+
 def _bearing(recorder: Recorder) -> BallLoads | None:
     """Over the increments under load."""
     design = recorder.model.design
     if design.bearing is None:
         return None
     record = recorder.record
-    steps = np.array([int(row["step"]) for row in record.rows])
-    increments = [int(k) + 1 for k in loaded_increments({"step": steps})]
+    increments = _increments_under_load(record.rows)
     return evaluate_bearing(
         design,
         record.balls,

@@ -18,6 +18,7 @@ from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import logger
 from swgpar.model.drive_model import DriveModel
 from swgpar.model.torques import torques
+from swgpar.results.history import OUTPUT_COLUMNS
 from swgpar.solve.newton import SOFT_PENALTIES, SPREADING_PENALTIES
 from swgpar.solve.solve_state import SolveResult
 
@@ -349,7 +350,7 @@ class LoadStepper:
     def row(self) -> dict[str, float]:
         """The history's row of the present state, without stresses and times; collective."""
         state, problem = self.load_state, self.problem
-        torque = torques(problem, state)
+        torque, u = torques(problem, state), problem.displacement()
         return {
             "step": state.step,
             "wg_angle_deg": float(np.degrees(state.angle)),
@@ -362,4 +363,5 @@ class LoadStepper:
             "max_penetration_mm": problem.penetration(),
             "newton_iterations": self.iterations,
             **dict(zip(("ds_tooth_torque_Nmm",), torque.teeth[1:])),
+            **dict(zip(OUTPUT_COLUMNS, problem.supports.output_displacement(u))),
         }

@@ -65,8 +65,9 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
     steps, solver, stiffness = design.steps, design.solver, design.stiffness
     points, changes, left_out = program_points(design), {}, []
 
-    # balls pass, and teeth with bolts differ: no angle of another period has the same state
-    repeats = design.bearing is None and not design.is_bolted
+    # balls pass, teeth with bolts differ, a load from one side stands still: no angle of another
+    # period has the same state
+    repeats = design.bearing is None and design.repeats
 
     def leave_out(key: str, value: int | bool, words: str) -> None:
         if key not in steps.model_fields_set and value != getattr(steps, key):

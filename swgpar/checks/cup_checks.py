@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from swgpar.checks.repeat_checks import require_no_period
 from swgpar.design.cup_section import Cup
 from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.geometry.cup_wall import WallPoint
-from swgpar.input.require import require, require_available
+from swgpar.input.require import require
 from swgpar.meshing.drive_geometry import THICK_CUP
 
 THINNEST = 0.1
@@ -83,7 +84,7 @@ def check_cup(design: DriveDesign) -> None:
     _check_back(sizes, rim)
     _check_attachment(sizes)
     if cup.attachment == "bolted":
-        _check_bolted(design)
+        require_no_period(design, 'cup.attachment = "bolted"', 'with "edge" and "clamped"')
 
 
 def _check_shape(cup: Cup) -> None:
@@ -296,16 +297,3 @@ def _check_attachment(sizes: CupSizes) -> None:
         allowed = f"3 to {most_bolts} (washers beside each other)"
         fits = circle * np.sin(np.pi / cup.bolts) >= washer
         require(fits, "cup.bolts", cup.bolts, allowed)
-
-
-def _check_bolted(design: DriveDesign) -> None:
-    """With bolts the teeth are not alike: the drive does not repeat after a pitch."""
-    bolted = 'cup.attachment = "bolted", which does not repeat after a pitch'
-    samples, stiffness = design.steps.samples, design.stiffness
-    require(samples == 0, "steps.samples", samples, f"only 0 with {bolted}")
-    for section in ("fatigue", "losses", "deviations"):
-        absent = getattr(design, section) is None
-        require_available(absent, f"[{section}]", bolted, 'with "edge" and "clamped"')
-    if stiffness is not None:
-        positions = stiffness.positions
-        require(positions == 1, "stiffness.positions", positions, f"only 1 with {bolted}")

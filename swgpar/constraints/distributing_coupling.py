@@ -21,7 +21,7 @@ from mpi4py import MPI
 
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import Partition
-from swgpar.materials import NO_GROWTH, Growth
+from swgpar.geometry.rotation import rotated
 
 X, Y, Z, TILT_X, TILT_Y, ROTATION = range(6)
 """Coupled quantities: displacements along x, y and z, tilts about x and y, rotation about z."""
@@ -87,9 +87,12 @@ class NodeMeans(ABC):
 
     Attributes:
     total : sum of the weights of all ranks;  weight : (n,) over that sum
+    center : (3,) mm;  arm : (n, 3) mm, places from there
+    movable : (5,) bool, displacements and tilts that a bearing of the body may leave free
     """
 
     active: np.ndarray
+    movable: np.ndarray
 
     def __init__(
         self,
@@ -108,7 +111,7 @@ class NodeMeans(ABC):
         self.weight = weight / self.total
         center = np.zeros(3) if fixed_axis else self.sum(self.weight[:, None] * self.undeformed)
         center[2] = self.sum(self.weight * self.undeformed[:, 2])
-        self.arm = self.undeformed - center
+        self.center, self.arm = center, self.undeformed - center
         self.radius2 = float(self.sum(self.weight * (self.arm[:, 0] ** 2 + self.arm[:, 1] ** 2)))
         self.solid = partition.dims == 3
 
@@ -126,17 +129,22 @@ class NodeMeans(ABC):
         x, y = arm[:, 0] + v[:, 0] - mean[0], arm[:, 1] + v[:, 1] - mean[1]
         across, along = arm[:, 0] * y - arm[:, 1] * x, arm[:, 0] * x + arm[:, 1] * y
         sine, cosine = self.sum(np.column_stack([w * across, w * along]))
-        tilts = self.sum(np.column_stack([w * arm[:, 1] * v[:, 2], -w * arm[:, 0] * v[:, 2]]))
+        rotation = float(np.arctan2(sine, cosine))
+        turned = rotated(arm[:, :2], rotation)
+        tilts = self.sum(np.column_stack([w * turned[:, 1] * v[:, 2], -w * turned[:, 0] * v[:, 2]]))
         tilt_x, tilt_y = tilts * 2.0 / self.radius2
-        value = np.array([*mean, tilt_x, tilt_y, np.arctan2(sine, cosine)])
+        value = np.array([*mean, tilt_x, tilt_y, rotation])
         gradient = np.zeros((N_COUPLED, len(w), 3))
         for k in (X, Y, Z):
             gradient[k, :, k] = w
-        gradient[TILT_X, :, 2] = 2.0 / self.radius2 * w * arm[:, 1]
-        gradient[TILT_Y, :, 2] = -2.0 / self.radius2 * w * arm[:, 0]
         norm = cosine * cosine + sine * sine
         gradient[ROTATION, :, 0] = w * (-cosine * arm[:, 1] - sine * arm[:, 0]) / norm
         gradient[ROTATION, :, 1] = w * (cosine * arm[:, 0] - sine * arm[:, 1]) / norm
+        # the axes of the tilts stand in space, while the arms rotate
+        gradient[TILT_X] = -tilt_y * gradient[ROTATION]
+        gradient[TILT_Y] = tilt_x * gradient[ROTATION]
+        gradient[TILT_X, :, 2] += 2.0 / self.radius2 * w * turned[:, 1]
+        gradient[TILT_Y, :, 2] -= 2.0 / self.radius2 * w * turned[:, 0]
         return MeanMotion(value, gradient)
 
     @abstractmethod
@@ -180,6 +188,7 @@ class DistributingCoupling(NodeMeans):
         self.active = np.array(
             [held, held, self.solid, whole and self.solid, whole and self.solid, True]
         )
+        self.movable = self.active[:ROTATION]
 
     def supports(self) -> np.ndarray:
         """Unit directions (n, n_local, 3) on single nodes that support the body rigidly.
@@ -209,40 +218,3 @@ class DistributingCoupling(NodeMeans):
                 tangential[node, :2] = np.array([-a[1], a[0]]) / np.hypot(a[0], a[1])
             directions += [axial, tangential] if self.solid else [tangential]
         return np.array(directions)
-
-
-class RadialGuide:
-    """Rigid ring around the ring gear as output: outer nodes stay on their circle (section 5.8).
-
-    Stiff radial springs, as hard as contact; the nodes are free along the circle and the axis.
-
-    coupling : of the outer surface;  area : mm², of the modelled surface;  penalty : MPa / mm
-    growth : of the rigid ring
-    """
-
-    def __init__(
-        self, coupling: NodeMeans, area: float, penalty: float, growth: Growth = NO_GROWTH
-    ) -> None:
-        self.nodes, self.position = coupling.nodes, coupling.undeformed[:, :2]
-        self.radius = (1.0 + growth.across) * np.hypot(*self.position.T)
-        self.stiffness = penalty * area * coupling.weight
-
-    def _radial(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Radii (n,) mm, outward normals (n, 2) and forces along them (n,) N at u (n_local, 3)."""
-        x = self.position + u[self.nodes, :2]
-        r = np.hypot(*x.T)
-        return r, x / r[:, None], self.stiffness * (r - self.radius)
-
-    def add_forces(self, u: np.ndarray, residual: np.ndarray) -> None:
-        """Add to residual (n_local, 3) N."""
-        _, normal, force = self._radial(u)
-        residual[self.nodes, :2] += force[:, None] * normal
-
-    def blocks(self, u: np.ndarray) -> np.ndarray:
-        """Tangent blocks (n, 3, 3) N/mm of the nodes."""
-        r, normal, force = self._radial(u)
-        blocks = np.zeros((len(r), 3, 3))
-        nn = normal[:, :, None] * normal[:, None, :]
-        bent = (force / r)[:, None, None]
-        blocks[:, :2, :2] = self.stiffness[:, None, None] * nn + bent * (np.eye(2) - nn)
-        return blocks

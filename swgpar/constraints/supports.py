@@ -10,9 +10,10 @@ from swgpar.constraints.distributing_coupling import (
     ROTATION,
     Coupling,
     NodeMeans,
-    RadialGuide,
 )
+from swgpar.constraints.output_springs import OutputSprings
 from swgpar.constraints.race_coupling import RaceCoupling
+from swgpar.constraints.radial_guide import RadialGuide
 from swgpar.constraints.rigid_attachment import RigidAttachment
 from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows, add_diagonal
@@ -75,6 +76,7 @@ class Supports:
     race : coupling of the outer race, without a bearing None
     spline_ratio : rotation of the flexible spline over that of the output, where contacts alone
     hold it unless the load state says otherwise; None where its coupling supports it
+    bearing : of the output; None where it is held but for its rotation
 
     Attributes:
     gear_couplings, couplings : those of the gears alone, and all
@@ -92,8 +94,9 @@ class Supports:
         share: float,
         race: RaceCoupling | None = None,
         spline_ratio: float | None = None,
+        bearing: OutputSprings | None = None,
     ) -> None:
-        self.spline_ratio = spline_ratio
+        self.spline_ratio, self.bearing = spline_ratio, bearing
         self.partition, self.guide = partition, guide
         self.couplings: list[Coupling] = [*couplings] if race is None else [*couplings, race]
         self.gear_couplings, self.output_gear = couplings, output
@@ -119,14 +122,29 @@ class Supports:
     def grounding(self, u: np.ndarray) -> list[PETSc.Vec]:
         """Vectors B of what the matrix holds too much, B B^T, at u (n_local, 3) mm; collective.
 
-        One for each supported direction, and one for the free rotation of each rigid attachment.
+        One for each supported direction, and those of the free motions of rigid attachments and of
+        the guide.
         """
-        vectors = list(self._ground_vectors)
-        for _, attachment in self._attached:
-            vector = create_vector(self.partition)
-            vector.array.reshape(-1, 3)[attachment.nodes] = attachment.free_rotation(u)
-            vectors.append(vector)
-        return vectors
+        free = [(part.nodes, part.free_motions(u)) for _, part in self._attached]
+        if self.guide is not None:
+            free.append((self.guide.nodes, self.guide.free_motions(u)))
+        vectors = [self._vector(nodes, values) for nodes, some in free for values in some]
+        return [*self._ground_vectors, *vectors]
+
+    def springs(self, u: np.ndarray) -> list[PETSc.Vec]:
+        """Vectors S of what the matrix lacks of the output's bearing, S S^T, at u (n_local, 3) mm;
+        collective."""
+        if self.bearing is None:
+            return []
+        output = self.output
+        vectors = self.bearing.spring_vectors(output.evaluate(u))
+        return [self._vector(output.nodes, values) for values in vectors]
+
+    def _vector(self, nodes: np.ndarray, values: np.ndarray) -> PETSc.Vec:
+        """A vector with values (n, 3) at nodes (n,)."""
+        vector = create_vector(self.partition)
+        vector.array.reshape(-1, 3)[nodes] = values
+        return vector
 
     @property
     def output(self) -> Coupling:
@@ -143,6 +161,8 @@ class Supports:
         active = [
             (i, int(k)) for i, c in enumerate(self.couplings) for k in np.flatnonzero(c.active)
         ]
+        if self.bearing is not None:
+            active = [(i, k) for i, k in active if i != self.output_gear or k == ROTATION]
         if state.control == "torque":
             active.remove((self.output_gear, ROTATION))
         if self.spline_ratio is not None and not state.spline_held:
@@ -166,7 +186,7 @@ class Supports:
     def add_forces(
         self, u: np.ndarray, state: LoadState, multiplier: np.ndarray, residual: np.ndarray
     ) -> np.ndarray:
-        """Add forces of multipliers, load and guide to residual (n_local, 3) N.
+        """Add forces of multipliers, load, guide and bearing to residual (n_local, 3) N.
 
         Returns the residual's rows (n_multipliers,) of the multipliers, N.
         """
@@ -188,6 +208,10 @@ class Supports:
                 self.scale * multiplier[N_COUPLED * i + k] * gradient
             )
             rows[N_COUPLED * i + k] = self.scale * (motion[i].value[k] - target[i, k])
+        if self.bearing is not None:
+            output = motion[self.output_gear]
+            forces = self.bearing.forces(output)
+            residual[self.output.nodes] += np.tensordot(forces, output.gradient[:ROTATION], axes=1)
         if state.control == "torque":
             residual[self.output.nodes] -= (
                 self.share * state.torque * motion[self.output_gear].gradient[ROTATION]
@@ -210,12 +234,30 @@ class Supports:
             prescribed.append((self.output_gear, ROTATION))
         motion, border = [coupling.evaluate(u) for coupling in self.couplings], []
         for i, k in prescribed:
-            vector = create_vector(self.partition)
-            vector.array.reshape(-1, 3)[self.couplings[i].nodes] = (
-                self.scale * motion[i].gradient[k]
-            )
-            border.append(vector)
+            border.append(self._vector(self.couplings[i].nodes, self.scale * motion[i].gradient[k]))
         return border, [N_COUPLED * i + k for i, k in prescribed]
+
+    def held_at(self, coupling: int, u: np.ndarray) -> np.ndarray:
+        """Values (6,) at which a coupling is held, mm and rad, but for a prescribed rotation; where
+        a bearing carries it, its displacements and tilts at u (n_local, 3) mm. Collective."""
+        held = self.offsets[coupling].copy()
+        if self.bearing is not None and coupling == self.output_gear:
+            held[:ROTATION] = self.output.evaluate(u).value[:ROTATION]
+        return held
+
+    def output_displacement(self, u: np.ndarray) -> np.ndarray:
+        """Displacements (mm) along x, y and z and tilts (rad) about x and y of the output in the
+        middle of its bearing, (5,) at u (n_local, 3) mm; (0,) without a bearing. Collective."""
+        if self.bearing is None:
+            return np.zeros(0)
+        return self.bearing.displacement(self.output.evaluate(u))
+
+    def bearing_moment(self, u: np.ndarray) -> float:
+        """Moment (N mm) about z of the whole drive of bearing and forces on the output that is
+        displaced at u (n_local, 3) mm; collective."""
+        if self.bearing is None:
+            return 0.0
+        return self.bearing.moment(self.output.evaluate(u)) / self.share
 
     def reactions(self, multiplier: np.ndarray) -> np.ndarray:
         """Torques (N mm) about z of the whole drive that support the gears, by the multipliers."""

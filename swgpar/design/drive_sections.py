@@ -9,6 +9,7 @@ from swgpar.design.cup_section import Cup
 from swgpar.design.deviations import Deviations
 from swgpar.design.frequency_section import Frequencies
 from swgpar.design.kinematics import Kinematics, make_kinematics
+from swgpar.design.output_bearing import OutputBearing
 from swgpar.design.program_sections import Ratcheting, Stiffness
 from swgpar.design.sections import (
     GEARS,
@@ -59,6 +60,7 @@ class DriveSections(Design):
     losses: Losses | None = None
     deviations: Deviations | None = None
     frequencies: Frequencies | None = None
+    output_bearing: OutputBearing | None = None
 
     @property
     def gears(self) -> tuple[GearName, ...]:
@@ -87,11 +89,9 @@ class DriveSections(Design):
     @property
     def is_mirror_symmetric(self) -> bool:
         """Whether the undeformed drive is its own image in the plane through the axis and the major
-        axis. The balls of a bearing are placed on one side of it or the other. With bolts no other
-        state mirrors it."""
-        return (
-            self.wave_generator.is_mirror_symmetric and self.bearing is None and not self.is_bolted
-        )
+        axis. The balls of a bearing are placed on one side of it or the other. With bolts, or a
+        load from one side, no other state mirrors it."""
+        return self.wave_generator.is_mirror_symmetric and self.bearing is None and self.repeats
 
     @property
     def has_cup(self) -> bool:
@@ -109,6 +109,17 @@ class DriveSections(Design):
         return self.has_attachment and self.cup.attachment == "bolted"
 
     @property
+    def is_loaded_sideways(self) -> bool:
+        """Whether a radial force or a tilting moment acts on the output."""
+        return self.output_bearing is not None and self.output_bearing.is_loaded_sideways
+
+    @property
+    def repeats(self) -> bool:
+        """Whether the drive is in the same state again after a period of its motion, apart from
+        names of teeth: not where bolts hold the cup, nor where a load stands still beside them."""
+        return not self.is_bolted and not self.is_loaded_sideways
+
+    @property
     def copies(self) -> int:
         """How many times the model makes the whole drive: the number of lobes where the drive
         equals itself rotated by one of them and the design allows it, else 1."""
@@ -121,6 +132,7 @@ class DriveSections(Design):
         # modes of a part of the drive are not all modes
         symmetric = all(count % lobes == 0 for count in counts) and self.frequencies is None
         symmetric = symmetric and self.wave_generator.lobes_are_alike
+        symmetric = symmetric and not self.is_loaded_sideways
         return lobes if symmetric and self.solver.symmetry else 1
 
     @property

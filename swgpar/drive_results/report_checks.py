@@ -43,7 +43,7 @@ def checks(summary: DriveSummary, history: Mapping[str, np.ndarray]) -> list[Che
         _balance(summary.numerics),
         _energy(
             summary.rotation,
-            loaded and covered and not summary.design.is_bolted,
+            loaded and covered and summary.design.repeats,
             contact.friction > 0.0,
         ),
         _penetration(tolerance, history),

@@ -15,6 +15,7 @@ from swgpar.evaluation.largest_contact import LargestContact
 from swgpar.evaluation.load_sharing import LoadSharing
 from swgpar.evaluation.losses import DriveLosses
 from swgpar.evaluation.numerics import Numerics
+from swgpar.evaluation.output_bearing_loads import OutputBearingLoads
 from swgpar.evaluation.program_results import ProgramStages
 from swgpar.evaluation.ratcheting import RatchetingTorque
 from swgpar.evaluation.rigid_clearance import RigidClearance
@@ -43,6 +44,7 @@ ANSWER_GROUPS: dict[str, type[AnswerGroup]] = {
     "fatigue": SafetyAndLife,
     "losses": DriveLosses,
     "bearing": BallLoads,
+    "output_bearing": OutputBearingLoads,
     "frequencies": NaturalFrequencies,
     "housing": HousingStresses,
     "stresses": LargestStresses,
@@ -122,6 +124,7 @@ class DriveSummary(AnswerTable):
     fatigue: SafetyAndLife | None = None
     losses: DriveLosses | None = None
     bearing: BallLoads | None = None
+    output_bearing: OutputBearingLoads | None = None
     clearance: RigidClearance | None = None
     frequencies: NaturalFrequencies | None = None
     housing: HousingStresses | None = None

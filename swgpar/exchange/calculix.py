@@ -76,6 +76,7 @@ def _check(design: DriveDesign) -> None:
         "[ring_gear.housing]": design.ring_gear.housing,
         "[dynamic_spline]": design.dynamic_spline,
         "[deviations]": design.deviations,
+        "[output_bearing]": design.output_bearing,
         "[stiffness]": design.stiffness,
         "[ratcheting]": design.ratcheting,
         "load.program": design.load.program,

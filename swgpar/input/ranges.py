@@ -30,6 +30,7 @@ SMALLEST_AND_LARGEST = {
     "mrad": (1e-6, 1e3),
     "kN": (1e-9, 1e9),
     "N/m": (1e-3, 1e15),
+    "N/mm": (1e-6, 1e12),
     "kg": (1e-9, 1e9),
     "m": (1e-6, 1e6),
     "standard deviations": (1e-3, 1e2),

@@ -104,8 +104,9 @@ class WallProblem:
         supports = Supports(
             self.partition, self._couplings(), scale=whole.scale, share=1.0 / layout.copies
         )
-        if layout.closed:
-            supports.offsets[SPLINE_COUPLING] = whole.offsets[SPLINE_COUPLING]
+        if supports.couplings:
+            held = whole.held_at(SPLINE_COUPLING, model.problem.displacement())
+            supports.offsets[SPLINE_COUPLING] = held
         self.problem = DiscreteProblem(
             partition=self.partition,
             elements=self.elements,

@@ -103,7 +103,7 @@ def load_sequence(design: DriveDesign) -> LoadSequence:
         increment=steps.increment,
         samples=steps.samples,
         periods=design.periods,
-        repeats=not design.is_bolted,
+        repeats=design.repeats,
     )
 
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.constraints.distributing_coupling import NodeMeans, RadialGuide
+from swgpar.constraints.distributing_coupling import NodeMeans
+from swgpar.constraints.output_springs import OutputSprings
+from swgpar.constraints.radial_guide import RadialGuide
 from swgpar.constraints.rigid_attachment import RigidAttachment, face_sides
 from swgpar.design.cup_section import Cup
+from swgpar.design.output_bearing import OutputBearing
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import Partition
 from swgpar.log import logger
@@ -14,11 +17,18 @@ from swgpar.materials import NO_GROWTH, Growth
 
 
 def spline_attachment(
-    partition: Partition, spline: BodyElements, cup: Cup, penalty: float, images: bool
+    partition: Partition,
+    spline: BodyElements,
+    cup: Cup,
+    penalty: float,
+    *,
+    images: bool,
+    moves: bool = False,
 ) -> RigidAttachment:
     """Attachment of closed end or flange, which is clamped or bolted to a flange that grows as it.
 
     penalty : MPa / mm;  images : whether the model is a part of the drive
+    moves : whether a bearing carries the flange
     """
     longest = float(face_sides(spline.layout.mesh, "end").max())
     if cup.attachment == "bolted" and longest > cup.washer_diameter:
@@ -37,7 +47,18 @@ def spline_attachment(
         penalty=penalty,
         images=images,
         growth=spline.layout.body.growths[0] if spline.layout.body.growths else NO_GROWTH,
+        moves=moves,
     )
+
+
+def output_springs(section: OutputBearing, output: NodeMeans, copies: int) -> OutputSprings:
+    """Springs and forces on the output.
+
+    output : its coupling;  copies : how many times the model makes the whole drive
+    """
+    middle = float(output.center[2])
+    lever = 0.0 if section.position is None else section.position - middle
+    return OutputSprings(section.stiffness, section.load, lever, output.movable, 1.0 / copies)
 
 
 def ring_guide(
@@ -46,12 +67,14 @@ def ring_guide(
     copies: int,
     penalty: float,
     growth: Growth = NO_GROWTH,
+    *,
+    follows: bool,
 ) -> RadialGuide:
     """Guide around a rotating ring gear.
 
     ends : mm, of its teeth along z;  copies : how many times the model makes the whole drive
-    penalty : MPa / mm;  growth : of the guide
+    penalty : MPa / mm;  growth : of the guide;  follows : whether it follows the ring gear
     """
     outer = float(np.hypot(*coupling.undeformed[:, :2].T).max(initial=0.0))
     area = 2.0 * np.pi * outer * (ends[1] - ends[0]) / copies
-    return RadialGuide(coupling, area, penalty, growth)
+    return RadialGuide(coupling, area, penalty, growth, follows=follows)

@@ -37,7 +37,7 @@ from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
 from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.model.bearing_model import build_bearing_contacts, build_race, race_coupling
 from swgpar.model.contact_distances import contact_search, foot_reach
-from swgpar.model.couplings import ring_guide, spline_attachment
+from swgpar.model.couplings import output_springs, ring_guide, spline_attachment
 from swgpar.model.layouts import build_gear, build_layout
 from swgpar.model.regions import sector_regions
 from swgpar.model.window_mesh import WindowMesh
@@ -268,10 +268,18 @@ def build_supports(design: DriveDesign, partition: Partition, elements: Elements
     # a plane section with deviations is centred by its cam alone: the wall of the cup gives way
     centred = design.has_cup or (design.drive.model == "plane" and design.deviations is None)
     rotates, guide = design.kinematics.output_gear != "flexible_spline", None
+    carried = design.output_bearing is not None
     couplings: list[NodeMeans] = []
     if design.has_attachment:
         penalty = design.penalty("flexible_spline")
-        attachment = spline_attachment(partition, spline, design.cup, penalty, images=copies > 1)
+        attachment = spline_attachment(
+            partition,
+            spline,
+            design.cup,
+            penalty,
+            images=copies > 1,
+            moves=carried and not rotates,
+        )
         couplings.append(attachment)
     else:
         couplings.append(DistributingCoupling(partition, spline, "bore", copies > 1, centred))
@@ -282,21 +290,33 @@ def build_supports(design: DriveDesign, partition: Partition, elements: Elements
         if design.frame_is_rigid:
             ends = design.axial_range(design.kinematics.output_gear)
             penalty = design.penalty(design.kinematics.output_gear)
-            guide = ring_guide(ring_coupling, ends, copies, penalty, design.frame_growth)
+            guide = ring_guide(
+                ring_coupling,
+                ends,
+                copies,
+                penalty,
+                design.frame_growth,
+                follows=carried and copies == 1,
+            )
     scale = design.modulus_of("flexible_spline") * design.drive.module
     race = None if design.bearing is None else race_coupling(partition, elements, couplings[0])
     spline_ratio = None
     if design.dynamic_spline is not None:  # the flexible spline rotates with the dynamic one
         spline_ratio = 1.0 if design.kinematics.output_gear == "dynamic_spline" else 0.0
+    output = len(couplings) - 1 if rotates else SPLINE_COUPLING
+    springs = None
+    if design.output_bearing is not None:
+        springs = output_springs(design.output_bearing, couplings[output], copies)
     return Supports(
         partition,
         couplings,
-        output=len(couplings) - 1 if rotates else SPLINE_COUPLING,
+        output=output,
         guide=guide,
         scale=scale,
         share=1.0 / copies,
         race=race,
         spline_ratio=spline_ratio,
+        bearing=springs,
     )
 
 

@@ -58,6 +58,7 @@ def torques(problem: DiscreteProblem, state: LoadState) -> Torques:
         moment(problem.wave_generator.all),
     )
     teeth = tuple(moment([flanks]) for flanks in problem.flanks)
+    reactions[supports.output_gear] += supports.bearing_moment(u)
     balance = abs(wave_generator + sum(teeth) + float(reactions[SPLINE_COUPLING]))
     if supports.ring_floats:
         of_ring = sum(

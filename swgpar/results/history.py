@@ -43,7 +43,8 @@ class Column:
     whole : whether the values are integers
     periodic : whether it is the same after one period, and smooth between
     averaged : whether its mean and its maximum over the rotation are answers
-    drives : which ones have it: "all", "pancake", or those with the "wave generator fixed"
+    drives : which ones have it: "all", "pancake", those with the "wave generator fixed", or those
+    with an "output bearing"
     """
 
     name: str
@@ -133,11 +134,34 @@ DECLARED = (
         "torque of the dynamic spline's teeth on the flexible spline",
         drives="pancake",
     ),
+    *(
+        Column(
+            f"output_{axis}_mm",
+            "mm",
+            f"displacement of the output along {axis}, in the middle of its bearing",
+            f"displacement of the output along {axis}",
+            drives="output bearing",
+        )
+        for axis in "xyz"
+    ),
+    *(
+        Column(
+            f"output_tilt_{axis}_rad",
+            "rad",
+            f"tilt of the output about {axis}",
+            f"tilt of the output about {axis}",
+            drives="output bearing",
+        )
+        for axis in "xy"
+    ),
 )
 """In the order of the file. Stresses are maxima of nodal averages over a body."""
 
 COLUMNS = {column.name: column for column in DECLARED}
 """By name."""
+
+OUTPUT_COLUMNS = tuple(column.name for column in DECLARED if column.drives == "output bearing")
+"""Displacements along x, y and z and tilts about x and y of an output on its bearing."""
 
 REQUIRED = ("step", "wg_angle_deg")
 """Columns that a history cannot be read without."""

@@ -1,6 +1,9 @@
-"""Linear systems: the grounded stiffness, bordered by the couplings' constraints."""
+"""Linear systems: the grounded stiffness, bordered by the couplings' constraints and the springs of
+an output bearing."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from mpi4py import MPI
@@ -20,7 +23,8 @@ class BorderedSystem:
 
         (1 - B^T Z_B) s + B^T Z_C l = B^T z,     C Z_B s - C Z_C l = r_l - C z,     z = K'^-1 r_u
 
-    gives x = z + Z_B s - Z_C l exactly, whatever K and the grounding are.
+    gives x = z + Z_B s - Z_C l exactly, whatever K and the grounding are. Springs S on mean
+    motions, K = K' - B B^T + S S^T, stand beside B, with -1 in place of 1.
 
     The last border is the motion of the output. Where it is loaded and not prescribed, its Newton
     step is the one at which its l vanishes. That step is bounded: a drive without touching flanks
@@ -38,6 +42,7 @@ class BorderedSystem:
         self.into: PETSc.Vec | None = None
         self.out: PETSc.Vec | None = None
         self.grounding: list[PETSc.Vec] = []
+        self.signs = np.zeros(0)
         self.border: list[PETSc.Vec] = []
         self.rows: list[int] = []
         self.columns: list[PETSc.Vec] = []
@@ -90,14 +95,16 @@ class BorderedSystem:
         border: list[PETSc.Vec],
         rows: list[int],
         bound: float | None = None,
+        springs: Sequence[PETSc.Vec] = (),
     ) -> None:
-        """K', vectors B and C^T (full length, zero in the multiplier rows), multiplier rows of C.
+        """K', vectors B, C^T and S (full length, zero in the multiplier rows), rows of C.
 
         active : (n,) own nodes that K' has rows of
         bound : of C x in the last row when that is loaded instead of prescribed
         """
         self.matrix = matrix
-        self.grounding = grounding
+        self.grounding = [*grounding, *springs]
+        self.signs = np.repeat([1.0, -1.0], [len(grounding), len(springs)])
         self.border = border
         self.rows = rows
         self.bound = bound
@@ -140,7 +147,7 @@ class BorderedSystem:
             len(b + c), len(sides)
         )
         system = np.zeros_like(small)
-        system[:nb, :nb] = np.eye(nb) - small[:nb, :nb]
+        system[:nb, :nb] = np.diag(self.signs) - small[:nb, :nb]
         system[:nb, nb:] = small[:nb, nb:]
         system[nb:, :nb] = small[nb:, :nb]
         system[nb:, nb:] = -small[nb:, nb:]
@@ -175,7 +182,8 @@ class BorderedSystem:
         self.solve_with_factor(right, x, self.bound)
 
     def multiply(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
-        """y = [K' - B B^T, C^T; C, 0] x of the last system; unused multipliers stand alone."""
+        """y = [K' - B B^T + S S^T, C^T; C, 0] x of the last system; unused multipliers stand
+        alone."""
         n, last = self.partition.n_multipliers, self.partition.has_multipliers
         used = self.rows[: len(self.border) - self.n_loaded]
         multipliers = read_multipliers(self.partition, x)
@@ -185,8 +193,8 @@ class BorderedSystem:
         self.into.array[:] = self._restricted(moved)
         self.matrix.mult(self.into, self.out)
         self._extend(self.out.array_r, y)
-        for vector in self.grounding:
-            y.axpy(-vector.dot(moved), vector)
+        for sign, vector in zip(self.signs, self.grounding, strict=True):
+            y.axpy(-sign * vector.dot(moved), vector)
         tail = multipliers.copy()
         for vector, row in zip(self.border, used):
             y.axpy(multipliers[row], vector)

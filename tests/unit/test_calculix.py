@@ -104,6 +104,11 @@ def test_forces_have_the_torque_of_the_design(tmp_path: Path) -> None:
     assert f"*INCLUDE, INPUT={mesh.name}" in text
 
 
+OUTPUT_BEARING = tuple(
+    f"output_bearing.{kind}_stiffness=1e5" for kind in ("radial", "axial", "tilting")
+)
+
+
 @pytest.mark.parametrize(
     "change, words",
     [
@@ -120,6 +125,7 @@ def test_forces_have_the_torque_of_the_design(tmp_path: Path) -> None:
         ("deviations.flexible_spline.eccentricity=0.01", "[deviations] is not available"),
         ("stiffness.torque=0.2", "[stiffness] is not available"),
         ("ratcheting.increment=0.1", "[ratcheting] is not available"),
+        (OUTPUT_BEARING, "[output_bearing] is not available"),
         ("ring_gear.frame.interference=0.01", "a temperature or a press fit is not available"),
     ],
 )

@@ -1,0 +1,58 @@
+"""Checks of the bearing of the output and of the forces on it. Each refusal names the key, its
+value and what is allowed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from swgpar.checks.repeat_checks import require_no_period
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.output_bearing import OutputBearing
+from swgpar.input.require import require, require_available
+
+SECTION = "[output_bearing]"
+SIDEWAYS = f"a radial force or a tilting moment in {SECTION}"
+
+LARGEST_TILT, LARGEST_SHIFT = 0.01, 0.1
+"""Tilt (rad) and displacement (modules) up to which forces may move the output on its bearing
+alone: tilts are small, and teeth mesh."""
+
+
+def check_output_bearing(design: DriveDesign, bearing: OutputBearing) -> None:
+    """Raise InputError for the first thing that does not fit the design."""
+    for given, beside, allowed in (
+        (
+            design.drive.model == "pancake",
+            'drive.model = "pancake"',
+            '"cup" or "plane", because no end of its flexible spline is held',
+        ),
+        (
+            design.kinematics.wave_generator_is_fixed,
+            'drive.layout = "wave_generator_fixed"',
+            '"ring_fixed" or "spline_fixed"',
+        ),
+        (design.deviations is not None, "[deviations]", "without them"),
+        (design.frequencies is not None, "[frequencies]", "without them"),
+    ):
+        require_available(not given, SECTION, beside, allowed)
+    if design.drive.model == "plane":
+        for key in ("axial_force", "tilting_moment"):
+            value = getattr(bearing, key)
+            allowed = 'only 0 with drive.model = "plane"'
+            require(value == 0.0, f"output_bearing.{key}", value, allowed)
+    _check_size(bearing, design.drive.module)
+    if bearing.is_loaded_sideways:
+        require_no_period(design, SIDEWAYS, "without them")
+
+
+def _check_size(bearing: OutputBearing, module: float) -> None:
+    """Forces that move the output farther than strains and teeth are made for."""
+    moved, shift = np.abs(bearing.load) / bearing.stiffness, LARGEST_SHIFT * module
+    for key, ratio, most, words in (
+        ("radial_force", np.hypot(*moved[:2]), shift, f"move it by {shift:g} mm"),
+        ("axial_force", moved[2], shift, f"move it by {shift:g} mm"),
+        ("tilting_moment", np.hypot(*moved[3:]), LARGEST_TILT, f"tilt it by {LARGEST_TILT:g} rad"),
+    ):
+        value = getattr(bearing, key)
+        allowed = f"up to {abs(value) * most / max(ratio, most):.4g}, which {words}"
+        require(ratio <= most, f"output_bearing.{key}", value, allowed)
