@@ -39,14 +39,21 @@ def negligible_speeds(rim: RimInertia | None, kinematics: Kinematics) -> dict[st
 
 
 def inertia_remarks(rim: RimInertia | None, kinematics: Kinematics, load: Load) -> list[str]:
-    """A sentence where the rim rotates so fast that the stress of its rotation counts."""
-    spline, _ = kinematics.speeds_in_space
+    """Sentences where the input is so fast that forces of inertia count."""
     if rim is None or "input_speed" not in load.model_fields_set:
         return []
-    stress = rim.hoop_stress(spline * PER_MINUTE * load.input_speed)
-    if stress <= NEGLIGIBLE * rim.bending_stress:
-        return []
-    return [
-        f"load.input_speed = {load.input_speed:g} 1/min rotates the flexible spline so fast "
-        f"that its rim has a further hoop stress of {stress:.3g} MPa: the model leaves it out"
-    ]
+    spline, wave = (PER_MINUTE * load.input_speed * one for one in kinematics.speeds_in_space)
+    share, stress = rim.share_of_bending(spline, wave), rim.hoop_stress(spline)
+    sentences = []
+    if abs(share) > NEGLIGIBLE:
+        sentences.append(
+            f"load.input_speed = {load.input_speed:g} 1/min: the inertia of the deflected rim is "
+            f"{100.0 * share:.3g} % of the forces that bend it as a ring alone, and takes them "
+            "from the cam; the model leaves it out"
+        )
+    if stress > NEGLIGIBLE * rim.bending_stress:
+        sentences.append(
+            f"load.input_speed = {load.input_speed:g} 1/min rotates the flexible spline so fast "
+            f"that its rim has a further hoop stress of {stress:.3g} MPa: the model leaves it out"
+        )
+    return sentences

@@ -78,5 +78,27 @@ def test_a_fast_input_is_said() -> None:
     for factor, count in ((0.99, 0), (1.01, 1)):
         design = load_design(DESIGN, [*turning, f"load.input_speed={factor * least}"])
         assert len(inertia_remarks(design.rim_inertia, design.kinematics, design.load)) == count
-    slow = load_design(DESIGN, [DENSE, f"load.input_speed={least}"])
-    assert not inertia_remarks(slow.rim_inertia, slow.kinematics, slow.load)
+    first, _ = speeds(DENSE).values()
+    for factor, count in ((0.99, 0), (10.0, 1)):
+        design = load_design(DESIGN, [DENSE, f"load.input_speed={factor * first}"])
+        said = inertia_remarks(design.rim_inertia, design.kinematics, design.load)
+        assert len(said) == count
+    # forces of inertia grow with the square of the speed
+    assert "is 100 % of the forces" in said[0] and "takes them from the cam" in said[0]
+    default = load_design(DESIGN, [DENSE])
+    assert not inertia_remarks(default.rim_inertia, default.kinematics, default.load)
+
+
+def test_inertia_of_a_deflected_ring_at_rest_is_its_mass_by_its_acceleration() -> None:
+    """A point moves by u cos n (a - w t) outward and (u / n) sin n (a - w t) along: the work of its
+    inertia on that motion over the energy of bending, by quadrature."""
+    one, wave = rim(3), 200.0
+    n, u = one.lobes, 0.01
+    angle = 2.0 * np.pi * np.arange(720) / 720
+    outward, along = u * np.cos(n * angle), -u / n * np.sin(n * angle)
+    accelerated = -((n * wave) ** 2) * np.array([outward, along])
+    density = 1e-12 * one.density * one.mass_thickness
+    inertia = -density * float(np.mean(accelerated[0] * outward + accelerated[1] * along))
+    curvature = (n**2 - 1) * outward / one.radius**2
+    bending = one.modulus * one.thickness**3 / 12.0 * float(np.mean(curvature**2))
+    assert one.share_of_bending(0.0, wave) == pytest.approx(inertia / bending, rel=1e-12)
