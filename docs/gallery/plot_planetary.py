@@ -48,6 +48,6 @@ panel.set(
     xlabel="time (s)",
     ylabel="mean outward displacement\nof the ring at planet 1 (µm)",
 )
-panel.set_ylim(0.0, 13.0)
+panel.set_ylim(0.0, 18.0)
 panel.legend(ncols=3)
 plt.show()

@@ -52,3 +52,7 @@ class TrainDesign(Design):
 
     published: dict[str, Any] = quantity({}, text="published values by quantity")
     output: TrainOutput = TrainOutput()
+
+    def remarks(self) -> list[str]:
+        """Sentences about what is allowed and may not be meant."""
+        return []

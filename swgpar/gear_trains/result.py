@@ -74,7 +74,15 @@ def _answers_of(name: str, kind: Quantity, numbers: list[float]) -> Iterator[Ans
     for position, (title, value) in enumerate(zip(numbered(name, len(numbers)), numbers), start=1):
         text = kind.meaning if title == name else f"{kind.meaning}, {position} of {len(numbers)}"
         if math.isfinite(value):
-            yield Answer(title, value, kind.unit, text, no_error=NO_ESTIMATE, detail=kind.detail)
+            yield Answer(
+                title,
+                value,
+                kind.unit,
+                text,
+                no_error=NO_ESTIMATE,
+                remark=kind.remark,
+                detail=kind.detail,
+            )
         else:
             remark = "there is none"
             yield Answer(title, None, kind.unit, text, remark=remark, detail=kind.detail)

@@ -104,6 +104,8 @@ def run_train(design: TrainDesign, options: RunOptions) -> TrainResult:
     if folder is not None:
         prepare(folder, comm, False, options.overwrite)
     open_log(folder, comm)
+    for sentence in design.remarks():
+        logger.warning(sentence)
     with reported_arithmetic():
         computed = model.compute(design, comm)
     require_finite(computed.quantities)

@@ -16,12 +16,14 @@ class Quantity:
 
     meaning : without its unit;  unit : empty for a pure number
     detail : whether tables of the main quantities leave it out
+    remark : what to know about its value
     """
 
     meaning: str
     unit: str = ""
     count: int = 1
     detail: bool = False
+    remark: str = ""
 
     @property
     def text(self) -> str:

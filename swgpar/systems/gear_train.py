@@ -44,6 +44,9 @@ class GearTrains(System[TrainDesign, TrainResult]):
         require_finite(found)
         return found
 
+    def remarks(self, design: TrainDesign) -> list[str]:
+        return design.remarks()
+
     def run(self, design: TrainDesign, options: RunOptions) -> TrainResult:
         return run_train(design, options)
 

@@ -97,7 +97,15 @@ REFUSED = [
     (
         RING,
         "ring.inner_radius=520",
-        "ring.inner_radius = 520 is out of range: allowed above 0 to below 520 mm",
+        "ring.inner_radius = 520 is out of range: allowed 173.333 mm (a ring as thick as the "
+        "radius of its centre line) to below 520 mm",
+    ),
+    (RING, "ring.inner_radius=1", "ring.inner_radius = 1 is out of range: allowed 173.333 mm"),
+    (RING, "ring.nu=0.6", "ring.nu = 0.6 is out of range: allowed above -1 to 0.5"),
+    (
+        RING,
+        "moving_load.radius=521",
+        "moving_load.radius = 521 is out of range: allowed above 0 to 520 mm (ring.outer_radius)",
     ),
     (
         RING,
@@ -171,6 +179,12 @@ REFUSED = [
         "wind.power_coefficient=0.6",
         "wind.power_coefficient = 0.6 is out of range: allowed above 0 to",
     ),
+    (
+        PLANETARY,
+        "ring.rim=3000",
+        "ring.rim = 3000 is out of range: allowed above 0 to 1042 mm (a rim as thick as the radius",
+    ),
+    (PLANETARY, "ring.rims=[87.0,1043.0]", "ring.rims = 1043 is out of range: allowed above 0"),
     (PLANETARY, "rims=1", '--set "rims=1" cannot be read'),
     (RING_MODES, "moving_load.force=1", "moving_load.damping_mass is missing: give a number"),
     (
@@ -199,6 +213,33 @@ def test_drives_are_no_gear_trains() -> None:
     assert system_of_table(read_toml(REFERENCE)) is system_of_section("drive")
     with pytest.raises(InputError, match="gear_train.model is missing"):
         make_train(read_toml(REFERENCE))
+
+
+REMARKS = [
+    (RING, "ring.inner_radius=480", None),
+    (
+        RING,
+        "ring.inner_radius=410",
+        "the rim is 0.23 of a wavelength thick (6 waves around): displ",
+    ),
+    (RING, "ring.inner_radius=300", "beam theory ends at 5 waves: shorter ones are less than"),
+    (RING_MODES, "ring.inner_radius=70", "beam theory ends at 3 waves"),
+    (PLANETARY, "ring.rim=40", None),
+    (PLANETARY, "ring.rim=128", "displacements of the ring under loads are up to 9.2 % too small"),
+    (PLANETARY, "ring.rim=900", "beam theory ends at 0.5, where displacements of the ring under"),
+]
+
+
+@pytest.mark.parametrize(("file", "override", "sentence"), REMARKS)
+def test_where_beam_theory_ends(file: Path, override: str, sentence: str | None) -> None:
+    design = load_design(file, [override])
+    known = model_of(design).quantities(design).values()
+    remarks = {quantity.remark for quantity in known} - {""}
+    assert set(design.remarks()) == remarks
+    if sentence is None:
+        assert not remarks
+    else:
+        assert any(sentence in remark for remark in remarks), remarks
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ from swgpar.gear_trains.planetary.model import (
     ring_index,
     ring_pitch_radius,
 )
-from swgpar.gear_trains.planetary.monitored import MONITORED_NAMES, monitored_rows
+from swgpar.gear_trains.planetary.monitored import MONITORED_NAMES, monitored
 from swgpar.gear_trains.planetary.monte_carlo import simulate
 from swgpar.gear_trains.planetary.time_stepping import ModalStates, TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
@@ -150,6 +150,29 @@ def test_torques_balance(overrides: list[str], torque: float) -> None:
     taken = train.half_backlash * (flanks * forces).sum()
     work = torque * q[carrier_index(train.design) + 2] / base_radii(train.design)[2]
     assert work == pytest.approx(2.0 * energy + taken, rel=1e-9)
+
+
+@pytest.mark.parametrize("turned_by", [0.0, 0.3, 0.52])
+def test_elements_of_the_ring(turned_by: float) -> None:
+    """At rest, with meshes at nodes or between them, 6, 18 and 54 elements give the same."""
+    found = []
+    for elements in (6, 18, 54):
+        train = PlanetaryModel(load_design(DRIVER, [f"ring.elements={elements}"]))
+        t, torque, flanks = turned_by / train.design.carrier.speed, 1e5, -np.ones(6)
+        steps = TimeStepper(train, max(t, 1e-3), 1)
+        step = int(t > 0.0)
+        w, k = steps.deflection_rows[step], steps.stiffness[step]
+        load = train.torque_vector * torque + w.T @ (k * flanks * train.half_backlash)
+        q = np.linalg.solve(np.diag(train.stiffness) + w.T @ (k[:, None] * w), load)
+        rows, added = monitored(train, steps, step, flanks)
+        values = dict(zip(MONITORED_NAMES, rows @ q + added, strict=True))
+        # the deflection of a mesh is its force over its own stiffness, and the backlash
+        own = (k * (w @ q - flanks * train.half_backlash) / train.mesh.at(t))[3]
+        assert values["ring_mesh_deflection"] == pytest.approx(own - train.half_backlash)
+        del values["ring_node_tangential"]  # of another node
+        found.append(list(values.values()))
+    for values in found[:2]:
+        assert values == pytest.approx(found[2], rel=1e-6)
 
 
 def test_statics(design: PlanetaryDesign) -> None:
@@ -318,7 +341,10 @@ def test_load_reversal(small: PlanetaryDesign) -> None:
         internal = (
             train.constant @ q
             + damping @ v
-            + deflection_rows.T @ force(train.mesh.at(t), deflection_rows @ q, train.half_backlash)
+            + deflection_rows.T
+            @ force(
+                train.mesh_stiffness(np.array([t]))[0], deflection_rows @ q, train.half_backlash
+            )
         )
         return np.concatenate([v, inverse @ (torque_row * torque_at(t) - internal)])
 
@@ -326,7 +352,7 @@ def test_load_reversal(small: PlanetaryDesign) -> None:
         damping, deflection_rows = physical(train, t)
         in_contact = np.abs(deflection_rows @ y[: train.size]) > train.half_backlash
         k = train.constant + deflection_rows.T @ (
-            (train.mesh.at(t) * in_contact)[:, None] * deflection_rows
+            (train.mesh_stiffness(np.array([t]))[0] * in_contact)[:, None] * deflection_rows
         )
         return np.block(
             [[np.zeros_like(k), np.eye(train.size)], [-inverse @ k, -inverse @ damping]]
@@ -353,7 +379,7 @@ def test_load_reversal(small: PlanetaryDesign) -> None:
         for step in range(1, count + 1):
             torques = np.array([[torque_at((step - 1) * h) + torque_at(step * h)]])
             lost += steps.simulate(step - 1, states, torques, flanks)
-        values = monitored_rows(train, steps, count)
+        values, _ = monitored(train, steps, count, flanks)
         off.append(np.abs(values @ states.q[:, 0] / (values @ expected) - 1.0).max())
     assert lost > count / 4
     assert off[-1] < 0.01
@@ -431,7 +457,8 @@ def test_covariance_by_whole_matrices(small: PlanetaryDesign) -> None:
         transition = np.block([[of_state, of_wind], [np.zeros((2, 2 * n)), wind.transition]])
         added = np.vstack([of_noise, wind.noise_root])
         spread = transition @ spread @ transition.T + added @ added.T
-    values = np.linalg.solve(train.shapes.T, monitored_rows(train, steps, count).T).T
+    rows, _ = monitored(train, steps, count, -np.ones(6))
+    values = np.linalg.solve(train.shapes.T, rows.T).T
     expected = np.sqrt(np.einsum("pi,ij,pj->p", values, spread[:n, :n], values))
     np.testing.assert_allclose(found.deviation[-1], expected, rtol=1e-5)
 

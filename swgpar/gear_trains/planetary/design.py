@@ -17,6 +17,7 @@ from swgpar.gear_trains.common_sections import (
 from swgpar.input.quantities import Section, quantity
 from swgpar.input.require import require
 from swgpar.vibration.curved_beam import BeamSection, Ring, supports_restrain_ring
+from swgpar.vibration.thickness_limit import THICKEST, displacement_remark
 
 Thicknesses = Annotated[list[Positive], Len(1)]
 
@@ -54,6 +55,7 @@ class Carrier(Section):
 class RingGear(Section):
     teeth: int = quantity(text="number of teeth", ge=10, le=2000)
     E: float = quantity(unit="GPa", text="modulus of elasticity", gt=0.0)
+    nu: float = quantity(0.3, text="Poisson's ratio", gt=-1.0, le=0.5)
     density: float = quantity(unit="kg/m³", text="density", gt=0.0)
     root_radius: float = quantity(
         unit="mm", text="root radius, the inner radius of the rim", gt=0.0
@@ -127,12 +129,17 @@ class PlanetaryDesign(TrainDesign):
         """End of the simulation, s."""
         return 2.0 * math.pi / self.carrier.speed * self.time.revolutions
 
+    def remarks(self) -> list[str]:
+        ring = self.ring
+        sentence = displacement_remark(ring.rim, ring.root_radius + 0.5 * ring.rim, ring.supports)
+        return [sentence] if sentence else []
+
     def elastic_ring(self) -> Ring:
         """The ring with its supports."""
         r = self.ring
         radius = 1e-3 * (r.root_radius + 0.5 * r.rim)
         size = 1e-3 * r.rim, 1e-3 * r.face_width
-        section = BeamSection.rectangle(1e9 * r.E, r.density, radius, *size)
+        section = BeamSection.rectangle(1e9 * r.E, r.nu, r.density, radius, *size)
         return Ring(section, r.elements, (r.supports, (r.radial, r.tangential, r.torsional)))
 
 
@@ -151,6 +158,11 @@ def check_fit(design: PlanetaryDesign) -> None:
     require(fits, "planet.pitch_diameter", diameter, allowed)
     allowed = f"divisors of {ring.elements} (ring.elements)"
     require(ring.elements % ring.supports == 0, "ring.supports", ring.supports, allowed)
+    thickest = ring.root_radius / (1.0 / THICKEST - 0.5)
+    allowed = f"above 0 to {thickest:g} mm (a rim as thick as the radius of its centre line)"
+    for key, rims in (("rim", [ring.rim]), ("rims", ring.rims)):
+        for rim in rims:
+            require(rim <= thickest, f"ring.{key}", rim, allowed)
     springs = ring.radial, ring.tangential, ring.torsional
     radius = 1e-3 * (ring.root_radius + 0.5 * ring.rim)
     held = supports_restrain_ring(ring.supports, *springs, radius)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.errors import ConvergenceError
-from swgpar.gear_trains.planetary.monitored import monitored_rows
+from swgpar.gear_trains.planetary.monitored import monitored
 from swgpar.gear_trains.planetary.time_stepping import MeshLaw, ModalStates, TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
 from swgpar.vibration.backlash import mean_force_and_stiffness, mean_stiffness
@@ -76,7 +76,8 @@ class _Linearisation:
 
     Attributes
     ----------
-    states : modal displacements of the mean, one column;  covariance : (2 n + 2, 2 n + 2)
+    states : modal displacements of the mean, one column;  flanks : (m,) that carry the steady wind
+    covariance : (2 n + 2, 2 n + 2)
     unsymmetrised : the covariance of the last step before it is made symmetric
     mean, deviation : (m,) m, of the mesh deflections
     forces, equivalent : (m,) N and N/m, mean forces and stiffnesses
@@ -85,7 +86,7 @@ class _Linearisation:
     def __init__(self, stepper: TimeStepper, wind: WindLoad) -> None:
         train, n = stepper.train, stepper.train.size
         self.stepper, self.linear = stepper, _LinearTrain(stepper, wind)
-        self.states, _ = stepper.static_equilibrium(wind.steady)
+        self.states, self.flanks = stepper.static_equilibrium(wind.steady)
         self.torque = np.array([2.0 * wind.steady])
         self.covariance = np.zeros((2 * n + 2, 2 * n + 2))
         self.unsymmetrised = self.covariance
@@ -127,9 +128,10 @@ class _Linearisation:
     def monitored(self, step: int) -> tuple[np.ndarray, np.ndarray]:
         """Mean and standard deviation (monitored,) of the monitored quantities after a step, m."""
         train = self.stepper.train
-        rows, n = monitored_rows(train, self.stepper, step), train.size
+        rows, added = monitored(train, self.stepper, step, self.flanks)
+        n = train.size
         variance = np.einsum("pi,ij,pj->p", rows, self.covariance[:n, :n], rows)
-        return rows @ self.states.q[:, 0], np.sqrt(np.maximum(variance, 0.0))
+        return rows @ self.states.q[:, 0] + added, np.sqrt(np.maximum(variance, 0.0))
 
     def mesh_forces(self) -> tuple[np.ndarray, np.ndarray]:
         """Mean (2,) N and mean square (2,) N² of the linearised forces of planet 1's meshes."""

@@ -98,6 +98,9 @@ class PlanetaryModel:
         torque_row = np.zeros(self.size)
         torque_row[carrier_index(design) + 2] = 1.0 / base_radii(design)[2]
         self.torque_vector = self.shapes.T @ torque_row
+        a = np.radians(m.pressure_angle)
+        outside = ring_pitch_radius(design) - self.ring.section.radius
+        self._on_ring = np.array([np.sin(a), np.cos(a), outside * np.cos(a)])  # d per v, w, r
         self._fixed_rows = self._fixed_deflection_rows()
 
     @property
@@ -151,13 +154,25 @@ class PlanetaryModel:
     def deflection_rows(self, t: float) -> np.ndarray:
         """Deflections (m, n) of the meshes per coordinate at a time in s."""
         rows, count = self._fixed_rows.copy(), self.design.planet.count
-        a = np.radians(self.design.mesh.pressure_angle)
-        outside = ring_pitch_radius(self.design) - self.ring.section.radius
         for k, psi in enumerate(self.angles):
-            v, w, r = self.ring.interpolation(self.design.carrier.speed * t + psi)
-            along = np.cos(a) * (w + outside * r) + np.sin(a) * v
-            rows[count + k, ring_index(self.design) :] = along
+            at_mesh = self.ring.interpolation(self.design.carrier.speed * t + psi)
+            rows[count + k, ring_index(self.design) :] = self._on_ring @ at_mesh
         return rows
+
+    def local_flexibility(self, times: np.ndarray) -> np.ndarray:
+        """Displacement (times, planets, 3) of the ring under each of its meshes per unit force on
+        it there, between the nodes of the ring as if they were held."""
+        places = self.design.carrier.speed * times[:, None] + self.angles
+        within = self.ring.flexibility_within(places.ravel()).reshape(*places.shape, 3, 3)
+        return within @ self._on_ring
+
+    def mesh_stiffness(self, times: np.ndarray) -> np.ndarray:
+        """Stiffnesses (times, m) N/m of the meshes with the part of the ring between its nodes in
+        series."""
+        out = np.array([self.mesh.at(t) for t in times])
+        ring = out[:, self.design.planet.count :]
+        ring /= 1.0 + ring * (self.local_flexibility(times) @ self._on_ring)
+        return out
 
     def modal_deflection_rows(self, times: np.ndarray) -> np.ndarray:
         """Deflections (times, m, n) of the meshes per mode."""

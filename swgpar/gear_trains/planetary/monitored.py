@@ -29,10 +29,25 @@ RING_NODE = 2
 """Node 3 of the ring, counted from 0."""
 
 
-def monitored_rows(train: PlanetaryModel, steps: TimeStepper, step: int) -> np.ndarray:
-    """(monitored, n): monitored quantities per unit of each mode, at the end of a step."""
-    design, first = train.design, ring_index(train.design)
+def monitored(
+    train: PlanetaryModel, steps: TimeStepper, step: int, flanks: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Monitored quantities per unit of each mode (monitored, n), and what is added (monitored,) m,
+    at the end of a step.
+
+    Meshes are taken as in contact on their loaded flanks (m,), 1 or -1: force and deflection of the
+    ring between its nodes follow from the deflection with that of the nodes.
+    """
+    design, first, count = train.design, ring_index(train.design), train.design.planet.count
+    time = step * steps.h
     fixed = [2, carrier_index(design) + 2, planet_index(0) + 1, first + 3 * RING_NODE + 1]
-    outward = train.ring.interpolation(design.carrier.speed * step * steps.h)[0]
-    meshes = steps.deflection_rows[step, [0, design.planet.count]]
-    return np.vstack([train.shapes[fixed], outward @ train.shapes[first:], meshes])
+    outward = train.ring.interpolation(design.carrier.speed * time)[0] @ train.shapes[first:]
+    sun, ring = steps.deflection_rows[step, [0, count]]
+    stiffness = steps.stiffness[step, count]
+    closed = train.half_backlash * flanks[count]
+    bulge = stiffness * train.local_flexibility(np.array([time]))[0, 0, 0]
+    share = stiffness / train.mesh.at(time)[count]
+    rows = np.vstack([train.shapes[fixed], outward - bulge * ring, sun, share * ring])
+    constants = np.zeros(len(rows))
+    constants[-3:] = bulge * closed, 0.0, (1.0 - share) * closed
+    return rows, constants

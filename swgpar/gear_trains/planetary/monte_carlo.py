@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from swgpar.gear_trains.planetary.monitored import monitored_rows
+from swgpar.gear_trains.planetary.monitored import monitored
 from swgpar.gear_trains.planetary.time_stepping import ModalStates, TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
 from swgpar.vibration.moments import SampleMoments
@@ -37,6 +37,7 @@ def simulate(
                 before, torque = torque, wind.steady + wind.turbulent @ turbulence
                 np.add(before, torque, out=torques[k])
             separated += steps.simulate(row * every, states, torques, flanks)
-            yield monitored_rows(steps.train, steps, (row + 1) * every) @ states.q
+            of_modes, added = monitored(steps.train, steps, (row + 1) * every, flanks)
+            yield of_modes @ states.q + added[:, None]
 
     return SampleMoments.of(rows()), separated

@@ -37,8 +37,11 @@ def quantities(design: PlanetaryDesign) -> dict[str, Quantity]:
             "share of steps and samples in which a mesh is not in contact on its loaded flank"
         ),
     }
+    about = dict.fromkeys(("ring_contact_radial", "ring_node_tangential"), *design.remarks()[:1])
     for (kind, statistic), (name, meaning) in product(STATISTICS.items(), MONITORED.items()):
-        known[f"{kind}_{name}"] = Quantity(f"largest {statistic} of the {meaning}", "m")
+        known[f"{kind}_{name}"] = Quantity(
+            f"largest {statistic} of the {meaning}", "m", remark=about.get(name) or ""
+        )
         known[f"error_{kind}_{name}"] = Quantity(
             f"error of the linearised {statistic} of the {meaning} against Monte Carlo", "%"
         )
@@ -56,7 +59,10 @@ def derived(design: PlanetaryDesign) -> dict[str, float]:
     step = design.end / design.time.steps
     train, wind = PlanetaryModel(design), WindLoad.of(design, step)
     start, flanks = TimeStepper(train, step, 1).static_equilibrium(wind.steady)
-    deflection_rows, k = train.modal_deflection_rows(np.zeros(1))[0], train.mesh.at(0.0)
+    deflection_rows, k = (
+        train.modal_deflection_rows(np.zeros(1))[0],
+        train.mesh_stiffness(np.zeros(1))[0],
+    )
     forces = force(k, deflection_rows @ start.q[:, 0], train.half_backlash)
     whole = np.diag(train.stiffness) + deflection_rows.T @ (k[:, None] * deflection_rows)
     frequencies = np.sqrt(np.linalg.eigvalsh(whole).clip(0.0)) / (2.0 * np.pi)

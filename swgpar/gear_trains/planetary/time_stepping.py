@@ -62,7 +62,7 @@ class TimeStepper:
         self.train, self.h, self.count = train, h, count
         times = h * np.arange(count + 1)
         self.deflection_rows = train.modal_deflection_rows(times)
-        self.stiffness = np.array([train.mesh.at(t) for t in times])
+        self.stiffness = train.mesh_stiffness(times)
         inverse = 1.0 / (2.0 / h + train.damping + 0.5 * h * train.stiffness)
         self.from_q = inverse * (train.damping - 2.0 / h - 0.5 * h * train.stiffness)
         self.from_y = 2.0 * inverse

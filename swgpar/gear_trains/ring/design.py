@@ -11,6 +11,7 @@ from swgpar.gear_trains.common_sections import GearTrain, Positive, TrainDesign
 from swgpar.input.quantities import Section, quantity
 from swgpar.input.require import require
 from swgpar.vibration.curved_beam import BeamSection, Ring, supports_restrain_ring
+from swgpar.vibration.thickness_limit import THICKEST, displacement_remark, frequency_remark
 
 Speeds = Annotated[list[Positive], Len(1)]
 
@@ -21,6 +22,7 @@ class RingTrain(GearTrain):
 
 class RingBody(Section):
     E: float = quantity(unit="GPa", text="modulus of elasticity", gt=0.0)
+    nu: float = quantity(0.3, text="Poisson's ratio", gt=-1.0, le=0.5)
     density: float = quantity(unit="kg/m³", text="density", gt=0.0)
     outer_radius: float = quantity(unit="mm", text="outer radius", gt=0.0)
     inner_radius: float = quantity(unit="mm", text="inner radius", gt=0.0)
@@ -45,6 +47,9 @@ class RingTeeth(Section):
 class MovingLoad(Section):
     loads: int = quantity(3, text="equally spaced loads", ge=1, le=100)
     pressure_angle: float = quantity(20.0, unit="deg", text="pressure angle", ge=0.0, lt=90.0)
+    radius: float | None = quantity(
+        None, unit="mm", text="radius on which loads act, such as the pitch radius", gt=0.0
+    )
     force: float = quantity(unit="N", text="mean force of each", ge=0.0)
     harmonic: float = quantity(0.0, unit="N", text="amplitude of its harmonic part", ge=0.0)
     frequency: float = quantity(0.0, unit="rad/s", text="frequency of the harmonic part", ge=0.0)
@@ -77,12 +82,31 @@ class RingDesign(TrainDesign):
     teeth: RingTeeth | None = None
     moving_load: MovingLoad | None = None
 
+    def remarks(self) -> list[str]:
+        return [text for text in (self.remark_on_modes, self.remark_on_loads) if text]
+
+    @property
+    def remark_on_modes(self) -> str:
+        """Where beam theory ends for the modes, or nothing."""
+        body = self.ring
+        mean = 0.5 * (body.outer_radius + body.inner_radius)
+        return frequency_remark(body.outer_radius - body.inner_radius, mean, body.modes)
+
+    @property
+    def remark_on_loads(self) -> str:
+        """Where beam theory ends for the moving loads, or nothing."""
+        body, s = self.ring, self.supports
+        if self.moving_load is None or s is None:
+            return ""
+        mean = 0.5 * (body.outer_radius + body.inner_radius)
+        return displacement_remark(body.outer_radius - body.inner_radius, mean, s.count)
+
     def beam_section(self) -> BeamSection:
         """The rectangular section."""
         body = self.ring
         thickness, width = 1e-3 * (body.outer_radius - body.inner_radius), 1e-3 * body.face_width
         radius = 0.5e-3 * (body.outer_radius + body.inner_radius)
-        return BeamSection.rectangle(1e9 * body.E, body.density, radius, thickness, width)
+        return BeamSection.rectangle(1e9 * body.E, body.nu, body.density, radius, thickness, width)
 
     def elastic_ring(self) -> Ring:
         """The ring with its supports and teeth."""
@@ -99,8 +123,10 @@ def check_fit(design: RingDesign) -> None:
     """Refuse values that do not fit each other."""
     body, load = design.ring, design.moving_load
     inner, outer, elements = body.inner_radius, body.outer_radius, body.elements
-    allowed = f"above 0 to below {outer:g} mm (ring.outer_radius)"
-    require(inner < outer, "ring.inner_radius", inner, allowed)
+    least = outer * (1.0 - 0.5 * THICKEST) / (1.0 + 0.5 * THICKEST)
+    thick = "a ring as thick as the radius of its centre line"
+    allowed = f"{least:g} mm ({thick}) to below {outer:g} mm (ring.outer_radius)"
+    require(least <= inner < outer, "ring.inner_radius", inner, allowed)
     allowed = f"divisors of {elements} (ring.elements)"
     for name in ("supports", "teeth"):
         section = getattr(design, name)
@@ -130,5 +156,8 @@ def _check_load(design: RingDesign, load: MovingLoad) -> None:
     require(body.elements // s.count >= 2, "ring.elements", body.elements, allowed)
     allowed = f"multiples of {load.loads} (moving_load.loads)"
     require(load.steps % load.loads == 0, "moving_load.steps", load.steps, allowed)
+    if load.radius is not None:
+        allowed = f"above 0 to {body.outer_radius:g} mm (ring.outer_radius)"
+        require(load.radius <= body.outer_radius, "moving_load.radius", load.radius, allowed)
     fits = len(load.sweep) == 2 and load.sweep[0] < load.sweep[1]
     require(fits, "moving_load.sweep", load.sweep, "two speeds, the lower one first")

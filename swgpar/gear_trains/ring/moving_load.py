@@ -3,7 +3,8 @@
 Each load is F0 + f sin(w t) + b W(t) with a white noise W of its own, of unit intensity. The
 harmonic part of load k is that of the first load at the time when the first load reaches the
 initial position of load k (eq. 6.16). A load acts outward with the sine and along the motion with
-the cosine of the pressure angle, as in eq. 3.21. (Eq. 6.14 has it against the motion; but the
+the cosine of the pressure angle, as in eq. 3.21, on the radius `moving_load.radius` (in print the
+centre line). (Eq. 6.14 has it against the motion; but the
 planets drive the ring along.) Damping is proportional, so that the modes of the ring separate; all
 of them are kept. A step is exact for forces that vary linearly within it and for noise that acts at
 the middle of the step. Steps have to resolve only the travel of the loads.
@@ -46,7 +47,9 @@ class MovingLoads:
         self.load, ring = design.moving_load, design.elastic_ring()
         self.frequencies, self.shapes = ring.modes()
         alpha, n = np.radians(self.load.pressure_angle), self.load.steps
-        direction = np.array([np.sin(alpha), np.cos(alpha), 0.0])
+        centre = ring.section.radius
+        radius = centre if self.load.radius is None else 1e-3 * self.load.radius
+        direction = np.array([np.sin(alpha), np.cos(alpha), (radius - centre) * np.cos(alpha)])
         # at the ends of all steps, and in their middle for the noise
         at = [ring.interpolation(np.pi * k / n) for k in range(2 * n)]
         self.load_vectors = np.array([direction @ rows for rows in at]) @ self.shapes

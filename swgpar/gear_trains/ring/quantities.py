@@ -27,6 +27,7 @@ def quantities(design: RingDesign) -> dict[str, Quantity]:
             "natural frequencies of in-plane bending, equal ones once",
             "Hz",
             count=design.ring.modes,
+            remark=design.remark_on_modes,
         ),
         "dimensionless_frequencies": Quantity(
             "the same times 2 pi sqrt(density A R⁴ / (E I))", count=design.ring.modes
@@ -40,6 +41,7 @@ def quantities(design: RingDesign) -> dict[str, Quantity]:
                     f"largest {statistic} of the outward displacement of the {meaning} at "
                     f"{speed:g} rad/s",
                     "m",
+                    remark=design.remark_on_loads,
                 )
             known[f"dominant_cycles_{point}"] = Quantity(
                 f"largest slow harmonic, in cycles per revolution, of the {meaning} at the first "
