@@ -17,6 +17,16 @@ LEAST = 0.02
 """Least error of what a bearing gives, as a share of it: a ball has another place between the nodes
 of the race on every mesh."""
 
+NOT_SHOWN = (
+    "bearing.race_vm",
+    "bearing.radial_share",
+    "bearing.torsional_share_of_balls",
+    "bearing.radial_share_of_balls",
+)
+"""Answers whose error two meshes do not show. All meshes have one element through the thickness of
+the race. The tangent of balls with little load decides about the others. They change by up to 16,
+6, 41 and 44 % on meshes with 2.25 times the elements (docs/verification/effectivity.md)."""
+
 
 def bearing_errors(
     coarser: Sequence[CoarserMesh], recipe: MeshRecipe, fine: BallLoads
@@ -30,7 +40,7 @@ def bearing_errors(
     return {
         name: max(shown_error([(one, known[name]) for one, known in meshes]) / abs(value), LEAST)
         for name, value in meshes[-1][1].items()
-        if value and all(name in known for _, known in meshes)
+        if value and name not in NOT_SHOWN and all(name in known for _, known in meshes)
     }
 
 

@@ -76,6 +76,7 @@ def contact_errors(
         pressure_off_edges=off_edges,
         force=of_force(lambda pair: pair.force_N),
         force_share=of_force(lambda pair: pair.force_share),
+        on_lines=model == "plane",
     )
 
 

@@ -19,12 +19,15 @@ class ContactErrorShares:
 
     pressure, pressure_off_edges : of the largest pressure of all pairs, and of those off edges
     force : of the largest force of a pair;  force_share : of its share in the force of all pairs
+    on_lines : whether flanks touch on lines, as in the plane: the pair with the largest pressure is
+    then the same on other meshes, and what it has beside follows from the pressure
     """
 
     pressure: float | None = None
     pressure_off_edges: float | None = None
     force: float | None = None
     force_share: float | None = None
+    on_lines: bool = False
 
 
 UNKNOWN = ContactErrorShares()

@@ -16,6 +16,7 @@ from swgpar.answers.answer import (
     answer,
     evaluation,
     part_answers,
+    with_error,
     with_no_limit,
 )
 from swgpar.design.drive_design import DriveDesign
@@ -28,6 +29,16 @@ OTHER_EDGE = "its pressure grows with every finer mesh, and may become the large
 
 TOLD = 0.02
 """Share of the largest force in an increment from which a pair without a pressure is told of."""
+
+
+POWERS = {
+    "contact.force": 2.0,
+    "contact.line_load": 2.0,
+    "contact.half_width": 2.0,
+    "contact.shear": 1.0,
+}
+"""Error of what the pair with the largest pressure has, as a share, over that of its pressure. On a
+line the pressure is as the root of the line load. The half width is a quotient of both."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +83,7 @@ class LargestContact(AnswerGroup):
     unknown_force_N : largest force of a pair whose pressure could not be computed; 0 without one
     error_MPa, error_off_edges_MPa : of both pressures; None where they are not known, as that of
     the first one is where any pair lies on an edge
+    on_lines : whether the errors of the other values of `largest` follow, see `POWERS`
     """
 
     largest: LoadedPair | None = part_answers(
@@ -115,6 +127,7 @@ class LargestContact(AnswerGroup):
     unknown_force_N: float
     error_MPa: float | None = None
     error_off_edges_MPa: float | None = None
+    on_lines: bool = False
 
     TITLE = "contact of the flanks under load"
 
@@ -129,6 +142,9 @@ class LargestContact(AnswerGroup):
             pair = pairs.get(one.name)
             if pair is not None:
                 one = replace(one, place=pair.place, remark=self._remark(one.name, pair))
+            if one.name in POWERS and self.on_lines and self.error_MPa is not None:
+                share = POWERS[one.name] * self.error_MPa / largest.pressure_MPa
+                one = with_error(one, share * one.value)
             if largest and largest.edge and one.name in ("contact.pressure", "contact.shear"):
                 one = with_no_limit(one)
             yield one
@@ -189,6 +205,7 @@ def largest_contact(
         error_off_edges_MPa=_error(
             [pair for pair in known if not pair["edge"]], errors.pressure_off_edges
         ),
+        on_lines=errors.on_lines,
     )
 
 

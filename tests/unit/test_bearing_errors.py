@@ -10,7 +10,7 @@ from support.bearing import BEARING
 from support.paths import DESIGN
 from support.small_drive import PLANE
 from swgpar import load_design
-from swgpar.analysis.bearing_errors import LEAST, bearing_errors
+from swgpar.analysis.bearing_errors import LEAST, NOT_SHOWN, bearing_errors
 from swgpar.analysis.drive_mesh_error import (
     ORDER,
     SAFETY,
@@ -49,7 +49,8 @@ def bearing(loads: Sequence[float], shares: dict[str, float] | None = None) -> B
     every = [row for k, load in enumerate(loads, start=1) for row in rows(k, load)]
     increments = range(1, len(loads) + 1)
     design = load_design(DESIGN, [*PLANE, *BEARING])
-    return evaluate_bearing(design, every, increments, {}, {}, shares or {})
+    race = {"race_s1": 5.0 * max(loads), "race_vm": 6.0 * max(loads)}
+    return evaluate_bearing(design, every, increments, {}, race, shares or {})
 
 
 def test_a_coarser_mesh_shows_the_errors() -> None:
@@ -62,6 +63,8 @@ def test_a_coarser_mesh_shows_the_errors() -> None:
     pressure = factor * (1.0 - 0.9 ** (1.0 / 3.0))
     assert found["bearing.pressure"] == pytest.approx(pressure)
     assert found["bearing.life_turns"] == pytest.approx(factor * (0.9**-3.0 - 1.0))
+    assert found["bearing.race_s1"] == pytest.approx(factor * 0.1)
+    assert found.keys().isdisjoint(NOT_SHOWN)
     # one increment has no range
     assert "bearing.load_ripple" not in found and "bearing.load_rating" not in found
     same = bearing_errors([CoarserMesh(coarse, {}, bearing=bearing([30.0]))], FINE, bearing([30.0]))

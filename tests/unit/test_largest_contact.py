@@ -13,7 +13,7 @@ from support.paths import DRIVERS
 from swgpar.answers.answer import NO_ESTIMATE, NO_LIMIT, Answer
 from swgpar.drive_results.report_checks import checks
 from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares
-from swgpar.evaluation.largest_contact import largest_contact
+from swgpar.evaluation.largest_contact import POWERS, largest_contact
 from swgpar.flank_pressure.pair_contact import PairContact
 from swgpar.results.history import Row
 from swgpar.systems.drive import DRIVE
@@ -91,6 +91,25 @@ def test_another_pair_on_an_edge_leaves_no_estimate() -> None:
     assert off_edges.error == pytest.approx(0.02 * 731.0) and not off_edges.remark
     without = answers(row(731.0, 515.0), row(726.0, 458.0), errors=errors)
     assert without["contact.pressure"].error == off_edges.error
+
+
+def test_errors_of_what_the_pair_has_beside_follow_on_lines() -> None:
+    """In the plane; elsewhere another pair may have the largest pressure on the next mesh."""
+    for on_lines in (True, False):
+        errors = ContactErrorShares(pressure=0.03, on_lines=on_lines)
+        found = answers(row(731.0, 515.0), row(700.0, 458.0), errors=errors)
+        share = found["contact.pressure"].error / 731.0
+        assert share == pytest.approx(0.03)
+        for name, power in POWERS.items():
+            expected = power * share * found[name].value if on_lines else None
+            assert found[name].error == (expected and pytest.approx(expected))
+            assert found[name].no_error == ("" if on_lines else NO_ESTIMATE)
+    edge = answers(
+        row(731.0, 515.0),
+        row(726.0, 458.0, "tip of the ring gear"),
+        errors=ContactErrorShares(pressure=0.03, on_lines=True),
+    )
+    assert all(edge[name].no_error == NO_ESTIMATE for name in POWERS)
 
 
 def test_what_is_not_known_is_told_with_its_force() -> None:
