@@ -156,6 +156,7 @@ def _load_sharing(recorder: Recorder) -> LoadSharing | None:
         range(len(rows) - count + 1, len(rows) + 1),
         recorder.sequence.kinematics.teeth_fs,
         recorder.model.copies,
+        recorder.sequence.kinematics.lobes,
         recorder.record.contact_errors,
     )
 

@@ -29,7 +29,8 @@ class LoadSharing(AnswerGroup):
     largest_line_load_Nmm : None where no contact is known
     opposing_torque_share : over the sum of all absolute values, mean
     torque_error : largest, over the sum of their absolute values
-    force_share_error, force_error, line_load_error : None where they are not known
+    force_share_error, force_error, line_load_error, lobe_share_error : None where they are not
+    known
     """
 
     pairs: Spread = part_answers(
@@ -86,6 +87,13 @@ class LoadSharing(AnswerGroup):
     force_share_error: float | None = None
     force_error: float | None = None
     line_load_error: float | None = None
+    largest_lobe_share: float | None = answer(
+        "sharing.largest_lobe_share",
+        "largest share of the pairs at one lobe in the force of all pairs",
+        error="lobe_share_error",
+        default=None,
+    )
+    lobe_share_error: float | None = None
 
     TITLE = "load sharing over the rotation"
     IN_PROGRAMS = False
@@ -97,6 +105,7 @@ def load_sharing(
     increments: Sequence[int],
     teeth: int,
     copies: int,
+    lobes: int,
     errors: ContactErrorShares = UNKNOWN,
 ) -> LoadSharing | None:
     """Numbers of pairs and largest shares over increments; None without pairs in them.
@@ -107,6 +116,7 @@ def load_sharing(
     tooth_torque : N mm, of all teeth on the flexible spline, for all increments of the history
     increments : numbers of those that count, from 1
     teeth : of the flexible spline;  copies : how many times the modelled part makes the whole drive
+    lobes : of the wave generator
     errors : by the mesh, where they are known
     """
     counts = []
@@ -114,6 +124,7 @@ def load_sharing(
     shares = []
     opposing = []
     differences = []
+    lobe_shares = []
     chosen = [pair for pair in pairs if pair["increment"] in set(increments)]
     for increment in increments:
         here = [pair for pair in chosen if pair["increment"] == increment]
@@ -126,6 +137,9 @@ def load_sharing(
         size = float(np.abs(torque).sum())
         if size > 0.0:
             shares.append(max(float(share[tooth == one].sum()) for one in np.unique(tooth)))
+            lobe_shares.append(
+                _largest_lobe_share(here, share, lobes) if copies == 1 else 1 / copies
+            )
             opposing.append(0.5 * (size - abs(float(torque.sum()))) / size)
             differences.append(abs(float(torque.sum()) - tooth_torque[increment - 1]) / size)
     if not chosen:
@@ -143,6 +157,7 @@ def load_sharing(
         teeth_share=_spread(touching),
         largest_force_share=max(shares),
         largest_force_N=max(pair["force_N"] for pair in chosen),
+        largest_lobe_share=max(lobe_shares),
         largest_line_load_Nmm=float(loads[np.isfinite(loads)].max())
         if np.isfinite(loads).any()
         else None,
@@ -151,7 +166,18 @@ def load_sharing(
         force_share_error=error("force_share", errors.force_share),
         force_error=error("force_N", errors.force),
         line_load_error=error("line_load_Nmm", errors.force),
+        lobe_share_error=None if copies == 1 else 0.0,
     )
+
+
+def _largest_lobe_share(pairs: Sequence[Row], share: np.ndarray, lobes: int) -> float:
+    """Share of the lobe that carries most.
+
+    pairs : of an increment;  share : (n,) of their forces
+    """
+    angle = np.array([pair["angle_deg"] for pair in pairs])
+    lobe = np.rint(angle * lobes / 360.0).astype(int) % lobes
+    return float(np.bincount(lobe, share).max())
 
 
 def _spread(values: Sequence[float]) -> Spread:
