@@ -13,7 +13,7 @@ from swgpar import log
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError, SwgparError
 from swgpar.input.design import Design
-from swgpar.input.toml_file import Overrides, apply_overrides, read_toml, require_source
+from swgpar.input.toml_file import Overrides, read_toml, require_source
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.meshing.recipe import make_recipe
 from swgpar.results.atomic import agreed, on_all, raise_first, reason_of, write_file
@@ -64,7 +64,7 @@ def load_design(design: DesignLike, overrides: Overrides = ()) -> Design:
         return design.with_values(overrides) if overrides else design
     require_source("design", design)
     table = dict(design) if isinstance(design, Mapping) else read_toml(design)
-    return system_of_table(table).load(apply_overrides(table, overrides))
+    return system_of_table(table).load_changed(table, overrides)
 
 
 def load_mesh(mesh: MeshLike) -> MeshRecipe:

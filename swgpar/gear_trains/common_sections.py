@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Self
 
 from annotated_types import Gt
 
+from swgpar.gear_trains.published import made_of_changed
 from swgpar.input.design import Design
 from swgpar.input.quantities import Section, quantity
 from swgpar.input.require import require
+from swgpar.input.toml_file import Overrides, apply_overrides
 
 Positive = Annotated[float, Gt(0.0)]
 
@@ -52,6 +54,11 @@ class TrainDesign(Design):
 
     published: dict[str, Any] = quantity({}, text="published values by quantity")
     output: TrainOutput = TrainOutput()
+
+    def with_values(self, values: Overrides) -> Self:
+        """As that of `Design`. Published values that do not fit the new design are left out."""
+        table = self.model_dump(exclude_unset=True)
+        return made_of_changed(self._maker, table, apply_overrides(table, values))
 
     def remarks(self) -> list[str]:
         """Sentences about what is allowed and may not be meant."""

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.input.quantities import show, show_key
+from swgpar.log import logger
 from swgpar.results.quantity import Quantity
+
+D = TypeVar("D")
 
 STATISTICS = {"mean": "mean", "deviation": "standard deviation"}
 """Of results that vary at random: part of the names of quantities -> meaning."""
@@ -44,6 +48,37 @@ def numbered(name: str, count: int) -> list[str]:
 def number_label(value: float) -> str:
     """A number in the name of a quantity."""
     return f"{value:g}".replace(".", "p").replace("+", "")
+
+
+def made_of_changed(
+    make: Callable[[dict[str, Any]], D], table: dict[str, Any], changed: dict[str, Any]
+) -> D:
+    """The checked design of the changed content of a design file.
+
+    Published values of the file that fit its own design and not the changed one are left out; lines
+    of the log name them.
+    """
+    published = table.get("published")
+    if published and changed.get("published") == published and changed != table:
+        with suppress(InputError):  # changes may complete a file; what is wrong is found below
+            make(table)
+            make(changed | {"published": {}})
+            changed = changed | {"published": dict(_fitting(make, changed, published))}
+    return make(changed)
+
+
+def _fitting(
+    make: Callable[[dict[str, Any]], object], table: dict[str, Any], published: Mapping[str, Any]
+) -> Iterator[tuple[str, Any]]:
+    for name, given in published.items():
+        try:
+            make(table | {"published": {name: given}})
+        except InputError:
+            logger.warning(
+                "published.%s is left out: the changed design has no such quantity", name
+            )
+        else:
+            yield name, given
 
 
 def check_published(published: Mapping[str, Any], known: Mapping[str, Quantity]) -> None:

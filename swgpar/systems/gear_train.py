@@ -11,7 +11,7 @@ from typing import Any
 from mpi4py import MPI
 
 from swgpar.gear_trains.common_sections import TrainDesign
-from swgpar.gear_trains.published import numbered
+from swgpar.gear_trains.published import made_of_changed, numbered
 from swgpar.gear_trains.result import TrainResult
 from swgpar.gear_trains.train import (
     make_train,
@@ -21,7 +21,7 @@ from swgpar.gear_trains.train import (
     require_finite,
     run_train,
 )
-from swgpar.input.toml_file import apply_overrides
+from swgpar.input.toml_file import Overrides, apply_overrides
 from swgpar.meshing import MeshRecipe
 from swgpar.results.atomic import to_json
 from swgpar.results.quantity import Quantity
@@ -37,6 +37,9 @@ class GearTrains(System[TrainDesign, TrainResult]):
 
     def load(self, table: dict[str, Any]) -> TrainDesign:
         return make_train(table)
+
+    def load_changed(self, table: dict[str, Any], overrides: Overrides) -> TrainDesign:
+        return made_of_changed(make_train, table, apply_overrides(table, overrides))
 
     def check(self, design: TrainDesign) -> dict[str, float]:
         with reported_arithmetic():

@@ -18,6 +18,7 @@ from swgpar.input.toml_file import read_toml
 from swgpar.results.quantity import Quantity
 from swgpar.results.table import format_columns, read_columns
 from swgpar.systems import system_of_section, system_of_table
+from swgpar.vibration.curved_beam import free_frequencies
 from swgpar.vibration.sampling import block_sizes, random_stream, run_tasks
 
 CASCADE, GEAR_PAIR = DRIVERS / "cascade.toml", DRIVERS / "gear_pair.toml"
@@ -181,6 +182,34 @@ REFUSED = [
     ),
     (
         PLANETARY,
+        "planet.count=5",
+        "planet.count = 5 is out of range: allowed 2 to 4; the tips of more planets overlap",
+    ),
+    (PLANETARY, "planet.count=12", "planet.count = 12 is out of range: allowed 2 to 4; the tips"),
+    (
+        PLANETARY,
+        "ring.root_radius=508",
+        "ring.root_radius = 508 is out of range: allowed above 508.2 mm (pitch radius) to 539 mm",
+    ),
+    (PLANETARY, "ring.root_radius=540", "ring.root_radius = 540 is out of range: allowed above"),
+    (
+        PLANETARY,
+        "mesh.half_backlash=1e6",
+        "mesh.half_backlash = 1000000 is out of range: allowed 0 to 7577.14 µm (a quarter of the",
+    ),
+    (
+        GEAR_PAIR,
+        "mesh.half_backlash=1e6",
+        "mesh.half_backlash = 1000000 is out of range: allowed 0 to 56443.9 µm (a quarter of the",
+    ),
+    (
+        CASCADE,
+        "g3_g4.gap_B=1000",
+        "g3_g4.gap_B = 1000 is out of range: allowed 0 to 4.71239 mm (half of the pitch, g3_g4.mod",
+    ),
+    (CASCADE, "load.period=1e-6", "load.period = 1e-06 is out of range: allowed 0.01 to"),
+    (
+        PLANETARY,
         "ring.rim=3000",
         "ring.rim = 3000 is out of range: allowed above 0 to 1042 mm (a rim as thick as the radius",
     ),
@@ -213,6 +242,41 @@ def test_drives_are_no_gear_trains() -> None:
     assert system_of_table(read_toml(REFERENCE)) is system_of_section("drive")
     with pytest.raises(InputError, match="gear_train.model is missing"):
         make_train(read_toml(REFERENCE))
+
+
+def test_published_values_that_do_not_fit_are_left_out(caplog: pytest.LogCaptureFixture) -> None:
+    """Of other speeds and numbers of modes, by override and `with_values`; those that fit stay."""
+    with caplog.at_level("WARNING"):
+        slower = load_design(RING, ["moving_load.speeds=[2.8, 22.0]"])
+    assert "mean_middle_node_22" in slower.published and "critical_speeds" in slower.published
+    assert not any(name.endswith(("_30", "_50")) for name in slower.published)
+    assert "published.mean_middle_node_30 is left out" in caplog.text
+    caplog.clear()
+    with caplog.at_level("WARNING"):
+        few = load_design(RING_MODES).with_values({"ring.modes": 4})
+    assert few.published == {} and "published.frequencies is left out" in caplog.text
+    # a wrong name stays refused: in the file, with a change, and as a change
+    table = read_toml(RING_MODES)
+    table["published"] = {"frequency": 1.0}
+    for design, overrides in (
+        (table, []),
+        (table, ["ring.modes=4"]),
+        (RING_MODES, ["published.frequency=1"]),
+    ):
+        with pytest.raises(InputError, match=r"published\.frequency is not a quantity"):
+            load_design(design, overrides)
+
+
+def test_modes_are_compared_by_their_shapes() -> None:
+    """On three supports the mode with nodes on them has three waves and the frequency of the free
+    ring with as many; other modes mix numbers that three does not divide."""
+    design = load_design(DRIVERS / "ring_supported.toml")
+    table = model_of(design).compute(design, MPI.COMM_SELF).tables["modes"]
+    assert [int(waves) % 3 == 0 for waves in table["waves"]] == [False, True, False]
+    assert table["waves"][1] == 3
+    assert table["frequency_Hz"][1] == pytest.approx(table["free_ring_Hz"][1], rel=1e-5)
+    free = free_frequencies(design.beam_section(), 3)[0] / (2.0 * np.pi)
+    assert table["free_ring_Hz"][1] == pytest.approx(free)
 
 
 REMARKS = [

@@ -3,6 +3,7 @@ plausible values."""
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
 from annotated_types import Len
@@ -113,7 +114,9 @@ class CascadeLoad(Section):
         unit="kN", text="largest rack force, of the period and the population_tasks", gt=0.0
     )
     period: float = quantity(
-        unit="s", text="period of the sinusoidal rack force; its first half is direction B", gt=0.0
+        unit="s",
+        text="period of the sinusoidal rack force; its first half is direction B",
+        ge=0.01,
     )
     braked: float = quantity(
         unit="kN", text="rack force with the flywheel fixed by its brake", gt=0.0
@@ -200,6 +203,12 @@ def check_fit(design: CascadeDesign) -> None:
     """Refuse values that do not fit each other."""
     module, other = design.g1_g1.module, design.g1_g2.module
     require(module == other, "g1_g1.module", module, f"{other:g} mm (g1_g2.module)")
+    for name in ("rack_pinion", "g1_g1", "g1_g2", "g3_g4"):
+        mesh = getattr(design, name)
+        half = 0.5 * math.pi * mesh.module
+        for key in ("gap_A", "gap_B"):
+            allowed = f"0 to {half:.6g} mm (half of the pitch, {name}.module)"
+            require(getattr(mesh, key) <= half, f"{name}.{key}", getattr(mesh, key), allowed)
     peak, section = design.load.peak, design.population
     for force in design.load.forces:
         require(force <= peak, "load.forces", force, f"above 0 to {peak:g} kN (load.peak)")

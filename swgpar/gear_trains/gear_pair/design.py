@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Literal
 
 from annotated_types import Len
@@ -18,6 +19,10 @@ from swgpar.input.quantities import Section, quantity
 from swgpar.input.require import require
 
 PositiveTorques = Annotated[list[Positive], Len(1)]
+
+
+LEAST_TEETH = 6
+"""Of a gear; the file does not give the number of teeth."""
 
 
 class PairTrain(GearTrain):
@@ -97,4 +102,10 @@ def check_fit(design: GearPairDesign) -> None:
     """Refuse values that do not fit each other."""
     torques, cases = design.load.output, len(design.load.input)
     require(len(torques) == cases, "load.output", torques, f"{cases} torques (load.input)")
+    radius = min(design.gear_1.radius, design.gear_2.radius)
+    half = 1e3 * math.pi * radius / (2.0 * LEAST_TEETH)
+    allowed = f"0 to {half:.6g} µm (a quarter of the pitch of a gear of {LEAST_TEETH} teeth)"
+    require(
+        design.mesh.half_backlash <= half, "mesh.half_backlash", design.mesh.half_backlash, allowed
+    )
     require_steps("time.step", design.time.step, design.time.end)

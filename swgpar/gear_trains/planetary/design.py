@@ -22,6 +22,14 @@ from swgpar.vibration.thickness_limit import THICKEST, displacement_remark
 Thicknesses = Annotated[list[Positive], Len(1)]
 
 
+ADDENDUM = 1.0
+"""Of the planets, in modules: the standard one of ISO 53."""
+
+DEEPEST = 3.0
+"""Largest distance of the root of the ring from its pitch circle, in modules: the dedendum of 1.25
+and profile shift."""
+
+
 class PlanetaryTrain(GearTrain):
     model: Literal["planetary"] = quantity(text="the gear train")
 
@@ -156,6 +164,7 @@ def check_fit(design: PlanetaryDesign) -> None:
     allowed = f"{fitting:g} mm within 0.1 % (module of the sun, and teeth between sun and ring)"
     fits = abs(diameter / fitting - 1.0) <= 1e-3
     require(fits, "planet.pitch_diameter", diameter, allowed)
+    _check_teeth(design)
     allowed = f"divisors of {ring.elements} (ring.elements)"
     require(ring.elements % ring.supports == 0, "ring.supports", ring.supports, allowed)
     thickest = ring.root_radius / (1.0 / THICKEST - 0.5)
@@ -172,3 +181,22 @@ def check_fit(design: PlanetaryDesign) -> None:
     for name in ("steps", "linearised_steps"):
         count, allowed = getattr(time, name), f"multiples of {time.rows} (time.rows)"
         require(count % time.rows == 0, f"time.{name}", count, allowed)
+
+
+def _check_teeth(design: PlanetaryDesign) -> None:
+    """Refuse planets that overlap, a rim that is not outside the teeth, and too much backlash."""
+    sun, planet, ring, mesh = design.sun, design.planet, design.ring, design.mesh
+    module = sun.pitch_diameter / sun.teeth
+    centres = 0.5 * (sun.pitch_diameter + planet.pitch_diameter)
+    tips = planet.pitch_diameter + 2.0 * ADDENDUM * module
+    largest = int(math.pi / math.asin(0.5 * tips / centres)) if tips < 2.0 * centres else 1
+    fits = planet.count <= largest
+    touch = f"the tips of more planets overlap: tip diameter {tips:g} mm, addendum one module"
+    require(fits, "planet.count", planet.count, f"2 to {largest}; {touch}")
+    pitch = 0.5 * sun.pitch_diameter + planet.pitch_diameter
+    deepest = pitch + DEEPEST * module
+    allowed = f"above {pitch:g} mm (pitch radius) to {deepest:g} mm ({DEEPEST:g} modules outside)"
+    require(pitch < ring.root_radius <= deepest, "ring.root_radius", ring.root_radius, allowed)
+    half = 250.0 * math.pi * module * math.cos(math.radians(mesh.pressure_angle))
+    allowed = f"0 to {half:.6g} µm (a quarter of the base pitch)"
+    require(mesh.half_backlash <= half, "mesh.half_backlash", mesh.half_backlash, allowed)

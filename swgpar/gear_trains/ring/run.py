@@ -16,7 +16,7 @@ from swgpar.gear_trains.ring.natural_frequencies import distinct_frequencies
 from swgpar.gear_trains.ring.quantities import POINTS
 from swgpar.log import logger
 from swgpar.results.table import Columns
-from swgpar.vibration.curved_beam import free_frequencies
+from swgpar.vibration.curved_beam import BeamSection, free_frequencies
 from swgpar.vibration.dominant_cycles import dominant_cycles
 from swgpar.vibration.moments import HasMoments, Moments, SampleMoments, columns, largest_moments
 from swgpar.vibration.sampling import Tasks, TaskSeconds, block_sizes, random_stream, run_tasks
@@ -44,8 +44,9 @@ def compute(design: RingDesign, comm: MPI.Comm) -> Computed:
         "frequencies": frequencies.tolist(),
         "dimensionless_frequencies": (2.0 * np.pi * frequencies * unit).tolist(),
     }
-    free = np.array([free_frequencies(section, n + 1)[0] for n in number]) / (2.0 * np.pi)
-    modes = {"mode": number, "frequency_Hz": frequencies, "free_ring_Hz": free}
+    waves = _waves(shapes)
+    free = np.array([_free_frequency(section, n) for n in waves])
+    modes = {"mode": number, "waves": waves, "frequency_Hz": frequencies, "free_ring_Hz": free}
     tables = {"modes": modes, "mode_shapes": _shapes(design, shapes[:, :SHAPES])}
     if design.moving_load is None:
         return Computed(modes, tables, values, {})
@@ -96,6 +97,19 @@ def _peaks(curve: Columns) -> list[float]:
     inner = 1 + np.flatnonzero((mean[1:-1] > mean[:-2]) & (mean[1:-1] >= mean[2:]))
     highest = np.sort(speed[inner[np.argsort(mean[inner])[::-1][:PEAKS]]])
     return [*highest.tolist(), *[float("nan")] * (PEAKS - len(highest))]
+
+
+def _waves(shapes: np.ndarray) -> np.ndarray:
+    """Number of waves (modes,), from 1 up, with the largest outward amplitude in the nodes of each
+    shape (unknowns, modes)."""
+    amplitudes = np.abs(np.fft.rfft(shapes[::3], axis=0))
+    return np.asarray(1 + np.argmax(amplitudes[1:], axis=0))
+
+
+def _free_frequency(section: BeamSection, waves: int) -> float:
+    """Of the bending of the free ring, Hz; NaN for one wave, a rigid motion."""
+    rate = free_frequencies(section, waves)[0] if waves > 1 else np.nan
+    return float(rate / (2.0 * np.pi))
 
 
 def _shapes(design: RingDesign, shapes: np.ndarray) -> Columns:
