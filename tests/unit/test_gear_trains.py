@@ -102,6 +102,16 @@ REFUSED = [
         "radius of its centre line) to below 520 mm",
     ),
     (RING, "ring.inner_radius=1", "ring.inner_radius = 1 is out of range: allowed 173.333 mm"),
+    (
+        RING,
+        "moving_load.cycles=36",
+        "moving_load.frequency = 100.8 is out of range: allowed 0 with moving_load.cycles",
+    ),
+    (
+        RING,
+        "moving_load.cycles=80 moving_load.frequency=0",
+        "moving_load.cycles = 80 is out of range: allowed above 0 to 72 (10 of moving_load.steps",
+    ),
     (RING, "ring.nu=0.6", "ring.nu = 0.6 is out of range: allowed above -1 to 0.5"),
     (
         RING,

@@ -425,6 +425,37 @@ def test_critical_speeds(bolted: RingDesign) -> None:
         assert max(largest) > 1.3 * max(largest[0], largest[-1])
 
 
+def test_cycles_of_a_revolution(bolted: RingDesign) -> None:
+    """The harmonic part keeps its cycles at every speed: as with the frequency of each."""
+    load = {"steps": 360, "revolutions": 1}
+    with_cycles = MovingLoads(changed(bolted, "moving_load", frequency=0.0, cycles=36.0, **load))
+    for speed in (2.8, 40.0):
+        fixed = MovingLoads(changed(bolted, "moving_load", frequency=36.0 * speed, **load))
+        for kind in ("mean", "deviation"):
+            found, expected = (
+                getattr(loads.respond(speed), kind) for loads in (with_cycles, fixed)
+            )
+            assert found == pytest.approx(expected, rel=1e-12)
+
+
+def test_critical_speeds_of_36_cycles() -> None:
+    """Supports that hold radially: three moving waves of 36 cycles excite the lowest mode, of three
+    waves, at its frequency over 36 + 3 and 36 - 3: 31.2 and 36.9 rad/s, print has 31.3 and 36.6."""
+    keys = ["moving_load.frequency=0.0", "moving_load.cycles=36", "moving_load.revolutions=1"]
+    # springs that hold the ring against the loads, softer than any bending
+    held = ["supports.tangential=1e6", "supports.torsional=0"]
+    loads = MovingLoads(load_design(MOVING, [*keys, *held]))
+    lowest = loads.frequencies[1]
+    outward = np.abs(np.fft.rfft(loads.shapes[::3, 1]))
+    assert np.argmax(outward) == 3
+    for cycles, published in ((39.0, 31.3), (33.0, 36.6)):
+        expected = lowest / cycles
+        speeds = expected * np.array([0.94, 0.96, 0.98, 1.0, 1.02, 1.04, 1.06])
+        largest = [np.abs(loads.respond(speed).mean[:, 1]).max() for speed in speeds]
+        assert 0.98 <= speeds[int(np.argmax(largest))] / expected <= 1.02
+        assert expected == pytest.approx(published, rel=0.015)
+
+
 def test_deviation_falls_slightly_with_the_speed(bolted: RingDesign) -> None:
     loads = MovingLoads(bolted)
     largest = [loads.respond(speed).deviation[:, 1].max() for speed in (22.0, 50.0)]

@@ -13,6 +13,9 @@ from swgpar.input.require import require
 from swgpar.vibration.curved_beam import BeamSection, Ring, supports_restrain_ring
 from swgpar.vibration.thickness_limit import THICKEST, displacement_remark, frequency_remark
 
+LEAST_STEPS = 10
+"""Steps in a cycle of the harmonic part: what is linear within them is within 2 % of it."""
+
 Speeds = Annotated[list[Positive], Len(1)]
 
 
@@ -53,6 +56,12 @@ class MovingLoad(Section):
     force: float = quantity(unit="N", text="mean force of each", ge=0.0)
     harmonic: float = quantity(0.0, unit="N", text="amplitude of its harmonic part", ge=0.0)
     frequency: float = quantity(0.0, unit="rad/s", text="frequency of the harmonic part", ge=0.0)
+    cycles: float | None = quantity(
+        None,
+        text="cycles of the harmonic part in a revolution of the loads, in place of `frequency`",
+        gt=0.0,
+        le=10_000.0,
+    )
     noise: float = quantity(0.0, unit="N·√s", text="amplitude of the white noise of each", ge=0.0)
     damping_mass: float = quantity(unit="1/s", text="damping over mass", ge=0.0)
     damping_stiffness: float = quantity(unit="s", text="damping over stiffness", ge=0.0)
@@ -156,6 +165,14 @@ def _check_load(design: RingDesign, load: MovingLoad) -> None:
     require(body.elements // s.count >= 2, "ring.elements", body.elements, allowed)
     allowed = f"multiples of {load.loads} (moving_load.loads)"
     require(load.steps % load.loads == 0, "moving_load.steps", load.steps, allowed)
+    if load.cycles is not None:
+        allowed = "0 with moving_load.cycles"
+        require(load.frequency == 0.0, "moving_load.frequency", load.frequency, allowed)
+        allowed = (
+            f"above 0 to {load.steps / LEAST_STEPS:g} ({LEAST_STEPS} of moving_load.steps each)"
+        )
+        fits = load.cycles * LEAST_STEPS <= load.steps
+        require(fits, "moving_load.cycles", load.cycles, allowed)
     if load.radius is not None:
         allowed = f"above 0 to {body.outer_radius:g} mm (ring.outer_radius)"
         require(load.radius <= body.outer_radius, "moving_load.radius", load.radius, allowed)

@@ -60,7 +60,8 @@ class MovingLoads:
         """Modal forces (modes,) of the steady and harmonic parts after a step, at a time in s."""
         load = self.load
         ahead = 2.0 * np.pi * np.arange(load.loads) / load.loads
-        sizes = load.force + load.harmonic * np.sin(load.frequency * (time + ahead / speed))
+        frequency = load.frequency if load.cycles is None else load.cycles * speed
+        sizes = load.force + load.harmonic * np.sin(frequency * (time + ahead / speed))
         return sizes @ self._at_loads(2 * step)
 
     def noises(self, step: int) -> np.ndarray:
