@@ -72,9 +72,7 @@ def export_files(
         if name in ON_MESH and recipe is None:
             raise InputError(f'format = "{name}" needs a mesh recipe: --mesh, or mesh= in Python')
     if recipe is not None and not set(formats) & set(ON_MESH):
-        raise InputError(
-            f"a mesh recipe is of no use without one of the formats {', '.join(ON_MESH)}"
-        )
+        raise InputError(f"a mesh recipe is of no use without the format {' or '.join(ON_MESH)}")
     given = {"ripple": ripple, "idle": idle}
     for option, allowed in (("ripple", ("fmu",)), ("idle", ("fmu", "lookup"))):
         if given[option] is not None and not set(formats) & set(allowed):

@@ -40,7 +40,7 @@ def test_check_names_interference() -> None:
 
 def test_check_looks_between_the_minor_axes() -> None:
     """Tip over tip at 62 degrees from the lobe, 17 degrees beyond half of the way."""
-    clearance = rigid_clearance(clearances(swgpar.load_design(DATA / "tip_clash.toml")))
+    clearance = rigid_clearance(clearances(swgpar.load_design(DATA / "public" / "tip_clash.toml")))
     assert clearance.ring_gear == pytest.approx(-0.0645, abs=1e-4)
     (sentence,) = clearance.interference
     assert "62.0° from the tip of a lobe, tip of the flexible spline to flank" in sentence

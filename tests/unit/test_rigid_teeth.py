@@ -87,7 +87,7 @@ def smallest(design: swgpar.DriveDesign, ring: GearName, psi: np.ndarray) -> np.
 @pytest.mark.parametrize(
     ("path", "values", "ring"),
     [
-        (DATA / "tip_clash.toml", {}, "ring_gear"),
+        (DATA / "public" / "tip_clash.toml", {}, "ring_gear"),
         (PLANE, INVOLUTES, "ring_gear"),
         (DRIVERS / "three_lobes.toml", {"ring_gear.c_P": 1.02}, "ring_gear"),
         (DRIVERS / "pancake.toml", {}, "dynamic_spline"),
