@@ -93,7 +93,7 @@ def table(rows: list[dict[str, Any]]) -> str:
                 "refused" if row.get("refused") else "stopped" if row["ended"] else "ends",
                 f"{row['strain']:.2g}" if row.get("strain") is not None else "",
                 row.get("exported", ""),
-                said.replace("|", ";"),
+                said.replace(" | ", "; "),
             ]
         )
     return markdown(found)
