@@ -8,6 +8,7 @@ shares: at other angles the same share of the value stands for the error.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -94,6 +95,9 @@ def _is_slight(contacts: Sequence[PairContact]) -> bool:
     return max(known, key=_pressure_off_edges).force_N < SLIGHT * largest
 
 
+_shown = partial(shown_error, of_contact=True)
+
+
 def _error_share(
     meshes: Sequence[tuple[MeshRecipe, Sequence[PairContact]]], measure: Measure
 ) -> float | None:
@@ -113,7 +117,7 @@ def _error_share(
         return None
     finest = by_pair[-1][1]
     place = max(finest, key=lambda pair: finest[pair])
-    shown = [shown_error([(recipe, max(values.values())) for recipe, values in by_pair])]
+    shown = [_shown([(recipe, max(values.values())) for recipe, values in by_pair])]
     if all(place in values for _, values in by_pair):
-        shown.append(shown_error([(recipe, values[place]) for recipe, values in by_pair]))
+        shown.append(_shown([(recipe, values[place]) for recipe, values in by_pair]))
     return max(shown) / finest[place] if finest[place] > 0.0 else None

@@ -224,7 +224,8 @@ def _force_error(
     forces.append((recipe, {pair.key: pair.force_N for pair in contacts}))
     slight = SLIGHT * max((pair.force_N for pair in contacts), default=0.0)
     shares = [
-        shown_error([(one, by_pair.get(pair.key, 0.0)) for one, by_pair in forces]) / pair.force_N
+        shown_error([(one, by_pair.get(pair.key, 0.0)) for one, by_pair in forces], of_contact=True)
+        / pair.force_N
         for pair in contacts
         if pair.force_N > slight
     ]
@@ -260,11 +261,16 @@ def _region_error(
     return max(shown_error(meshes) * fine.place.value / meshes[-1][1], least)
 
 
-def shown_error(meshes: Sequence[tuple[MeshRecipe, float]]) -> float:
+def shown_error(meshes: Sequence[tuple[MeshRecipe, float]], *, of_contact: bool = False) -> float:
     """Error of a value by the mesh, from the last two or three meshes and the value on each, the
-    coarsest first. Every mesh has other counts of `BODY` or `CONTACT` than the one before."""
+    coarsest first. Every mesh has other counts of `BODY` or `CONTACT` than the one before.
+
+    of_contact : of a force or pressure of the flanks, for which those of `CONTACT` decide where
+    both differ
+    """
+    ratio = _contact_first if of_contact else smallest_ratio
     return SAFETY * sum(
-        abs(value - before) / (smallest_ratio(one, finer) ** ORDER - 1.0)
+        abs(value - before) / (ratio(one, finer) ** ORDER - 1.0)
         for (one, before), (finer, value) in pairwise(meshes)
     )
 
@@ -273,6 +279,11 @@ def smallest_ratio(coarse: MeshRecipe, fine: MeshRecipe) -> float:
     """The smallest ratio of counts that differ, one of which does."""
     ratios = body_ratio(coarse, fine), contact_ratio(coarse, fine)
     return min(ratio for ratio in ratios if ratio is not None)
+
+
+def _contact_first(coarse: MeshRecipe, fine: MeshRecipe) -> float:
+    """The ratio of the counts for the contact of the flanks where they differ, else of others."""
+    return contact_ratio(coarse, fine) or smallest_ratio(coarse, fine)
 
 
 def least_error(model: str, contacts: Sequence[PairContact], part: str) -> float:

@@ -21,7 +21,6 @@ from swgpar.analysis.drive_mesh_error import (
     CoarserMesh,
     coarser_recipes,
     shown_error,
-    smallest_ratio,
 )
 from swgpar.evaluation.contact_error_shares import (
     MISSED,
@@ -31,7 +30,7 @@ from swgpar.evaluation.contact_error_shares import (
 )
 from swgpar.flank_pressure.pair_contact import PairContact
 from swgpar.meshing import load_recipe
-from swgpar.meshing.recipe_counts import RATIO
+from swgpar.meshing.recipe_counts import RATIO, body_ratio, contact_ratio
 
 FINE = load_recipe("plane_fine")
 FACTOR = SAFETY / (RATIO**ORDER - 1.0)
@@ -92,7 +91,8 @@ def test_pairs_on_edges_do_not_count_among_those_off_edges() -> None:
 def test_in_space_one_mesh_with_fewer_elements_in_all_directions_shows_the_errors() -> None:
     cup = load_recipe("forces")
     (coarse,) = coarser_recipes(cup)
-    ratio = smallest_ratio(coarse, cup)
+    ratio = contact_ratio(coarse, cup)
+    assert ratio == RATIO > body_ratio(coarse, cup)  # those along flanks and face width decide
     found = contact_errors([CoarserMesh(coarse, {}, [pair(1, 500.0)])], cup, [pair(1, 600.0)], 2)
     assert found.pressure == pytest.approx(100.0 / 600.0 / (ratio**2 - 1.0))
     assert found.force == LEAST_FORCE["cup"]
