@@ -54,7 +54,6 @@ class RatchetingTorque(AnswerGroup):
         "ratcheting.peak_torque_Nm",
         "largest torque of the output",
         "N·m",
-        error="peak_error_Nm",
         remark="peak_remark",
     )
     peak_error_Nm: float | None
@@ -79,7 +78,10 @@ class RatchetingTorque(AnswerGroup):
     @property
     def peak_remark(self) -> str:
         """What to know of the largest torque."""
-        return "error by the steps; not by the mesh" if self.is_peak else "no peak: not fallen from"
+        if not self.is_peak:
+            return "no peak: not fallen from"
+        by_steps = "" if self.peak_error_Nm is None else f" ± {self.peak_error_Nm:.2g} N·m"
+        return f"by the steps{by_steps}; the error by the mesh is not known"
 
     def remarks(self) -> Iterator[str]:
         yield f"what gives way: {self.gave_way}; end of the run: {self.ended}"

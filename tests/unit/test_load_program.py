@@ -268,6 +268,8 @@ def test_what_gives_way_is_where_the_rotation_goes(teeth: float, gave_way: str) 
     # straight on from the first two states to the third
     assert (found.peak_torque_Nm, found.peak_step, found.peak_error_Nm) == (3.0, 5, 0.5)
     assert found.peak_rotation_pitches == pytest.approx(2.0 / design.kinematics.output_pitch)
+    (answer,) = (one for one in found.answers() if one.name == "ratcheting.peak_torque_Nm")
+    assert answer.no_error == NO_ESTIMATE and "by the steps ± 0.5 N·m" in answer.remark
 
 
 @pytest.mark.parametrize(
