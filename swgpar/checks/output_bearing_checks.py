@@ -17,6 +17,10 @@ LARGEST_TILT, LARGEST_SHIFT = 0.01, 0.1
 """Tilt (rad) and displacement (modules) up to which forces may move the output on its bearing
 alone: tilts are small, and teeth mesh."""
 
+FARTHEST = 10.0
+"""Distance of the bearing from the middle of the face width, in pitch diameters of the flexible
+spline. Farther away it does not carry the output, and its place is a slip of units."""
+
 
 def check_output_bearing(design: DriveDesign, bearing: OutputBearing) -> None:
     """Raise InputError for the first thing that does not fit the design."""
@@ -40,6 +44,10 @@ def check_output_bearing(design: DriveDesign, bearing: OutputBearing) -> None:
             value = getattr(bearing, key)
             allowed = 'only 0 with drive.model = "plane"'
             require(value == 0.0, f"output_bearing.{key}", value, allowed)
+    most = FARTHEST * design.drive.module * design.drive.teeth_fs
+    allowed = f"{-most:g} to {most:g} mm ({FARTHEST:g} pitch diameters)"
+    fits = bearing.position is None or abs(bearing.position) <= most
+    require(fits, "output_bearing.position", bearing.position, allowed)
     _check_size(bearing, design.drive.module)
     if bearing.is_loaded_sideways:
         require_no_period(design, SIDEWAYS, "without them")
@@ -48,11 +56,14 @@ def check_output_bearing(design: DriveDesign, bearing: OutputBearing) -> None:
 def _check_size(bearing: OutputBearing, module: float) -> None:
     """Forces that move the output farther than strains and teeth are made for."""
     moved, shift = np.abs(bearing.load) / bearing.stiffness, LARGEST_SHIFT * module
-    for key, ratio, most, words in (
-        ("radial_force", np.hypot(*moved[:2]), shift, f"move it by {shift:g} mm"),
-        ("axial_force", moved[2], shift, f"move it by {shift:g} mm"),
-        ("tilting_moment", np.hypot(*moved[3:]), LARGEST_TILT, f"tilt it by {LARGEST_TILT:g} rad"),
+    by_shift, by_tilt = f"moves it by {shift:g} mm", f"tilts it by {LARGEST_TILT:g} rad"
+    for key, ratio, most, unit, words in (
+        ("radial_force", np.hypot(*moved[:2]), shift, "N", by_shift),
+        ("axial_force", moved[2], shift, "N", by_shift),
+        ("tilting_moment", np.hypot(*moved[3:]), LARGEST_TILT, "N·m", by_tilt),
     ):
         value = getattr(bearing, key)
-        allowed = f"up to {abs(value) * most / max(ratio, most):.4g}, which {words}"
+        largest = f"{abs(value) * most / max(ratio, most):.4g}"
+        least = f"-{largest}" if key == "axial_force" else "0"
+        allowed = f"{least} to {largest} {unit}, which {words} on the bearing alone"
         require(ratio <= most, f"output_bearing.{key}", value, allowed)

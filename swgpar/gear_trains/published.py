@@ -75,7 +75,9 @@ def _fitting(
             make(table | {"published": {name: given}})
         except InputError:
             logger.warning(
-                "published.%s is left out: the changed design has no such quantity", name
+                "published.%s is left out: the changed design has no such quantity, or another "
+                "number of values",
+                name,
             )
         else:
             yield name, given

@@ -116,7 +116,13 @@ REFUSED = [
     (
         RING,
         "moving_load.radius=521",
-        "moving_load.radius = 521 is out of range: allowed above 0 to 520 mm (ring.outer_radius)",
+        "moving_load.radius = 521 is out of range: allowed 246.25 mm (half of ring.inner_radius) "
+        "to 520 mm (ring.outer_radius)",
+    ),
+    (
+        RING,
+        "moving_load.radius=0.52",
+        "moving_load.radius = 0.52 is out of range: allowed 246.25 mm (half of ring.inner_radius)",
     ),
     (
         RING,
@@ -265,6 +271,7 @@ def test_published_values_that_do_not_fit_are_left_out(caplog: pytest.LogCapture
     with caplog.at_level("WARNING"):
         few = load_design(RING_MODES).with_values({"ring.modes": 4})
     assert few.published == {} and "published.frequencies is left out" in caplog.text
+    assert "or another number of values" in caplog.text
     # a wrong name stays refused: in the file, with a change, and as a change
     table = read_toml(RING_MODES)
     table["published"] = {"frequency": 1.0}

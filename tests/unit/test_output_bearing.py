@@ -69,11 +69,20 @@ def test_a_load_from_one_side_takes_the_whole_drive_and_all_angles() -> None:
         (("output_bearing.radial_stiffness=0",), "output_bearing.radial_stiffness", "above 0"),
         (("output_bearing.radial_force=-1",), "output_bearing.radial_force", "0"),
         (("output_bearing.radial_force=10001",), "output_bearing.radial_force", "by 0.1 mm"),
-        (("output_bearing.axial_force=-20001",), "output_bearing.axial_force", "up to 2e+04"),
+        (
+            ("output_bearing.axial_force=-20001",),
+            "output_bearing.axial_force = -20001 is out of range: allowed -2e+04 to 2e+04 N,",
+            "by 0.1 mm on the bearing alone",
+        ),
+        (
+            ("output_bearing.position=-401",),
+            "output_bearing.position = -401",
+            "allowed -400 to 400 mm (10 pitch diameters)",
+        ),
         (
             ("output_bearing.tilting_moment=101",),
-            "output_bearing.tilting_moment = 101 is out of range: allowed up to 100,",
-            "tilt it by 0.01 rad",
+            "output_bearing.tilting_moment = 101 is out of range: allowed 0 to 100 N·m,",
+            "tilts it by 0.01 rad",
         ),
         ((*PLANE, MOMENT), "output_bearing.tilting_moment", 'drive.model = "plane"'),
         ((*PLANE, "output_bearing.axial_force=1"), "output_bearing.axial_force", "only 0"),

@@ -174,7 +174,11 @@ def _check_load(design: RingDesign, load: MovingLoad) -> None:
         fits = load.cycles * LEAST_STEPS <= load.steps
         require(fits, "moving_load.cycles", load.cycles, allowed)
     if load.radius is not None:
-        allowed = f"above 0 to {body.outer_radius:g} mm (ring.outer_radius)"
-        require(load.radius <= body.outer_radius, "moving_load.radius", load.radius, allowed)
+        innermost, outer = 0.5 * body.inner_radius, body.outer_radius
+        allowed = (
+            f"{innermost:g} mm (half of ring.inner_radius) to {outer:g} mm (ring.outer_radius)"
+        )
+        fits = innermost <= load.radius <= outer
+        require(fits, "moving_load.radius", load.radius, allowed)
     fits = len(load.sweep) == 2 and load.sweep[0] < load.sweep[1]
     require(fits, "moving_load.sweep", load.sweep, "two speeds, the lower one first")
