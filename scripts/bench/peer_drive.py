@@ -21,6 +21,7 @@ from scipy.spatial import cKDTree
 
 import swgpar
 from swgpar.design.drive_design import DriveDesign
+from swgpar.exchange.calculix_growth import initial_temperature, temperatures
 from swgpar.exchange.calculix_model import JobModel
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing import MeshRecipe, load_recipe
@@ -45,6 +46,16 @@ PLANE += ("micro_geometry.fs_crowning=0",)
 CLAMPED = ("cup.attachment=clamped", "cup.clamping_radius=10")
 """A hub of the cup, from the bore of 6 mm on."""
 
+HEATED = (
+    "material.expansion=12e-6",
+    "flexible_spline.temperature=100",
+    "wave_generator.temperature=120",
+    "ring_gear.temperature=60",
+    "ring_gear.frame.interference=0.01",
+)
+"""The flexible spline grows by 19 µm of radius, the cam by 23 µm; the frame presses the ring gear,
+which grows by 11 µm of radius."""
+
 
 @dataclass(frozen=True)
 class Case:
@@ -61,6 +72,7 @@ CASES = {
     "plane, flank 6": Case(PLANE, {"flank": 6}),
     "plane, flank 8, root 4, rim 2": Case(PLANE, {"flank": 8, "root": 4, "rim": 2}),
     "plane, flank 6, spline fixed": Case((*PLANE, "drive.layout=spline_fixed"), {"flank": 6}),
+    "plane, flank 6, heated": Case((*PLANE, *HEATED), {"flank": 6}),
     "cup, flank 2": Case((), {"flank": 2}),
     "cup, flank 2, clamped": Case(CLAMPED, {"flank": 2}),
     "cup, flank 2, finer wall": Case(
@@ -150,7 +162,7 @@ def compare(name: str, out: Path, cores: int) -> dict[str, object]:
     off[:, :2] = rotated(off[:, :2], np.radians(last["output_angle_deg"]) - rotation)
     off -= points[:n] + np.asarray(grid.point_data["displacement"])[ours]
     reference = np.asarray(grid.point_data["vm"], dtype=float)[ours]
-    prescribe(folder, np.asarray(grid.point_data["displacement"], dtype=float)[ours], len(points))
+    prescribe(folder, np.asarray(grid.point_data["displacement"], dtype=float)[ours], model)
     calculix("elements", folder, cores)
     _, prescribed = read_fields(folder / "elements.frd", len(points))
     cam = moments.pop("FLEXIBLE_SPLINE_INNER")
@@ -192,11 +204,13 @@ def principal(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     )
 
 
-def prescribe(folder: Path, u: np.ndarray, n: int) -> None:
-    """``elements.inp``: all nodes of the spline have the displacements u (m, 3) mm, the others of n
+def prescribe(folder: Path, u: np.ndarray, model: JobModel) -> None:
+    """``elements.inp``: all nodes of the spline have the displacements u (n, 3) mm, the others
     none."""
-    job = ["*INCLUDE, INPUT=drive_mesh.inp", "*NSET, NSET=OTHERS, GENERATE", f"{len(u) + 1}, {n}"]
-    job += ["*BOUNDARY", "OTHERS, 1, 3", "*STEP, NLGEOM", "*STATIC", "1., 1.", "*BOUNDARY"]
+    job = ["*INCLUDE, INPUT=drive_mesh.inp", "*NSET, NSET=OTHERS, GENERATE"]
+    job += [f"{len(u) + 1}, {len(model.points)}", *initial_temperature(model)]
+    job += ["*BOUNDARY", "OTHERS, 1, 3", "*STEP, NLGEOM", "*STATIC", "1., 1."]
+    job += [*temperatures(model), "*BOUNDARY"]
     job += [f"{k + 1}, {i + 1}, {i + 1}, {u[k, i]:.12e}" for k in range(len(u)) for i in range(3)]
     job += ["*NODE FILE", "U", "*EL FILE", "S", "*END STEP"]
     (folder / "elements.inp").write_text("\n".join(job) + "\n", encoding="ascii")

@@ -4,7 +4,7 @@ drive_mesh.inp.
 Steps:
 
 1. The inner surface of the flexible spline gets the displacement of the bent spline, without
-   contact.
+   contact. Bodies and the rigid frame get their temperatures and fits.
 2. It is let go on the cam. The output does not rotate.
 3. The flanks may touch. The output rotates until the loaded flanks meet.
 4. The torque acts in place of that rotation.
@@ -22,6 +22,7 @@ import numpy as np
 from swgpar.analysis.bent_start import BentSpline
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
+from swgpar.exchange.calculix_growth import grown_frame, initial_temperature, temperatures
 from swgpar.exchange.calculix_model import CoupledSurface, JobModel, Term
 from swgpar.exchange.cam_facets import OUTER_FACE, CamFacets, cam_facets
 from swgpar.geometry.arrays import Ints
@@ -84,8 +85,16 @@ def _check(design: DriveDesign) -> None:
     for key, given in sections.items():
         if given:
             refuse(key, "a design without it")
-    if any(design.growths.values()) or design.frame_growth or design.cam_strain:
-        refuse("a temperature or a press fit", "bodies at load.reference_temperature without one")
+    if design.growths["flexible_spline"] and design.has_attachment:
+        refuse(
+            'cup.attachment = "clamped" with flexible_spline.temperature',
+            '"edge", because a *RIGID BODY does not grow with the flexible spline',
+        )
+    if design.frame_growth and design.kinematics.standing_gear != "ring_gear":
+        refuse(
+            "a temperature or a fit of [ring_gear.frame] around a ring gear that rotates",
+            'drive.layout = "ring_fixed", because the guide in the job does not grow',
+        )
     if design.is_bolted:
         refuse('cup.attachment = "bolted"', '"edge" or "clamped"')
     least = 0.001 * design.negligible_torque
@@ -109,11 +118,14 @@ def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
     first, second = output + 1, output + 2
     bore, outer = model.surface(model.spline, "bore"), model.surface(model.ring, "outer")
     planar = ("ALL_NODES, 3, 3",) if model.plane else ()
-    fixed = ["CAM, 1, 3", *planar]
+    fixed, frame = ["CAM, 1, 3", *planar], list[str]()
     bore_held: list[str] = []
     equations: list[list[Term]] = []
+    frame = grown_frame(model)
+    in_steps = [*fixed, *frame]
     if ring_fixed:
         fixed.append(f"RING_GEAR_OUTER, 1, {2 if model.plane else 3}")
+        in_steps = in_steps if frame else fixed
     else:
         equations += [*model.mean_motion(outer, output, in_housing=True), *model.housing(outer)]
         bore_held = [f"{output + 3}, 1, 3", f"{output + 4}, 1, 3"]
@@ -142,18 +154,20 @@ def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
     for pair in PAIRS.values():
         name = "ON_CAM" if pair == CAM else "ON_FLANKS"
         yield from (f"*CONTACT PAIR, INTERACTION={name}, TYPE=SURFACE TO SURFACE", pair)
+    # the facets of the cam are at their places at its temperature
+    yield from initial_temperature(model, "CAM", "OUTPUT")
     yield from ("*BOUNDARY", *fixed)
 
     ring_held = [line for line in [*held, rotation] if not ring_fixed and line not in bore_held]
-    yield from _bend(model, dependent, ring_held)
-    yield from _step("2: on the cam", "*BOUNDARY, OP=NEW", *fixed, *held, rotation, add=[CAM])
+    yield from _bend(model, dependent, [*frame, *ring_held])
+    yield from _step("2: on the cam", "*BOUNDARY, OP=NEW", *in_steps, *held, rotation, add=[CAM])
     rotate = ("*BOUNDARY", f"{rotation}, {model.closing_rotation:.12e}")
     yield from _step("3: the loaded flanks meet", *rotate, add=FLANKS, acting=[CAM, *FLANKS])
     if ring_fixed and design.has_attachment:
         torque = ["*CLOAD", f"{turn}, {_internal_torque(design):.12e}"]
     else:
         torque = [*_torque(model, bore if ring_fixed else outer)]
-    load = ["*BOUNDARY, OP=NEW", *fixed, *held, *torque]
+    load = ["*BOUNDARY, OP=NEW", *in_steps, *held, *torque]
     yield from _step("4: torque", *load, acting=[CAM, *FLANKS], parameters=", AMPLITUDE=STEP")
     yield from _step("5: at rest", acting=[CAM, *FLANKS], parameters=", AMPLITUDE=STEP")
 
@@ -194,7 +208,7 @@ def _bend(model: JobModel, dependent: set[int], held: Iterable[str]) -> Iterator
         for node, values in zip(nodes + 1, u[:, : 2 if model.plane else 3], strict=True)
         for axis, value in enumerate(values, start=1)
     ]
-    lines = ("*BOUNDARY", *held, *bent)
+    lines = (*temperatures(model), "*BOUNDARY", *held, *bent)
     yield from _step("1: bent without contact", *lines, remove=[CAM, *FLANKS])
 
 

@@ -33,18 +33,18 @@ class CamFacets(NamedTuple):
 
 
 def cam_facets(design: DriveDesign, half_width: float, inset: float) -> CamFacets:
-    """Facets of the cam with crowning and slope, in |z| <= half_width (mm).
+    """Facets of the cam with crowning and slope at its temperature, in |z| <= half_width (mm).
 
     inset : mm, by which the surface lies below the exact one. The facets of the flexible spline lie
         within its exact inner cylinder; their mean distance from it is the inset with which facets
         touch as the exact surfaces do. The mean height of the curve over the facets of the cam is
         taken off.
     """
-    surface, module = design.cam_surface(), design.drive.module
+    surface, module, micro = design.grown_cam_surface(), design.drive.module, design.micro_geometry
     count = 256
     while (sagitta := _sagitta(design, count)) > SAGITTA * module:
         count = int(np.ceil(count * max(1.05, np.sqrt(sagitta / (SAGITTA * module)))))
-    stations = AXIAL_FACETS if surface.crowning or surface.slope else 1
+    stations = AXIAL_FACETS if micro.wg_crowning or micro.wg_slope else 1
     z = np.linspace(-half_width, half_width, stations + 1)
     points: list[np.ndarray] = []
     elements: list[np.ndarray] = []

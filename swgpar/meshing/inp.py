@@ -75,15 +75,17 @@ def _density(material: Material) -> str:
     return "" if material.density is None else f"*DENSITY\n{1e-12 * material.density:.12g}\n"
 
 
-def _expansion(material: Material) -> str:
-    """Lines of the thermal expansion, 1/K; empty where it is not given."""
+def _expansion(material: Material, plane_stress: bool) -> str:
+    """Lines of the thermal expansion, 1/K; empty where it is not given. plane_stress : none along
+    z, where nothing moves"""
     growth = material.thermal_growth(1.0)
     if growth is None:
         return ""
-    if growth.across == growth.along:
+    along = 0.0 if plane_stress else growth.along
+    if growth.across == along:
         return f"*EXPANSION\n{growth.across:.12g}\n"
     across = f"{growth.across:.12g}"
-    return f"*EXPANSION, TYPE=ORTHO\n{across}, {across}, {growth.along:.12g}\n"
+    return f"*EXPANSION, TYPE=ORTHO\n{across}, {across}, {along:.12g}\n"
 
 
 def write_inp(
@@ -102,8 +104,8 @@ def write_inp(
     surfaces : (n, 2) element and face of every facet, both from 0
     materials : of every body
     thickness : mm, of the plane model
-    plane_stress : gives hexahedra a material without transverse contraction along z. With no
-        displacement along z they are then in plane stress.
+    plane_stress : gives hexahedra a material without transverse contraction and expansion along
+        z. With no displacement along z they are then in plane stress.
 
     Raises InputError for materials that differ by direction across z: the file has no axes.
 
@@ -137,7 +139,7 @@ def write_inp(
             file.write(
                 f"*MATERIAL, NAME={body.upper()}_MATERIAL\n"
                 f"*ELASTIC{_constants(materials[body], plane_stress)}\n"
-                f"{_density(materials[body])}{_expansion(materials[body])}"
+                f"{_density(materials[body])}{_expansion(materials[body], plane_stress)}"
             )
         for body in drive.cell_sets:
             file.write(f"*SOLID SECTION, ELSET={body.upper()}, MATERIAL={body.upper()}_MATERIAL\n")

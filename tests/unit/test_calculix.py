@@ -126,7 +126,10 @@ OUTPUT_BEARING = tuple(
         ("stiffness.torque=0.2", "[stiffness] is not available"),
         ("ratcheting.increment=0.1", "[ratcheting] is not available"),
         (OUTPUT_BEARING, "[output_bearing] is not available"),
-        ("ring_gear.frame.interference=0.01", "a temperature or a press fit is not available"),
+        (
+            ("ring_gear.frame.interference=0.01", "drive.layout=spline_fixed"),
+            "a temperature or a fit of [ring_gear.frame] around a ring gear that rotates is not",
+        ),
     ],
 )
 def test_what_the_job_does_not_carry(
@@ -152,6 +155,59 @@ def test_bolts_are_not_carried(tmp_path: Path) -> None:
     words = 'cup.attachment = "bolted" is not available with the format inp: allowed "edge" or'
     with pytest.raises(InputError, match=words):
         swgpar.export(swgpar.load_design(DESIGN, BOLTS), tmp_path, ["inp"], mesh=RECIPE)
+
+
+WARM = ("material.expansion=12e-6", "flexible_spline.temperature=70")
+
+
+def test_a_clamped_ring_that_grows_is_not_carried(tmp_path: Path) -> None:
+    clamped = ("cup.attachment=clamped", "cup.clamping_radius=10")
+    words = "because a \\*RIGID BODY does not grow with the flexible spline"
+    with pytest.raises(InputError, match=words):
+        swgpar.export(swgpar.load_design(DESIGN, [*clamped, *WARM]), tmp_path, ["inp"], mesh=RECIPE)
+
+
+def _after(text: str, keyword: str) -> list[list[str]]:
+    """Fields of the lines that follow a keyword, up to the next one."""
+    lines = text.split(f"{keyword}\n")[1].split("*")[0].splitlines()
+    return [line.split(", ") for line in lines]
+
+
+@pytest.mark.parametrize("overrides", [(), PLANE], ids=["cup", "plane"])
+def test_temperatures_and_the_fit_of_the_frame(tmp_path: Path, overrides: tuple[str, ...]) -> None:
+    fit = ("ring_gear.frame.interference=0.02", "wave_generator.temperature=95")
+    design = swgpar.load_design(DESIGN, [*overrides, *WARM, *fit, "load.reference_temperature=15"])
+    job, mesh = swgpar.export(design, tmp_path, ["inp"], mesh=RECIPE)
+    model, text = JobModel(design, load_recipe(RECIPE)), job.read_text()
+    assert {float(value) for _, value in _after(text, "*INITIAL CONDITIONS, TYPE=TEMPERATURE")} == {
+        15.0
+    }
+    found = dict(_after(text, "*TEMPERATURE"))
+    assert found == {"FLEXIBLE_SPLINE_NODES": "70", "RING_GEAR_NODES": "15"}
+    assert _after(text, "*NSET, NSET=FLEXIBLE_SPLINE_NODES, GENERATE") == [
+        ["1", str(model.n_spline)]
+    ]
+    # nothing moves along z in the plane
+    expansion = "\n1.2e-05\n" if not model.plane else ", TYPE=ORTHO\n1.2e-05, 1.2e-05, 0\n"
+    assert mesh.read_text().count(f"*EXPANSION{expansion}") == 2
+    # the bore of the frame is smaller by 0.01 mm of radius, in step 1 and where conditions are new
+    outer = {str(node + 1) for node in model.surface(model.ring, "outer").nodes}
+    radius = design.geometry.outer_radius
+    for k, step in enumerate(text.split("*STEP, NLGEOM")[1:], start=1):
+        moved = [
+            line.split(", ")
+            for line in step.splitlines()
+            if line.split(", ")[0] in outer and line.count(",") == 3
+        ]
+        assert len(moved) == (0 if k in (3, 5) else len(outer) * (2 if model.plane else 3))
+        for node, axis, _, value in moved:
+            x = model.points[int(node) - 1][int(axis) - 1] if axis != "3" else 0.0
+            assert float(value) == pytest.approx(-0.01 / radius * x, abs=1e-12)
+    # the cam grows by 80 K
+    cold = cam_facets(swgpar.load_design(DESIGN, overrides), 2.0, 0.0).points
+    warm = cam_facets(design, 2.0, 0.0).points
+    growth = np.hypot(*warm.T[:2]).max() / np.hypot(*cold.T[:2]).max() - 1.0
+    assert growth == pytest.approx(12e-6 * 80.0, rel=0.01)
 
 
 @pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
