@@ -8,7 +8,7 @@ The larger of both is reduced until they are small enough together (docs/theory/
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mpi4py import MPI
 
@@ -60,12 +60,20 @@ class ChosenMesh:
 
 @dataclass(frozen=True)
 class Refined:
-    """What a mesh gives in comparison with coarser ones; see `Refinement`."""
+    """What a mesh gives in comparison with coarser ones.
+
+    coarse_wall : stresses of the wall on the coarsest of these, where they are known
+    found : by windows, with both errors;  contact_errors : of the contacts of flanks
+    """
 
     comparison: MeshComparison
-    compared: CoarseWall | None
+    coarse_wall: CoarseWall | None
     found: RootStress
     contact_errors: ContactErrorShares
+
+    @property
+    def recipe(self) -> MeshRecipe:
+        return self.comparison.recipe
 
 
 class Refinement:
@@ -81,10 +89,7 @@ class Refinement:
 
     Attributes
     ----------
-    model, recipe, found : the present mesh and the stress by its windows
-    comparison : of the present mesh with coarser ones
-    compared : stresses of the wall on the coarsest of these
-    contact_errors : of the contacts of flanks on the present mesh
+    model, known : the present mesh and what it gives
     """
 
     def __init__(
@@ -104,11 +109,10 @@ class Refinement:
             coarser, recipe = with_finer_flanks(recipe, refined(recipe)), refined(recipe)
         self.model = self._solved(coarser[0])
         try:
-            first = self._refined(coarser, recipe)
+            self.known = self._refined(coarser, recipe)
         except SwgparError:
             self.model.destroy()
             raise
-        self._take(recipe, first)
 
     def _refined(
         self, coarser: list[MeshRecipe], recipe: MeshRecipe, before: RootStress | None = None
@@ -141,11 +145,6 @@ class Refinement:
             100.0 * _bound(found.drive_error) / found.s1,
         )
 
-    def _take(self, recipe: MeshRecipe, refined: Refined) -> None:
-        self.recipe, self.comparison = recipe, refined.comparison
-        self.compared, self.found = refined.compared, refined.found
-        self.contact_errors = refined.contact_errors
-
     def _solved(self, recipe: MeshRecipe, coarse: DriveModel | None = None) -> DriveModel:
         """The loaded model on a mesh, from the state of a coarser one if it is given."""
         return solve_to_load(self.design, recipe, self.comm, coarse, kept=self.kept)
@@ -173,15 +172,15 @@ class Refinement:
             logger.warning("no finer window: %s", error)
             return False
         self.levels += 1
-        self.found = self.comparison.with_errors(found)
-        self._log(self.found)
+        self.known = replace(self.known, found=self.known.comparison.with_errors(found))
+        self._log(self.known.found)
         return True
 
     def refine_drive(self) -> bool:
         """Take a finer mesh of the drive; False where there is none, or where it is too large."""
         limit = self.design.solver.memory_limit
         try:
-            finer = refined(self.recipe)
+            finer = refined(self.known.recipe)
             needs = forecast(self.design, finer)
             if needs.elements > self.largest or not fits(needs, limit, self.comm):
                 return False
@@ -189,12 +188,12 @@ class Refinement:
         except InputError:
             return False
         try:
-            coarser = with_finer_flanks(self.recipe, finer)
-            self._take(finer, self._refined(coarser, finer, self.found))
+            coarser = with_finer_flanks(self.known.recipe, finer)
+            self.known = self._refined(coarser, finer, self.known.found)
         except (ConvergenceError, InputError) as error:
             logger.warning("no finer mesh of the drive: %s", error)
             self.model.destroy()
-            self.model = self._solved(self.recipe)
+            self.model = self._solved(self.known.recipe)
             return False
         return True
 
@@ -221,12 +220,12 @@ def choose_mesh(
     levels = FEWEST_LEVELS[design.drive.model] if accuracy >= ROUGH else None
     drive = Refinement(design, recipe, comm, largest, kept, levels)
     refine = {"windows": drive.refine_windows, "mesh": drive.refine_drive}
-    while relative_error(drive.found) > accuracy:
+    while relative_error(drive.known.found) > accuracy:
         errors = {
-            "windows": _bound(drive.found.error),
-            "mesh": _bound(drive.found.drive_error),
+            "windows": _bound(drive.known.found.error),
+            "mesh": _bound(drive.known.found.drive_error),
         }
-        allowed = accuracy * drive.found.s1
+        allowed = accuracy * drive.known.found.s1
         if not refine or any(errors[part] > allowed for part in errors.keys() - refine.keys()):
             logger.info(
                 "no finer mesh is taken: the drive has at most %d elements, and its run fits into "
@@ -237,9 +236,14 @@ def choose_mesh(
         part = max(refine, key=lambda part: errors[part])
         if not refine[part]():
             del refine[part]
-    error = relative_error(drive.found)
+    known = drive.known
     return ChosenMesh(
-        drive.model, drive.recipe, drive.found, error, drive.compared, drive.contact_errors
+        drive.model,
+        known.recipe,
+        known.found,
+        relative_error(known.found),
+        known.coarse_wall,
+        known.contact_errors,
     )
 
 

@@ -74,6 +74,7 @@ def _main(arguments: Sequence[str] | None) -> int:
         from swgpar.cli.commands import COMMANDS
 
         COMMANDS[command](known)
+        sys.stdout.flush()  # here, and not at exit, a reader that has gone is told of
     except SwgparError as error:
         from mpi4py import MPI
 
