@@ -42,6 +42,21 @@ def displacement_remark(thickness: float, radius: float, supports: int) -> str:
     )
 
 
+def size_remark(largest: float, radius: float) -> str:
+    """A sentence on the largest displacement of a ring, or none; lengths in m.
+
+    The rotation of the sections is displacement over radius, and what is linear in it is off by as
+    much.
+    """
+    share = largest / radius
+    if share <= NEGLIGIBLE:
+        return ""
+    return (
+        f"the ring is displaced by up to {largest:.2g} m, {100.0 * share:.2g} % of its radius: the "
+        "linear theory is off by about as much"
+    )
+
+
 def frequency_remark(thickness: float, radius: float, modes: int) -> str:
     """A sentence on the first bending modes of a ring, or none; lengths in one unit."""
     waves = int(SHORTEST * 2.0 * math.pi * radius / thickness)

@@ -305,15 +305,16 @@ REMARKS = [
     ),
     (RING, "ring.inner_radius=300", "beam theory ends at 5 waves: shorter ones are less than"),
     (RING_MODES, "ring.inner_radius=70", "beam theory ends at 3 waves"),
-    (PLANETARY, "ring.rim=40", None),
-    (PLANETARY, "ring.rim=128", "displacements of the ring under loads are up to 9.2 % too small"),
+    (PLANETARY, "ring.rim=40 ring.rims=[40]", None),
+    (PLANETARY, "ring.rim=128 ring.rims=[40]", "ring under loads are up to 9.2 % too small"),
+    (PLANETARY, "ring.rim=40 ring.rims=[128]", "a rim of 128 mm: the rim is 0.21 of a wavelength"),
     (PLANETARY, "ring.rim=900", "beam theory ends at 0.5, where displacements of the ring under"),
 ]
 
 
 @pytest.mark.parametrize(("file", "override", "sentence"), REMARKS)
 def test_where_beam_theory_ends(file: Path, override: str, sentence: str | None) -> None:
-    design = load_design(file, [override])
+    design = load_design(file, override.split())
     known = model_of(design).quantities(design).values()
     remarks = {quantity.remark for quantity in known} - {""}
     assert set(design.remarks()) == remarks
@@ -321,6 +322,18 @@ def test_where_beam_theory_ends(file: Path, override: str, sentence: str | None)
         assert not remarks
     else:
         assert any(sentence in remark for remark in remarks), remarks
+
+
+@pytest.mark.parametrize(("force", "said"), [(1e6, False), (1e11, True)])
+def test_a_run_says_where_displacements_are_not_small(
+    force: float, said: bool, caplog: pytest.LogCaptureFixture
+) -> None:
+    few = ["steps=36", "sweep_speeds=3", "samples=2", "speeds=[22.0]", "harmonic=0", "noise=0"]
+    overrides = [f"moving_load.{key}" for key in [*few, f"force={force}"]]
+    design = load_design(RING, ["ring.elements=12", *overrides])
+    with caplog.at_level("WARNING"):
+        model_of(design).compute(design, MPI.COMM_SELF)
+    assert ("of its radius: the linear theory is off by about as much" in caplog.text) == said
 
 
 @pytest.mark.parametrize(

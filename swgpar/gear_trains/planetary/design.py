@@ -138,9 +138,13 @@ class PlanetaryDesign(TrainDesign):
         return 2.0 * math.pi / self.carrier.speed * self.time.revolutions
 
     def remarks(self) -> list[str]:
-        ring = self.ring
-        sentence = displacement_remark(ring.rim, ring.root_radius + 0.5 * ring.rim, ring.supports)
-        return [sentence] if sentence else []
+        rims = dict.fromkeys([self.ring.rim, *self.ring.rims])
+        return [sentence for rim in rims if (sentence := self.remark_on_rim(rim))]
+
+    def remark_on_rim(self, rim: float) -> str:
+        """Where beam theory ends for a rim (mm) of the ring, or nothing."""
+        sentence = displacement_remark(rim, self.ring.root_radius + 0.5 * rim, self.ring.supports)
+        return f"a rim of {rim:g} mm: {sentence}" if sentence else ""
 
     def elastic_ring(self) -> Ring:
         """The ring with its supports."""

@@ -15,6 +15,9 @@ from swgpar.gear_trains.published import SAMPLING_ERROR, STATISTICS, number_labe
 from swgpar.results.quantity import Quantity
 from swgpar.vibration.backlash import force
 
+OF_RING = ("ring_contact_radial", "ring_node_tangential")
+"""Monitored displacements of the ring."""
+
 
 def quantities(design: PlanetaryDesign) -> dict[str, Quantity]:
     """Results that can be compared with published values."""
@@ -37,10 +40,11 @@ def quantities(design: PlanetaryDesign) -> dict[str, Quantity]:
             "share of steps and samples in which a mesh is not in contact on its loaded flank"
         ),
     }
-    about = dict.fromkeys(("ring_contact_radial", "ring_node_tangential"), *design.remarks()[:1])
     for (kind, statistic), (name, meaning) in product(STATISTICS.items(), MONITORED.items()):
         known[f"{kind}_{name}"] = Quantity(
-            f"largest {statistic} of the {meaning}", "m", remark=about.get(name) or ""
+            f"largest {statistic} of the {meaning}",
+            "m",
+            remark=_remark(design, name, design.ring.rim),
         )
         known[f"error_{kind}_{name}"] = Quantity(
             f"error of the linearised {statistic} of the {meaning} against Monte Carlo", "%"
@@ -49,9 +53,16 @@ def quantities(design: PlanetaryDesign) -> dict[str, Quantity]:
         design.ring.rims, STATISTICS.items(), MONITORED.items()
     ):
         known[f"{kind}_{name}_{number_label(rim)}"] = Quantity(
-            f"largest {statistic} of the {meaning} with a rim of {rim:g} mm", "m"
+            f"largest {statistic} of the {meaning} with a rim of {rim:g} mm",
+            "m",
+            remark=_remark(design, name, rim),
         )
     return known
+
+
+def _remark(design: PlanetaryDesign, name: str, rim: float) -> str:
+    """What to know about a monitored quantity. rim : mm"""
+    return design.remark_on_rim(rim) if name in OF_RING else ""
 
 
 def derived(design: PlanetaryDesign) -> dict[str, float]:

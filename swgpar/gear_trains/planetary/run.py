@@ -9,9 +9,10 @@ from mpi4py import MPI
 
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
 from swgpar.gear_trains.planetary.linearisation import TrainMoments, linearise_train
-from swgpar.gear_trains.planetary.model import PlanetaryModel
+from swgpar.gear_trains.planetary.model import PlanetaryModel, ring_pitch_radius
 from swgpar.gear_trains.planetary.monitored import MONITORED, MONITORED_NAMES
 from swgpar.gear_trains.planetary.monte_carlo import BLOCK_SIZE, simulate
+from swgpar.gear_trains.planetary.quantities import OF_RING
 from swgpar.gear_trains.planetary.time_stepping import TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
 from swgpar.gear_trains.published import number_label
@@ -27,6 +28,7 @@ from swgpar.vibration.moments import (
     percent_errors,
 )
 from swgpar.vibration.sampling import Tasks, block_sizes, random_stream, run_tasks
+from swgpar.vibration.thickness_limit import size_remark
 
 DOMINANT = {"ring_contact": "ring_contact_radial", "ring_node": "ring_node_tangential"}
 """Quantities of slow cycles, and whose they are."""
@@ -78,6 +80,12 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> Computed:
     moments: dict[float, TrainMoments] = dict(zip(rims, done["linearised"], strict=True))
     simulated, separated = zip(*done["monte_carlo"], strict=True)
     samples, own = reduce(SampleMoments.merged_with, simulated), moments[design.ring.rim]
+    of_ring = [MONITORED_NAMES.index(name) for name in OF_RING]
+    largest = max(
+        float((np.abs(one.mean) + one.deviation)[:, of_ring].max()) for one in moments.values()
+    )
+    if sentence := size_remark(largest, ring_pitch_radius(design)):
+        logger.warning(sentence)
     history = {
         "time_s": _times(design),
         **columns([own], MONITORED, "um", "linearised_"),

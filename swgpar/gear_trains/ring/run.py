@@ -20,6 +20,7 @@ from swgpar.vibration.curved_beam import BeamSection, free_frequencies
 from swgpar.vibration.dominant_cycles import dominant_cycles
 from swgpar.vibration.moments import HasMoments, Moments, SampleMoments, columns, largest_moments
 from swgpar.vibration.sampling import Tasks, TaskSeconds, block_sizes, random_stream, run_tasks
+from swgpar.vibration.thickness_limit import size_remark
 
 ROWS = 400
 """Of the history of each speed."""
@@ -51,6 +52,9 @@ def compute(design: RingDesign, comm: MPI.Comm) -> Computed:
     if design.moving_load is None:
         return Computed(modes, tables, values, {})
     responses, curve, simulated, seconds = _moving(design, comm)
+    largest = max(float((np.abs(one.mean) + one.deviation).max()) for one in responses)
+    if sentence := size_remark(largest, section.radius):
+        logger.warning(sentence)
     for speed, response in zip(design.moving_load.speeds, responses, strict=True):
         values |= largest_moments(response, [f"{point}_{number_label(speed)}" for point in POINTS])
     values["critical_speeds"] = _peaks(curve)
