@@ -64,7 +64,7 @@ def load_design(design: DesignLike, overrides: Overrides = ()) -> Design:
         return design.with_values(overrides) if overrides else design
     require_source("design", design)
     table = dict(design) if isinstance(design, Mapping) else read_toml(design)
-    return system_of_table(table).load_changed(table, overrides)
+    return system_of_table(table).load(table, overrides)
 
 
 def load_mesh(mesh: MeshLike) -> MeshRecipe:

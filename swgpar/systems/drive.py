@@ -18,7 +18,7 @@ from swgpar.checks.design_file import make_drive
 from swgpar.checks.remarks import remarks
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
-from swgpar.input.toml_file import apply_overrides
+from swgpar.input.toml_file import Overrides, apply_overrides
 from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import MeshRecipe
 from swgpar.results.quantity import Quantity
@@ -38,8 +38,8 @@ class Drives(System[DriveDesign, "DriveResult"]):
     noun = "a drive"
     options = frozenset({"mesh", "accuracy", "restart", "plain"})
 
-    def load(self, table: dict[str, Any]) -> DriveDesign:
-        return make_drive(table)
+    def load(self, table: dict[str, Any], overrides: Overrides = ()) -> DriveDesign:
+        return make_drive(apply_overrides(table, overrides))
 
     def check(self, design: DriveDesign) -> dict[str, float]:
         return derived_geometry(design)

@@ -35,10 +35,7 @@ class GearTrains(System[TrainDesign, TrainResult]):
     noun = "a gear train"
     options = frozenset()
 
-    def load(self, table: dict[str, Any]) -> TrainDesign:
-        return make_train(table)
-
-    def load_changed(self, table: dict[str, Any], overrides: Overrides) -> TrainDesign:
+    def load(self, table: dict[str, Any], overrides: Overrides = ()) -> TrainDesign:
         return made_of_changed(make_train, table, apply_overrides(table, overrides))
 
     def check(self, design: TrainDesign) -> dict[str, float]:

@@ -13,7 +13,7 @@ from mpi4py import MPI
 
 from swgpar.answers.answer import NO_LIMIT, Answer
 from swgpar.input.design import Design
-from swgpar.input.toml_file import Overrides, apply_overrides
+from swgpar.input.toml_file import Overrides
 from swgpar.meshing import MeshRecipe
 from swgpar.results.figure_set import FigureSet
 from swgpar.results.quantity import Quantity
@@ -86,12 +86,8 @@ class System(ABC, Generic[D, R]):
     options: frozenset[str]
 
     @abstractmethod
-    def load(self, table: dict[str, Any]) -> D:
-        """A checked design from the content of its file; problems are InputErrors."""
-
-    def load_changed(self, table: dict[str, Any], overrides: Overrides) -> D:
-        """The same after overrides."""
-        return self.load(apply_overrides(table, overrides))
+    def load(self, table: dict[str, Any], overrides: Overrides = ()) -> D:
+        """A checked design from the content of its file and overrides; problems are InputErrors."""
 
     @abstractmethod
     def check(self, design: D) -> dict[str, float]:
