@@ -234,7 +234,9 @@ def modes() -> Figure:
     spline, material = design.flexible_spline, design.materials["flexible_spline"]
     radius = 1e-3 * (design.inner_radius + 0.5 * spline.rim)
     sizes = 1e-3 * spline.rim, 1e-3 * design.drive.face_width
-    section = BeamSection.rectangle(1e6 * material.modulus, 7850.0, radius, *sizes)
+    section = BeamSection.rectangle(
+        1e6 * material.modulus, material.poisson, 7850.0, radius, *sizes
+    )
     ring = Ring(section, 120)
     rate, shapes = ring.modes()
     figure, axes = plt.subplots(1, 3, figsize=(10.0, 3.8), layout="constrained")
