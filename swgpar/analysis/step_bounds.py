@@ -15,12 +15,12 @@ A step of a pitch leads into the next slot, as if the drive had not moved. Teeth
 the other: in a small drive at every 0.05 pitches, where longer steps find a torque that only rises.
 """
 
-PART_OF_PERIOD = 0.25
-"""Largest rotation of the wave generator in a step with friction, in periods.
+PART_OF_STANDING_PITCH = 0.25
+"""Largest rotation of the wave generator in a step with friction, in pitches of the standing gear.
 
-In a period every tooth takes the place of its neighbour. A point that was far from the other flank
+In a pitch every tooth takes the place of its neighbour. A point that was far from the other flank
 at the begin of a step has no slip in it, and no friction. A pair is in contact for several quarters
-of a period, so that its points are near the other flank one step before.
+of a pitch, so that its points are near the other flank one step before.
 """
 
 
@@ -44,6 +44,7 @@ def steps_needed(
     if target.control == "rotation":
         parts.append(pitches_turned(origin, target, kinematics) / PART_OF_PITCH)
     if friction:
-        parts.append((target.angle - origin.angle) / kinematics.period_angle / PART_OF_PERIOD)
+        pitches = (target.angle - origin.angle) / kinematics.pitch_angle
+        parts.append(pitches / PART_OF_STANDING_PITCH)
     # an increment of just the bound is one step, whatever the last digit
     return max(1, int(np.ceil(round(max(map(abs, parts)), 9))))

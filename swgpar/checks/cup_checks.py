@@ -6,15 +6,16 @@ them.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from swgpar.checks.repeat_checks import require_no_period
 from swgpar.design.cup_section import Cup
 from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.geometry.cup_wall import WallPoint
-from swgpar.input.require import require
+from swgpar.input.require import require, require_available
 from swgpar.meshing.drive_geometry import THICK_CUP
 
 THINNEST = 0.1
@@ -84,7 +85,27 @@ def check_cup(design: DriveDesign) -> None:
     _check_back(sizes, rim)
     _check_attachment(sizes)
     if cup.attachment == "bolted":
-        require_no_period(design, 'cup.attachment = "bolted"', 'with "edge" and "clamped"')
+        _check_period(design)
+
+
+def _check_period(design: DriveDesign) -> None:
+    """Angles of a period of teeth and bolts show the teeth at as many places, and no answer renames
+    teeth that bolts make different."""
+    pitches = design.kinematics.pitches
+    steps, stiffness = design.steps, design.stiffness
+    counts = {"steps.samples": steps.samples}
+    if stiffness is not None:
+        counts["stiffness.positions"] = stiffness.positions
+    for key, count in counts.items():
+        allowed = f"numbers without a common divisor with {pitches}, the pitches in a period of "
+        allowed += "teeth and bolts: others show the same places of a tooth again"
+        require(not count or math.gcd(count, pitches) == 1, key, count, allowed)
+    require_available(
+        design.deviations is None or pitches == 1,
+        "[deviations]",
+        'cup.attachment = "bolted"',
+        'with "edge" and "clamped", because the effect of one tooth is renamed to that of others',
+    )
 
 
 def _check_shape(cup: Cup) -> None:

@@ -1,4 +1,4 @@
-"""Refusals of what continues or needs one period, where the drive does not repeat after a pitch."""
+"""Refusals of what continues or needs one period, where the drive does not repeat."""
 
 from __future__ import annotations
 

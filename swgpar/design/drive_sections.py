@@ -79,7 +79,8 @@ class DriveSections(Design):
     def kinematics(self) -> Kinematics:
         """Speeds and angles."""
         lobes, alike = self.wave_generator.lobes, self.wave_generator.lobes_are_alike
-        return make_kinematics(self.drive, lobes, alike, self.dynamic_spline is not None)
+        pancake, bolts = self.dynamic_spline is not None, self.cup.bolts if self.is_bolted else 0
+        return make_kinematics(self.drive, lobes, alike, pancake, bolts)
 
     @property
     def has_program(self) -> bool:
@@ -91,7 +92,8 @@ class DriveSections(Design):
         """Whether the undeformed drive is its own image in the plane through the axis and the major
         axis. The balls of a bearing are placed on one side of it or the other. With bolts, or a
         load from one side, no other state mirrors it."""
-        return self.wave_generator.is_mirror_symmetric and self.bearing is None and self.repeats
+        alone = self.bearing is None and self.repeats and not self.is_bolted
+        return self.wave_generator.is_mirror_symmetric and alone
 
     @property
     def has_cup(self) -> bool:
@@ -116,8 +118,8 @@ class DriveSections(Design):
     @property
     def repeats(self) -> bool:
         """Whether the drive is in the same state again after a period of its motion, apart from
-        names of teeth: not where bolts hold the cup, nor where a load stands still beside them."""
-        return not self.is_bolted and not self.is_loaded_sideways
+        names of teeth: not where a load stands still beside them."""
+        return not self.is_loaded_sideways
 
     @property
     def copies(self) -> int:

@@ -21,6 +21,7 @@ class Kinematics:
     or the driven ring gear
     wave_generator_is_fixed : whether the ring gear is the input. Everything is then computed in the
     frame of the ring gear.
+    bolts : that hold the flexible spline, evenly spaced; 0 without
     """
 
     teeth_fs: int
@@ -30,6 +31,7 @@ class Kinematics:
     output_gear: GearName
     standing_gear: GearName
     wave_generator_is_fixed: bool
+    bolts: int = 0
 
     def teeth(self, gear: GearName) -> int:
         """Number of teeth of a gear."""
@@ -67,19 +69,35 @@ class Kinematics:
         return self.spline_speed, 1.0
 
     @property
-    def period_angle(self) -> float:
-        """Period of the motion, rad of the wave generator against the standing gear: one pitch
-        angle of that gear."""
+    def pitch_angle(self) -> float:
+        """Rotation of the wave generator against the standing gear (rad) in which a tooth takes the
+        place of its neighbour: one pitch angle of that gear."""
         return 2.0 * np.pi / self.teeth(self.standing_gear)
+
+    @property
+    def alike(self) -> int:
+        """Positions of the flexible spline in a turn at which it looks the same: its teeth, with
+        bolts those that both teeth and bolts have in common."""
+        return math.gcd(self.teeth_fs, self.bolts)
+
+    @property
+    def pitches(self) -> int:
+        """Pitches of the standing gear in a period: with bolts the teeth that are not alike."""
+        return self.teeth_fs // self.alike
+
+    @property
+    def period_angle(self) -> float:
+        """Period of the motion, rad of the wave generator against the standing gear."""
+        return self.pitches * self.pitch_angle
 
     @property
     def repeats(self) -> int:
         """How often the drive comes to the same state within a period, apart from names of teeth
-        and lobes: where like lobes do not divide the teeth of the standing gear, they reach the
-        middle of a tooth one after another."""
+        and lobes: where like lobes do not divide the teeth, or those that are alike, they reach the
+        middle of one after another."""
         if not self.lobes_are_alike:
             return 1
-        return self.lobes // math.gcd(self.lobes, self.teeth(self.standing_gear))
+        return self.lobes // math.gcd(self.lobes, self.alike)
 
     def apart(self, samples: int) -> int:
         """The largest number of angles, evenly spaced in a period and at most `samples`, of which
@@ -118,7 +136,9 @@ class Kinematics:
         return angle - wave_generator if self.wave_generator_is_fixed else angle
 
 
-def make_kinematics(drive: Drive, lobes: int, lobes_are_alike: bool, pancake: bool) -> Kinematics:
+def make_kinematics(
+    drive: Drive, lobes: int, lobes_are_alike: bool, pancake: bool, bolts: int
+) -> Kinematics:
     """The motion of a drive. In a pancake drive the dynamic spline is the output or stands where
     the flexible spline does in others."""
     output: GearName = "dynamic_spline" if pancake else "flexible_spline"
@@ -127,5 +147,5 @@ def make_kinematics(drive: Drive, lobes: int, lobes_are_alike: bool, pancake: bo
         output, standing = standing, output
     fixed = drive.layout == "wave_generator_fixed"
     return Kinematics(
-        drive.teeth_fs, drive.teeth_rg, lobes, lobes_are_alike, output, standing, fixed
+        drive.teeth_fs, drive.teeth_rg, lobes, lobes_are_alike, output, standing, fixed, bolts
     )

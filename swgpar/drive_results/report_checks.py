@@ -84,8 +84,8 @@ def _energy(rotation: Rotation, judged: bool, friction: bool) -> Check:
             name,
             None,
             "needs a torque that is not small beside the spline's bending, a rotation over a "
-            "period of the motion or more, and no bolts, with which a drive does not repeat after "
-            "a pitch",
+            "period of the motion or more, and no load from one side, with which a drive does not "
+            "repeat",
         )
     torque = "mean torque on the standing wave generator" if rotation.input else "mean input torque"
     text = f"{torque} {mean:.5g} N·mm, by the energy balance {expected:.5g} N·mm"

@@ -63,7 +63,7 @@ def evaluate_fatigue(
 ) -> FatigueResult:
     """Safety factors of every node of a sector from its stress over the cycle; collective.
 
-    In a load program the least of all sectors stand for a node.
+    In a load program, and with bolts, the least of all sectors stand for a node.
 
     factors : on nodal stresses, by region;  root : that of the teeth, None without windows
     """

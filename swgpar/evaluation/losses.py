@@ -188,15 +188,15 @@ def hysteresis_work(cycle: StressCycle) -> float:
     model, layout = cycle.model, cycle.body.layout
     mine, stress = cycle.history()
     thickness = model.design.drive.face_width if layout.mesh.plane else None
-    per_cycle = work_per_cycle(
-        model.comm,
-        layout,
-        cycle.nodes[mine],
-        stress,
-        model.design.materials["flexible_spline"],
-        thickness,
-    )
-    return per_cycle * 2.0 * np.pi / cycle.angle
+    material, sectors = model.design.materials["flexible_spline"], cycle.sequence.kinematics.pitches
+    # the mean of sectors that are not alike stands for all
+    per_cycle = [
+        work_per_cycle(model.comm, layout, cycle.nodes[nodes], values, material, thickness)
+        for nodes, values in zip(
+            np.split(mine, sectors), np.split(stress, sectors, axis=1), strict=True
+        )
+    ]
+    return float(np.mean(per_cycle)) * 2.0 * np.pi / cycle.angle
 
 
 def work_per_cycle(

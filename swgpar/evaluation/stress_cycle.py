@@ -4,7 +4,8 @@ load program.
 After one pitch of the fixed gear the drive is in the same state with its teeth renumbered by one.
 So tooth k at the angle phi + m pitch has the stress that tooth k - m has at phi. In a sampled
 period every modelled tooth is at another phase: it holds the whole cycle of one sector
-(docs/theory/fatigue.md). In a load program every modelled sector has a history of its own, one
+(docs/theory/fatigue.md). With bolts a period has several pitches, and as many teeth have cycles of
+their own. In a load program every modelled sector has a history of its own, one
 value at each point.
 """
 
@@ -75,7 +76,7 @@ class StressCycle:
     @property
     def angle(self) -> float:
         """Rotation of the wave generator (rad) after which the cycle of a sector repeats."""
-        return self.sequence.kinematics.period_angle * self.body.layout.count
+        return self.sequence.kinematics.pitch_angle * self.body.layout.count
 
     def rows(self) -> dict[str, np.ndarray]:
         """The samples as rows of a checkpoint, by sector."""
@@ -106,7 +107,8 @@ class StressCycle:
         if self.sequence.points:
             mine = np.tile(np.arange(len(self.nodes)), len(samples[0]))
             return mine, np.stack([values.reshape(-1, 6) for values in samples])
-        return history_by_renaming(self.model.comm, self.body.layout, self.nodes, samples)
+        pitches = self.sequence.kinematics.pitches
+        return history_by_renaming(self.model.comm, self.body.layout, self.nodes, samples, pitches)
 
 
 def elements_of_rank(comm: MPI.Comm, layout: BodyLayout) -> np.ndarray:
@@ -117,21 +119,28 @@ def elements_of_rank(comm: MPI.Comm, layout: BodyLayout) -> np.ndarray:
 
 
 def history_by_renaming(
-    comm: MPI.Comm, layout: BodyLayout, nodes: np.ndarray, samples: Sequence[np.ndarray]
+    comm: MPI.Comm,
+    layout: BodyLayout,
+    nodes: np.ndarray,
+    samples: Sequence[np.ndarray],
+    pitches: int = 1,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Stress over a cycle at the nodes of this rank's elements of one sector; collective.
+    """Stress over a cycle at the nodes of this rank's elements of one sector, or of so many sectors
+    that are not alike, one after another; collective.
 
     Parameters
     ----------
     nodes : (n,) of a sector
     samples : of one period, in time, each (n_owned, n, 6) MPa of the owned sectors in their own
     frames
+    pitches : in a period, which is the number of sectors that are not alike
 
     Returns
     -------
-    mine : (n_mine,) indices in `nodes`, of the elements `elements_of_rank`
+    mine : (n_mine,) indices in `nodes`, of the elements `elements_of_rank`, of one sector after
+    another
     stress : (n_phases, n_mine, 6) MPa; the phases are evenly spaced in time, as many as sectors
-    times samples
+    times samples over pitches
     """
     index = np.full(len(layout.mesh.coords), -1)
     index[nodes] = np.arange(len(nodes))
@@ -142,8 +151,9 @@ def history_by_renaming(
         for values in samples
     ]
     stress = np.stack(period, axis=1)  # sector, sample, node, component
-    in_time = stress[-np.arange(layout.count) % layout.count]
-    return mine, in_time.reshape(-1, len(mine), 6)
+    first, passed = np.arange(pitches), pitches * np.arange(layout.count // pitches)[:, None]
+    in_time = np.swapaxes(stress[(first - passed) % layout.count], 1, 2)
+    return np.tile(mine, pitches), in_time.reshape(-1, pitches * len(mine), 6)
 
 
 def sector_stress(body: BodyElements, fields: Mapping[str, np.ndarray]) -> np.ndarray:

@@ -96,7 +96,10 @@ def _check(design: DriveDesign) -> None:
             'drive.layout = "ring_fixed", because the guide in the job does not grow',
         )
     if design.is_bolted:
-        refuse('cup.attachment = "bolted"', '"edge" or "clamped"')
+        refuse(
+            'cup.attachment = "bolted"',
+            '"edge" or "clamped", because nodes do not lie on the rims of washers',
+        )
     least = 0.001 * design.negligible_torque
     if design.load.torque <= least:
         refuse(

@@ -315,7 +315,7 @@ def _sliding(
     After one pitch of the fixed gear a tooth is where its neighbour was, turned by that pitch. So
     the neighbours give the velocity of a tooth.
     """
-    pitch = model.design.kinematics.period_angle
+    pitch = model.design.kinematics.pitch_angle
     z, s = np.array([at.z_mm]), np.array([[at.s_mm]])
 
     def velocity(trio: Neighbours, arc_length: np.ndarray) -> np.ndarray:

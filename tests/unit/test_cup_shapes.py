@@ -466,12 +466,66 @@ def test_attachments_that_do_not_fit_are_refused(changes: Changes, key: str, wor
 
 
 @pytest.mark.parametrize(
-    "override", ["steps.samples=2", "losses.loss_factor=0.001", "stiffness.positions=2"]
+    ("bolts", "pitches", "repeats"), [(8, 5, 1), (9, 40, 2), (12, 10, 1), (25, 8, 2), (40, 1, 1)]
 )
-def test_bolts_refuse_what_needs_a_period(override: str) -> None:
-    with pytest.raises(InputError, match="which does not repeat after a pitch"):
+def test_the_period_of_teeth_and_bolts(bolts: int, pitches: int, repeats: int) -> None:
+    """40 teeth; an odd number of bolts is the same after half a turn of two lobes."""
+    kinematics, alike = shaped(bolted(bolts, 1.0)).kinematics, shaped(CLAMPED).kinematics
+    assert (kinematics.pitches, kinematics.repeats) == (pitches, repeats)
+    assert kinematics.period_angle == pytest.approx(pitches * alike.period_angle)
+    assert kinematics.pitch_angle == alike.pitch_angle == alike.period_angle
+
+
+@pytest.mark.parametrize("override", ["steps.samples=10", "stiffness.positions=5"])
+def test_angles_show_different_places_of_a_tooth(override: str) -> None:
+    with pytest.raises(InputError, match="without a common divisor with 5, the pitches in a"):
         shaped(bolted(8), "steps.rotation=45.0", override)
-    shaped(CLAMPED, "steps.rotation=45.0", "steps.samples=2")
+    shaped(bolted(8), "steps.rotation=45.0", "steps.samples=6")
+    shaped(bolted(40, 1.0), "steps.rotation=45.0", "steps.samples=10")
+
+
+def test_a_period_of_teeth_and_bolts_is_covered() -> None:
+    """Five pitches of 360 / 42 degrees."""
+    with pytest.raises(InputError, match="42.8571 deg"):
+        shaped(bolted(8), "steps.rotation=42.0", "steps.samples=4")
+
+
+def test_no_effect_of_a_tooth_is_renamed_where_bolts_make_others() -> None:
+    eccentric = 'deviations.ring_gear={"eccentricity": 0.01}'
+    words = "because the effect of one tooth is renamed to that of others"
+    with pytest.raises(InputError, match=words):
+        shaped(bolted(8), eccentric)
+    shaped(bolted(40, 1.0), eccentric)
+
+
+PERIOD = ("steps.samples=6", "steps.rotation=45.0")
+BEARING = '{"balls": 20, "race_thickness": 0.5, "ball_diameter": 2.0}'
+
+
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        (*PERIOD, "fatigue.size_factor=1.0"),
+        (*PERIOD, "losses.loss_factor=0.001"),
+        (*PERIOD, 'drive.layout="spline_fixed"'),
+        (*PERIOD, 'drive.layout="wave_generator_fixed"'),
+        ("output.root_stress=true",),
+        ("stiffness.positions=3",),
+        ("ratcheting.increment=0.1",),
+        ("material.density=7850.0", "frequencies.number=4"),
+        ("micro_geometry.wg_slope=0.0", f"wave_generator.bearing={BEARING}"),
+        ("contact.friction=0.1",),
+        ("material.expansion=12e-6", "flexible_spline.temperature=60.0"),
+        (
+            "output_bearing.radial_stiffness=1e5",
+            "output_bearing.axial_stiffness=1e5",
+            "output_bearing.tilting_stiffness=1e8",
+        ),
+    ],
+    ids=lambda overrides: overrides[-1].split("=")[0],
+)
+def test_what_goes_with_bolts(overrides: tuple[str, ...]) -> None:
+    assert shaped(bolted(8), *overrides).kinematics.pitches == 5
 
 
 @pytest.mark.parametrize(("elements", "warned"), [(1, True), (4, False)])

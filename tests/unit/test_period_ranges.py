@@ -104,7 +104,7 @@ def test_lobes_that_do_not_divide_the_teeth_repeat_a_state_within_the_period(
     assert dataclasses.replace(odd, lobes_are_alike=False).repeats == 1
     three = dataclasses.replace(odd, teeth_fs=40, lobes=3)
     assert three.repeats == 3 and three.apart(6) == 5 and three.apart(4) == 4
-    assert dataclasses.replace(three, teeth_rg=42).repeats == 1
+    assert dataclasses.replace(three, teeth_fs=39, teeth_rg=42).repeats == 1
     values = np.arange(6.0)
     coarse = CoarsePeriod(PeriodCurves(values.tolist(), values.tolist()), factor=1.6)
     rows = rows_of(odd, values, values)

@@ -1,0 +1,62 @@
+"""A closed end on bolts: the period of teeth and bolts, and what is computed over it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from support.cup_shapes import bolted, shaped
+from support.stepping import loaded, rotate
+from swgpar.evaluation.losses import hysteresis_work
+from swgpar.evaluation.stress_cycle import StressCycle, sector_stress
+from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.load.load_sequence import load_sequence
+
+SAMPLES = 6
+BOLTS = 8
+TORQUE = 2000.0
+"""N mm, on the output."""
+
+
+@pytest.mark.parallel(1)
+def test_a_sampled_period_of_teeth_and_bolts() -> None:
+    """Eight bolts on 40 teeth: six angles of five pitches. The renamed stress is that of sectors
+    that the wave passes in later periods, the work is that of the torque."""
+    design = shaped(bolted(BOLTS), f"steps.samples={SAMPLES}", "steps.rotation=43.0")
+    assert design.kinematics.pitches == 5
+    stepper, row = loaded(design, MPI.COMM_SELF)
+    sequence = load_sequence(design)
+    angles = [state.angle for state in sequence.from_loaded]
+    assert angles == pytest.approx(design.kinematics.period_angle / SAMPLES * np.arange(SAMPLES))
+    cycle, body = (
+        StressCycle(stepper.model, sequence),
+        stepper.model.elements.bodies["flexible_spline"],
+    )
+
+    def stress() -> np.ndarray:
+        return sector_stress(body, stepper.model.stresses()[1][FLEXIBLE_SPLINE])[:, cycle.nodes]
+
+    torques = [row["wg_torque_Nmm"]]
+    cycle.keep(sequence.loaded, stepper.model.stresses()[1][FLEXIBLE_SPLINE])
+    for state in sequence.from_loaded[1:]:
+        torques.append(rotate(stepper, state.angle)["wg_torque_Nmm"])
+        cycle.keep(state, stepper.model.stresses()[1][FLEXIBLE_SPLINE])
+    assert cycle.complete
+    mine, renamed = cycle.history()
+    n, count = len(cycle.nodes), body.layout.count
+    # half of the drive: four periods of five sectors
+    assert mine.tolist() == 5 * list(range(n))
+    assert renamed.shape == (count // 5 * SAMPLES, 5 * n, 6)
+    period = design.kinematics.period_angle
+    for later in (1, 2):
+        rotate(stepper, later * period)
+        found = stress()[:5].reshape(5 * n, 6)
+        assert np.abs(found - renamed[later * SAMPLES]).max() < 1e-6 * np.abs(renamed).max()
+    # sectors beside a bolt and between bolts differ
+    apart = np.ptp(renamed.reshape(len(renamed), 5, n, 6).max(axis=0), axis=0).max()
+    assert apart > 1e-3 * np.abs(renamed).max()
+    mean = float(np.mean(torques))
+    print(f"mean input torque / (T / ratio) = {mean * 20.0 / TORQUE:.5f}")
+    assert mean == pytest.approx(TORQUE / 20.0, rel=0.01)
+    assert hysteresis_work(cycle) > 0.0
