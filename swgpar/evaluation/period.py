@@ -1,8 +1,9 @@
 """History of the whole rotation from the angles that are sampled in one period.
 
 After a rotation of the wave generator by one pitch of the fixed gear, the drive is in the same
-state with its teeth renumbered by one, and the output has rotated by pitch / ratio. Without
-friction this is exact. With friction it holds once the slip is periodic.
+state with its teeth renumbered by one, and the output has rotated by pitch / ratio. Against the
+wave generator the state is the same: vectors in space have rotated by the pitch. Without friction
+this is exact. With friction it holds once the slip is periodic.
 """
 
 from __future__ import annotations
@@ -13,9 +14,10 @@ import numpy as np
 
 from swgpar.design.kinematics import Kinematics
 from swgpar.errors import InputError
+from swgpar.geometry.rotation import rotated
 from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import LoadState, Stage
-from swgpar.results.history import Row, column
+from swgpar.results.history import IN_SPACE, Row, column
 
 PLACE_DIGITS = 6
 """Digits in which places of a period that are the same agree."""
@@ -99,6 +101,7 @@ def continued(sequence: LoadSequence, rows: list[Row]) -> list[Row]:
             out.append(
                 {
                     **row,
+                    **_in_space(row, np.radians(periods * pitch)),
                     "step": out[-1]["step"] + 1,
                     "wg_angle_deg": angle,
                     "output_angle_deg": row["output_angle_deg"] + periods * pitch / ratio,
@@ -107,3 +110,14 @@ def continued(sequence: LoadSequence, rows: list[Row]) -> list[Row]:
                 }
             )
         periods += 1
+
+
+def _in_space(row: Row, angle: float) -> Row:
+    """Vectors in space of a row, after the state has rotated by an angle (rad)."""
+    pairs = [pair for pair in IN_SPACE if pair[0] in row]
+    turned = [rotated(np.array([row[name] for name in pair]), angle) for pair in pairs]
+    return {
+        name: float(value)
+        for pair, values in zip(pairs, turned, strict=True)
+        for name, value in zip(pair, values, strict=True)
+    }

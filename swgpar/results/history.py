@@ -163,6 +163,9 @@ COLUMNS = {column.name: column for column in DECLARED}
 OUTPUT_COLUMNS = tuple(column.name for column in DECLARED if column.drives == "output bearing")
 """Displacements along x, y and z and tilts about x and y of an output on its bearing."""
 
+IN_SPACE = (OUTPUT_COLUMNS[:2], OUTPUT_COLUMNS[3:])
+"""Columns of the x and y components of vectors in space."""
+
 REQUIRED = ("step", "wg_angle_deg")
 """Columns that a history cannot be read without."""
 

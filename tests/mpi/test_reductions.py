@@ -24,6 +24,7 @@ from swgpar.fem.vectors import read_field
 from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
+from swgpar.results.history import OUTPUT_COLUMNS
 from swgpar.solve.factor_reuse import MAX_ITERATIONS
 
 PHYSICAL = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm", "output_angle_deg")
@@ -333,6 +334,28 @@ def test_the_continued_history_is_that_of_a_longer_rotation() -> None:
         np.degrees(1.25 * design.kinematics.period_angle)
     )
     assert_same(following, computed, 1e-6)
+
+
+def test_the_displacement_of_the_output_goes_round_with_the_wave() -> None:
+    """Odd numbers of teeth push the output aside on its bearing, against the wave generator always
+    in the same direction."""
+    bearing = [f"output_bearing.{key}_stiffness=1e4" for key in ("radial", "axial", "tilting")]
+    teeth = ["drive.teeth_fs=41", "drive.teeth_rg=43", "steps.samples=2", "steps.rotation=17"]
+    design = load_design(DESIGN, [*PLANE, *teeth, *bearing])
+    stepper, sequence, rows = load_stepper(design), load_sequence(design), []
+    for state in sequence.states:
+        stepper.advance(state)
+        if state.stage >= Stage.LOAD:
+            rows.append({**stepper.row(), "wall_s": 1.0})
+    third = continued(sequence, rows)[2]
+    stepper.advance(replace(stepper.load_state, angle=design.kinematics.period_angle))
+    computed = stepper.row()
+    names = OUTPUT_COLUMNS[:2]
+    found, expected, before = (
+        np.array([one[name] for name in names]) for one in (third, computed, rows[0])
+    )
+    assert np.linalg.norm(found - expected) < 1e-5 * np.linalg.norm(expected)
+    assert np.linalg.norm(before - expected) > 0.1 * np.linalg.norm(expected)
 
 
 @pytest.mark.parallel(2)
