@@ -21,9 +21,10 @@ from swgpar.meshing.drive_geometry import THICK_CUP
 THINNEST = 0.1
 """Thickness of a wall over that of the rim, at least."""
 
-SHORTEST_WALL = 0.6
-"""Length of the wall between the teeth and its turn in modules, at least: behind the teeth the
-elements' columns become radial, and in a shorter wall they would be folded."""
+SHORTEST_WALL = 0.2
+"""Length of the wall between the teeth and its turn in modules, at least: there the columns of the
+elements become radial. In cups and hats of 40 to 320 teeth their least scaled Jacobian at 0.2 is
+0.15 and more, or not below that at 0.6; at 0.1 it is half in most."""
 
 SMALLEST_FILLET = 1.05
 """Radius of the fillet over the thicknesses beside it, at least: its other side is an arc of the

@@ -58,8 +58,8 @@ SHAPES: dict[str, Changes] = {
 }
 
 
-SHORT_WALL: Changes = {"length": 2.6}
-"""Teeth up to 0.6 modules before the fillet."""
+SHORT_WALL: Changes = {"length": 2.2}
+"""Teeth up to 0.2 modules before the fillet."""
 
 WALLS: dict[str, Changes] = SHAPES | {"cone": cone(79.0, rounding=0.5)}
 """The start that bends with the cam has a jump where the plate of a narrow end begins."""

@@ -107,9 +107,9 @@ def test_surfaces_of_the_mesh_are_those_of_the_drawing(shape: str) -> None:
 
 @pytest.mark.parametrize("recipe", ["coarse", "medium", "full"])
 def test_teeth_may_end_shortly_before_the_closed_end(recipe: str) -> None:
-    """0.6 modules of wall: its elements are fewer, and none is folded."""
+    """0.2 modules of wall: its elements are fewer, and none is folded."""
     case = shaped(SHORT_WALL)
-    assert case.cup_sizes.wall_length == pytest.approx(0.6)
+    assert case.cup_sizes.wall_length == pytest.approx(0.2)
     mesh = spline(case, recipe)
     assert mesh.quality["min_scaled_jacobian"] > 0.1
     lines = meridian(case.geometry.cup, load_recipe(recipe).cup)
@@ -301,7 +301,7 @@ REFUSED = [
     (
         {"fillet_radius": 0.0, "inside_radius": 1.0, "end_thickness": 11.5},
         "cup.length = 12 ",
-        "13.1 mm and more (0.6 modules, end_thickness and inside_radius): teeth end before",
+        "12.7 mm and more (0.2 modules, end_thickness and inside_radius): teeth end before",
     ),
 ]
 
