@@ -132,7 +132,9 @@ def evaluate_run(
         losses=losses,
         bearing=_bearing(recorder),
         output_bearing=output_bearing_loads(
-            design.output_bearing, [rows[k - 1] for k in _increments_under_load(rows)]
+            design.output_bearing,
+            design.drive.module,
+            [rows[k - 1] for k in _increments_under_load(rows)],
         )
         if design.output_bearing
         else None,

@@ -183,7 +183,7 @@ def test_forces_alone_move_a_free_output_by_the_springs(kind: str) -> None:
     motion = stepper.problem.supports.output.evaluate(stepper.problem.displacement())
     assert motion.value[X] == pytest.approx(moved[0] - 7.0 * moved[TILT_Y], rel=1e-6)
     assert motion.value[Y] == pytest.approx(moved[1] + 7.0 * moved[TILT_X], rel=1e-6)
-    found = output_bearing_loads(bearing, [row])
+    found = output_bearing_loads(bearing, design.drive.module, [row])
     assert found.radial_force_N == pytest.approx(60.0, rel=1e-5)
     assert found.axial_force_N == pytest.approx(20.0, rel=1e-5)
     assert found.tilting_moment_Nm == pytest.approx(1.0, rel=1e-5)

@@ -116,7 +116,7 @@ def test_answers_are_the_largest_values_under_load() -> None:
     check_output_bearing(design(MOMENT), bearing)
     moved = ([3e-4, 4e-4, 1e-4, 0.0, 0.0], [0.0, 1e-4, -6e-4, 3e-4, -4e-4])
     rows = [dict(zip(OUTPUT_COLUMNS, values, strict=True)) for values in moved]
-    found = output_bearing_loads(bearing, rows)
+    found = output_bearing_loads(bearing, 1.0, rows)
     values = {answer.name: answer.value for answer in found.answers()}
     assert values == pytest.approx(
         {
@@ -130,4 +130,19 @@ def test_answers_are_the_largest_values_under_load() -> None:
     )
     assert values.keys() <= known_answers(design()).keys()
     assert not values.keys() & known_answers(load_design(DESIGN)).keys()
-    assert output_bearing_loads(bearing, []) is None
+    assert output_bearing_loads(bearing, 1.0, []) is None
+
+
+@pytest.mark.parametrize(
+    ("moved", "sentence"),
+    [
+        ([0.0, 0.099, -0.099, 0.0, 0.0099], None),
+        ([0.0, 0.0, -0.5, 0.0, 0.0], "displaced by 0.5 mm, more than 0.1 modules: its bearing is"),
+        ([0.08, 0.08, 0.0, 0.0, 0.0], "displaced by 0.11 mm"),
+        ([0.0, 0.0, 0.0, 0.009, 0.009], "tilts by 13 mrad, and only tilts up to 10 mrad are small"),
+    ],
+)
+def test_a_bearing_that_gives_way_is_named(moved: list[float], sentence: str | None) -> None:
+    rows = [dict(zip(OUTPUT_COLUMNS, moved, strict=True))]
+    remarks = list(output_bearing_loads(design().output_bearing, 1.0, rows).remarks())
+    assert len(remarks) == (sentence is not None) and all(sentence in one for one in remarks)
