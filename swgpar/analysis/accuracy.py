@@ -27,7 +27,11 @@ def require_refinable(design: DriveDesign, accuracy: float) -> None:
     for given, what, allowed in (
         (design.has_program, "a load program", "a mesh recipe"),
         (design.bearing is not None, "wave_generator.bearing", "without it"),
-        (design.is_bolted, 'cup.attachment = "bolted"', '"edge" and "clamped"'),
+        (
+            design.is_bolted,
+            'cup.attachment = "bolted"',
+            '"edge" and "clamped", because coarse elements of the end do not resolve washers',
+        ),
         (
             design.is_loaded_sideways,
             SIDEWAYS,

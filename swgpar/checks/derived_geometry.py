@@ -133,6 +133,7 @@ def _cup(design: DriveDesign) -> dict[str, float]:
         sizes["attached area, one side (mm2)"] = np.pi * abs(cup.edge**2 - cup.clamping_radius**2)
     if cup.attachment == "bolted":
         sizes["attached area, one side (mm2)"] = 0.25 * np.pi * cup.washer_diameter**2 * cup.bolts
+        sizes["period of teeth and bolts (pitches)"] = design.kinematics.pitches
     return sizes
 
 

@@ -1,9 +1,10 @@
 """History of the whole rotation from the angles that are sampled in one period.
 
-After a rotation of the wave generator by one pitch of the fixed gear, the drive is in the same
-state with its teeth renumbered by one, and the output has rotated by pitch / ratio. Against the
-wave generator the state is the same: vectors in space have rotated by the pitch. Without friction
-this is exact. With friction it holds once the slip is periodic.
+After a period of the motion, a rotation of the wave generator by one pitch of the fixed gear or
+with bolts by several, the drive is in the same state with its teeth renumbered, and the output has
+rotated by period / ratio. Against the wave generator the state is the same: vectors in space have
+rotated by the period. Without friction this is exact. With friction it holds once the slip is
+periodic.
 """
 
 from __future__ import annotations

@@ -27,8 +27,10 @@ from support.cup_shapes import (
 )
 from support.paths import DRIVERS, RECIPE
 from support.stepping import loaded
+from swgpar.analysis.accuracy import require_refinable
 from swgpar.analysis.bent_start import BentSpline
 from swgpar.analysis.forecast import forecast
+from swgpar.checks.derived_geometry import derived_geometry
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.fem.element_matrices import element_matrices
@@ -488,6 +490,17 @@ def test_a_period_of_teeth_and_bolts_is_covered() -> None:
     """Five pitches of 360 / 42 degrees."""
     with pytest.raises(InputError, match="42.8571 deg"):
         shaped(bolted(8), "steps.rotation=42.0", "steps.samples=4")
+
+
+def test_bolts_have_no_accuracy() -> None:
+    with pytest.raises(
+        InputError, match="because coarse elements of the end do not resolve washers"
+    ):
+        require_refinable(shaped(bolted(8)), 0.01)
+
+
+def test_check_shows_the_period() -> None:
+    assert derived_geometry(shaped(bolted(8)))["period of teeth and bolts (pitches)"] == 5
 
 
 def test_no_effect_of_a_tooth_is_renamed_where_bolts_make_others() -> None:
