@@ -324,6 +324,21 @@ def test_where_beam_theory_ends(file: Path, override: str, sentence: str | None)
         assert any(sentence in remark for remark in remarks), remarks
 
 
+def test_steps_resolve_the_harmonic_part_at_the_lowest_speed() -> None:
+    """36 cycles in a revolution at 2.8 rad/s."""
+    for override, said in (
+        ("moving_load.steps=360", False),
+        ("moving_load.steps=357", True),
+        ("moving_load.frequency=1e5", True),
+        ("moving_load.sweep=[1.3, 50.0]", True),
+    ):
+        sentences = load_design(RING, [override]).remarks()
+        assert bool(sentences) == said, override
+        assert all("fewer than 10 of moving_load.steps in a cycle" in one for one in sentences)
+    quiet = load_design(RING, ["moving_load.frequency=1e5", "moving_load.harmonic=0"])
+    assert not quiet.remarks()
+
+
 @pytest.mark.parametrize(("force", "said"), [(1e6, False), (1e11, True)])
 def test_a_run_says_where_displacements_are_not_small(
     force: float, said: bool, caplog: pytest.LogCaptureFixture

@@ -14,7 +14,7 @@ from swgpar.vibration.curved_beam import BeamSection, Ring, supports_restrain_ri
 from swgpar.vibration.thickness_limit import THICKEST, displacement_remark, frequency_remark
 
 LEAST_STEPS = 10
-"""Steps in a cycle of the harmonic part: what is linear within them is within 2 % of it."""
+"""Steps in a cycle of the harmonic part, which is linear within them: its amplitude is 3 % less."""
 
 Speeds = Annotated[list[Positive], Len(1)]
 
@@ -92,7 +92,8 @@ class RingDesign(TrainDesign):
     moving_load: MovingLoad | None = None
 
     def remarks(self) -> list[str]:
-        return [text for text in (self.remark_on_modes, self.remark_on_loads) if text]
+        texts = self.remark_on_modes, self.remark_on_loads, self._remark_on_steps
+        return [text for text in texts if text]
 
     @property
     def remark_on_modes(self) -> str:
@@ -109,6 +110,22 @@ class RingDesign(TrainDesign):
             return ""
         mean = 0.5 * (body.outer_radius + body.inner_radius)
         return displacement_remark(body.outer_radius - body.inner_radius, mean, s.count)
+
+    @property
+    def _remark_on_steps(self) -> str:
+        """Where the steps are too long for the harmonic part, or nothing."""
+        load = self.moving_load
+        if load is None or load.harmonic == 0.0:
+            return ""
+        slowest = min(*load.speeds, *load.sweep)
+        cycles = load.frequency / slowest
+        if cycles * LEAST_STEPS <= load.steps:
+            return ""
+        return (
+            f"moving_load.frequency = {load.frequency:g} rad/s has {cycles:.3g} cycles in a "
+            f"revolution at {slowest:g} rad/s: the harmonic part is another one with fewer than "
+            f"{LEAST_STEPS} of moving_load.steps in a cycle"
+        )
 
     def beam_section(self) -> BeamSection:
         """The rectangular section."""
