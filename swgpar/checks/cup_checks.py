@@ -101,6 +101,11 @@ def _check_period(design: DriveDesign) -> None:
         allowed = f"numbers without a common divisor with {pitches}, the pitches in a period of "
         allowed += "teeth and bolts: others show the same places of a tooth again"
         require(not count or math.gcd(count, pitches) == 1, key, count, allowed)
+    for section in ("fatigue", "losses"):
+        samples, given = steps.samples, getattr(design, section) is not None
+        allowed = f"{pitches} and more with [{section}], as many as the pitches in a period of "
+        allowed += "teeth and bolts: a stress cycle then has a value at every pitch"
+        require(not given or not samples or samples >= pitches, "steps.samples", samples, allowed)
     require_available(
         design.deviations is None or pitches == 1,
         "[deviations]",

@@ -486,6 +486,12 @@ def test_angles_show_different_places_of_a_tooth(override: str) -> None:
     shaped(bolted(40, 1.0), "steps.rotation=45.0", "steps.samples=10")
 
 
+@pytest.mark.parametrize("override", ["fatigue.size_factor=1.0", "losses.loss_factor=0.001"])
+def test_a_stress_cycle_has_a_value_at_every_pitch(override: str) -> None:
+    with pytest.raises(InputError, match="steps.samples = 4 is out of range: allowed 5 and more"):
+        shaped(bolted(8), "steps.rotation=45.0", "steps.samples=4", override)
+
+
 def test_a_period_of_teeth_and_bolts_is_covered() -> None:
     """Five pitches of 360 / 42 degrees."""
     with pytest.raises(InputError, match="42.8571 deg"):
