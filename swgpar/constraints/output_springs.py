@@ -36,7 +36,6 @@ class OutputSprings:
         movable: np.ndarray,
         share: float,
     ) -> None:
-        self.stiffness, self.share = stiffness, share
         self.to_bearing = np.eye(ROTATION)
         self.to_bearing[X, TILT_Y], self.to_bearing[Y, TILT_X] = lever, -lever
         self.to_bearing[:, ~movable] = self.to_bearing[~movable] = 0.0
@@ -62,7 +61,3 @@ class OutputSprings:
     def displacement(self, motion: MeanMotion) -> np.ndarray:
         """Displacements (mm) and tilts (rad) at the middle of the bearing, (5,)."""
         return self.to_bearing @ motion.value[:ROTATION]
-
-    def reaction(self, motion: MeanMotion) -> np.ndarray:
-        """Forces (N) and moments (N mm) of the bearing on the output of the whole drive, (5,)."""
-        return -self.stiffness * self.displacement(motion)
