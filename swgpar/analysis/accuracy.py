@@ -58,4 +58,7 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
     if "samples" in design.steps.model_fields_set or not whole_period:
         return design
     samples = next(count for least, count in SAMPLES if accuracy >= least)
+    kinematics = design.kinematics
+    while kinematics.apart(samples) < samples:  # some angles would show the same state
+        samples += 1
     return design.model_copy(update={"steps": design.steps.model_copy(update={"samples": samples})})

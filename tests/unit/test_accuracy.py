@@ -95,6 +95,15 @@ def test_what_the_design_says_itself_is_kept() -> None:
     assert with_accuracy(load_design(DESIGN, [*PLANE, "steps.rotation=4"]), 0.01).steps.samples == 0
 
 
+def test_no_two_angles_of_an_accuracy_show_the_same_state() -> None:
+    """Half a pitch on, two lobes at odd numbers of teeth have changed places."""
+    odd = load_design(
+        DESIGN, [*PLANE, "drive.teeth_fs=41", "drive.teeth_rg=43", "steps.rotation=9"]
+    )
+    for accuracy, samples in ((0.1, 3), (0.02, 5), (0.01, 9), (0.002, 17)):
+        assert with_accuracy(odd, accuracy).steps.samples == samples
+
+
 def test_accuracies_that_cannot_be_had() -> None:
     for accuracy in (0.0, 0.5, float("nan")):
         with pytest.raises(InputError, match="out of range: allowed 0.001 to 0.2"):
