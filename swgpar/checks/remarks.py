@@ -1,7 +1,9 @@
 """What a design may have and what deserves a word: teeth that overlap, cams that are too long,
-torques that are too small to be resolved, plastics."""
+torques that are too small to be resolved, plastics, angles that show the same state."""
 
 from __future__ import annotations
+
+import math
 
 from swgpar.checks.clearance import clearances
 from swgpar.checks.growth_checks import growth_remarks
@@ -36,6 +38,14 @@ def remarks(design: DriveDesign) -> list[str]:
         sentences.append(
             f"load.torque = {torque:g} N·m counts as none: up to {0.001 * negligible:.3g} N·m it "
             f"is too small beside the bending of the flexible spline"
+        )
+    samples, repeats = design.steps.samples, design.kinematics.repeats
+    shown = samples // math.gcd(samples, repeats)
+    if shown < samples:
+        sentences.append(
+            f"steps.samples = {samples} shows {shown} different states of the drive, each at "
+            f"{samples // shown} angles: numbers without a common divisor with {repeats} show as "
+            "many states as angles"
         )
     plastic = [body for body, material in design.materials.items() if material.creeps]
     if plastic:

@@ -49,6 +49,14 @@ def test_check_looks_between_the_minor_axes() -> None:
     assert not rigid_clearance(clearances(swgpar.load_design(DESIGN))).interference
 
 
+@pytest.mark.parametrize(("samples", "shown"), [(0, None), (2, 1), (6, 3), (5, None)])
+def test_angles_that_show_the_same_state_are_said(samples: int, shown: int | None) -> None:
+    odd = design("drive.teeth_fs=41", "drive.teeth_rg=43", f"steps.samples={samples}", *PERIOD)
+    said = [one for one in remarks(odd) if "steps.samples" in one]
+    expected = f"steps.samples = {samples} shows {shown} different states of the drive"
+    assert len(said) == (shown is not None) and all(one.startswith(expected) for one in said)
+
+
 def test_a_thin_rim_is_said_before_it_runs() -> None:
     """0.2 modules under teeth of 1.8 modules, of a machined drive."""
     machined = swgpar.load_design(DATA / "public" / "hd40b.toml")
