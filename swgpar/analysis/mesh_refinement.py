@@ -136,13 +136,16 @@ class Refinement:
         return Refined(comparison, compared, found, errors)
 
     def _log(self, found: RootStress) -> None:
+        def share(error: float | None) -> str:
+            return "not known" if error is None else f"{100.0 * error / found.s1:.2g} %"
+
         logger.info(
-            "%d elements: s1 %.1f MPa under load; error by the windows %.2g %%, by the mesh of the "
-            "drive %.2g %%",
+            "%d elements: s1 %.1f MPa under load; error by the windows %s, by the mesh of the "
+            "drive %s",
             self.model.n_elements(),
             found.s1,
-            100.0 * _bound(found.error) / found.s1,
-            100.0 * _bound(found.drive_error) / found.s1,
+            share(found.error),
+            share(found.drive_error),
         )
 
     def _solved(self, recipe: MeshRecipe, coarse: DriveModel | None = None) -> DriveModel:
