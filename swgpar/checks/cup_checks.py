@@ -64,8 +64,6 @@ def check_cup(design: DriveDesign) -> None:
     condensed = design.solver.condensed_sectors
     allowed = 'only with drive.model = "plane"'
     require(not condensed, "solver.condensed_sectors", condensed, allowed)
-    if cup is None:
-        raise InputError('cup is missing: allowed only with drive.model = "plane"')
     _check_corners(cup)
     sizes, rim = design.cup_sizes, design.flexible_spline.rim
     reach = cup.length - sizes.wall_length

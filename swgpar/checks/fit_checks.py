@@ -35,6 +35,8 @@ def check_fit(design: DriveDesign) -> None:
     _check_pancake(design)
     _check_tooth_numbers(design)
     _check_rims(design)
+    if design.has_cup and design.cup is None:
+        raise InputError('cup is missing: allowed only with drive.model = "plane"')
     _check_steps(design)
     _check_fatigue(design)
     _check_linear_solver(design)
