@@ -59,6 +59,6 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
         return design
     samples = next(count for least, count in SAMPLES if accuracy >= least)
     kinematics = design.kinematics
-    while kinematics.apart(samples) < samples:  # some angles would show the same state
+    while kinematics.states(samples) < samples:  # some angles would show the same state
         samples += 1
     return design.model_copy(update={"steps": design.steps.model_copy(update={"samples": samples})})

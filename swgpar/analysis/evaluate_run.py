@@ -61,6 +61,7 @@ def evaluate_run(
     model, design, record = recorder.model, recorder.model.design, recorder.record
     sequence, rows = recorder.sequence, record.rows
     program, places = recorder.program_rows(), recorder.resolved_places()
+    stresses = LargestStresses.of(places)
     fatigue, losses, losses_table = _cycle_results(recorder)
     bodies = {name: BodySizes(**counts) for name, counts in model.counts().items()}
     memory = model.comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
@@ -95,8 +96,8 @@ def evaluate_run(
         ratio=design.kinematics.input_ratio,
         design=design,
         rotation=rotation,
-        stresses=LargestStresses.of(places),
-        strains=largest_strains(LargestStresses.of(places).places, design.materials),
+        stresses=stresses,
+        strains=largest_strains(stresses.places, design.materials),
         steps=step_values(shown),
         numerics=evaluate_numerics(
             rows, model.omitted_bending_stress() if design.solver.condensed_sectors else None

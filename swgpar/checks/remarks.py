@@ -3,8 +3,6 @@ torques that are too small to be resolved, plastics, angles that show the same s
 
 from __future__ import annotations
 
-import math
-
 from swgpar.checks.clearance import clearances
 from swgpar.checks.growth_checks import growth_remarks
 from swgpar.checks.inertia import inertia_remarks
@@ -40,7 +38,7 @@ def remarks(design: DriveDesign) -> list[str]:
             f"is too small beside the bending of the flexible spline"
         )
     samples, repeats = design.steps.samples, design.kinematics.repeats
-    shown = samples // math.gcd(samples, repeats)
+    shown = design.kinematics.states(samples)
     if shown < samples:
         sentences.append(
             f"steps.samples = {samples} shows {shown} different states of the drive, each at "

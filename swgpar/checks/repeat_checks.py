@@ -14,7 +14,7 @@ def require_no_period(design: DriveDesign, because: str, otherwise: str) -> None
     samples, stiffness = design.steps.samples, design.stiffness
     beside = f"{because}, which does not repeat after a pitch"
     require(samples == 0, "steps.samples", samples, f"only 0 with {beside}")
-    for section in ("fatigue", "losses", "deviations"):
+    for section in ("fatigue", "losses"):
         absent = getattr(design, section) is None
         require_available(absent, f"[{section}]", beside, otherwise)
     if stiffness is not None:

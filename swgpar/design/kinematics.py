@@ -99,10 +99,14 @@ class Kinematics:
             return 1
         return self.lobes // math.gcd(self.lobes, self.alike)
 
+    def states(self, samples: int) -> int:
+        """How many different states so many angles show, evenly spaced in a period."""
+        return samples // math.gcd(samples, self.repeats)
+
     def apart(self, samples: int) -> int:
         """The largest number of angles, evenly spaced in a period and at most `samples`, of which
         no two show the same state."""
-        while math.gcd(samples, self.repeats) > 1:
+        while self.states(samples) < samples:
             samples -= 1
         return samples
 

@@ -121,14 +121,15 @@ def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
     first, second = output + 1, output + 2
     bore, outer = model.surface(model.spline, "bore"), model.surface(model.ring, "outer")
     planar = ("ALL_NODES, 3, 3",) if model.plane else ()
-    fixed, frame = ["CAM, 1, 3", *planar], list[str]()
+    fixed, frame = ["CAM, 1, 3", *planar], grown_frame(model)
     bore_held: list[str] = []
     equations: list[list[Term]] = []
-    frame = grown_frame(model)
     in_steps = [*fixed, *frame]
     if ring_fixed:
-        fixed.append(f"RING_GEAR_OUTER, 1, {2 if model.plane else 3}")
-        in_steps = in_steps if frame else fixed
+        outer_held = f"RING_GEAR_OUTER, 1, {2 if model.plane else 3}"
+        fixed.append(outer_held)
+        if not frame:
+            in_steps.append(outer_held)
     else:
         equations += [*model.mean_motion(outer, output, in_housing=True), *model.housing(outer)]
         bore_held = [f"{output + 3}, 1, 3", f"{output + 4}, 1, 3"]
