@@ -66,6 +66,7 @@ DRAWINGS: dict[str, tuple[str, ...]] = {
     "contact": ("contact_cells",),
     "steps": ("load_stages",),
     "solver": ("ownership",),
+    "output": ("output",),
     "stiffness": ("stiffness_loop",),
     "ratcheting": ("ratcheting",),
     "deviations": ("deviations",),
