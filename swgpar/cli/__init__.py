@@ -50,6 +50,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     # a process that mpirun did not start needs no daemon of Open MPI, which takes long to start
     os.environ.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
+    if not any(name in os.environ for name in watch.RANK):
+        # it sends no messages: trying the fast networks takes Open MPI 0.2 s
+        os.environ.setdefault("OMPI_MCA_pml", "ob1")
     # all of them map files of one folder: a file that another run has mapped is left alone
     os.environ.setdefault("OMPI_MCA_sharedfp", "^sm")
     # looking for plug-ins of Pydantic takes 20 ms; designs need none

@@ -130,7 +130,7 @@ class Envelope:
         """Points x + i y (n,), mm, at the arc lengths s (n,) mm of the given flank, in the frame of
         the envelope's tooth, and their first two derivatives by psi.
 
-        pose : of n positions, or of one
+        pose : of n positions, of one, or of (m, 1) for all points (m, n) of m positions
         """
         point = self.given.point(s) @ (1.0, 1j)
         if not self.given.external:

@@ -318,3 +318,10 @@ class OutlinePair:
             kept = self._lowest(intervals, 0.0) < np.minimum(gaps, exact_below)[tooth]
             tooth, first = self._divided(tooth[kept], first[kept], stride)
             stride //= DIVISION
+
+
+@lru_cache(maxsize=16)
+def nearest_place(spline: ToothProfile, ring: ToothProfile, motion: ToothMotion) -> NearestPlace:
+    """`OutlinePair.nearest_place` of two profiles; kept, because conjugate teeth, the check and its
+    remarks ask for it."""
+    return OutlinePair(outline(spline), outline(ring), motion).nearest_place()

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from swgpar.profiles.flank import ToothProfile
-from swgpar.profiles.mesh_gap import NearestPlace, OutlinePair, outline
+from swgpar.profiles.mesh_gap import NearestPlace, OutlinePair, nearest_place, outline
 from swgpar.profiles.tooth_motion import ToothMotion
 
 STEP = 1e-5
@@ -63,9 +63,9 @@ class RigidTeeth:
         """
         # the other half of a tooth moves like this one on the mirror image of the cam
         image = self.motion.mirror_image()
-        nearest = self._pair.nearest_place()
+        nearest = nearest_place(self.spline, self.ring, self.motion)
         if image != self.motion:
-            other = replace(self._pair, motion=image).nearest_place()
+            other = nearest_place(self.spline, self.ring, image)
             if other.distance < nearest.distance:
                 nearest = replace(other, psi=-other.psi)
         return nearest

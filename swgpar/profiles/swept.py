@@ -209,18 +209,12 @@ class _Run:
     radii: Floats
     places: Places
 
-    def at(self, radius: float) -> Places:
-        """Place at a radius, mm, in or beside the run."""
-        k = int(np.abs(self.radii - radius).argmin())
-        away = radius - self.radii[k]
-        guess = (
-            np.array([value[k] + rate[k] * away])
-            for value, rate in (
-                (self.places.s, self.places.s_rate),
-                (self.places.psi, self.places.psi_rate),
-            )
-        )
-        return self.part.at_radius(np.array([radius]), *guess)
+    def at(self, radii: Floats) -> Places:
+        """Places at radii (n,) mm, in or beside the run."""
+        k = np.abs(self.radii[:, None] - radii).argmin(axis=0)
+        away, places = radii - self.radii[k], self.places
+        s, psi = places.s[k] + places.s_rate[k] * away, places.psi[k] + places.psi_rate[k] * away
+        return self.part.at_radius(radii, s, psi)
 
     @property
     def steepest(self) -> float:
@@ -232,9 +226,7 @@ class _Run:
     def curve(self, first: float, last: float) -> CurvedSegment:
         """Exact curve between two radii, mm."""
         radii = np.linspace(first, last, NODES)
-        found = [self.at(float(radius)) for radius in radii]
-        places = Places(*(np.concatenate(each) for each in zip(*found, strict=True)))
-        return self.part.curve(radii, places)
+        return self.part.curve(radii, self.at(radii))
 
 
 @dataclass(frozen=True)
@@ -271,9 +263,7 @@ class SweptArea:
         s = s[along > STEEP * np.hypot(*given.point(s).T)]
         psi = np.linspace(-reach, reach, POSITIONS)
         poses = self.envelope.pose(psi)
-        points = np.array(
-            [self.envelope.path(s, poses.taken(np.array([k])))[0] for k in range(POSITIONS)]
-        )
+        points = self.envelope.path(s, poses.taken(np.arange(POSITIONS)[:, None]))[0]
         radius, angle = np.abs(points), _polar(points)
         sign = 1.0 if self.envelope.external else -1.0
         farthest = sign * (float((sign * radius).min()) + EDGE * self.module)
@@ -340,7 +330,8 @@ class SweptArea:
                 return radius
 
         def apart(radius: float) -> float:
-            return float((run.at(radius).angle - after.at(radius).angle)[0])
+            at = np.array([radius])
+            return float((run.at(at).angle - after.at(at).angle)[0])
 
         if not apart(last) <= 0.0 <= apart(first):
             raise InputError(
