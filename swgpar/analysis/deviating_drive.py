@@ -1,9 +1,9 @@
 """The drive with deviations at the angles of whole turns of the wave generator.
 
-The ideal drive repeats after one pitch of the fixed gear with its teeth renamed. So every angle of
-a turn is an angle of the first pitch at which the deviations have been renamed: the ideal state is
-known, and only the deviations differ. Where these repeat, the states do too, and each is computed
-once.
+The ideal drive repeats after one pitch of the fixed gear with its teeth renamed, with bolts after
+several. So every angle of a turn is an angle of the first period at which the deviations have been
+renamed: the ideal state is known, and only the deviations differ. Where these repeat, the states do
+too, and each is computed once.
 """
 
 from __future__ import annotations
@@ -113,6 +113,7 @@ class DeviatingDrive:
     bore_z : mm, of the middle of the bore
     tables : deviations of all flanks;  periods : numbers of pitches after which those of each gear
     repeat
+    per_period : angles of a period of the ideal drive;  angles : those of all turns
     """
 
     def __init__(self, design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> None:
@@ -139,11 +140,10 @@ class DeviatingDrive:
         spline, ring = self.tables.periods()
         cup = self.deviations.cup
         self.periods = (design.drive.teeth_fs if cup.eccentricity or cup.tilt else spline, ring)
-
-    @property
-    def pitches(self) -> int:
-        """Pitches of the fixed gear in all turns."""
-        return self.deviations.turns * round(2.0 * np.pi / self.design.kinematics.period_angle)
+        kinematics, per_pitch = design.kinematics, self.deviations.angles_per_pitch
+        self.per_period = kinematics.pitches * per_pitch
+        pitches = self.deviations.turns * kinematics.teeth(kinematics.standing_gear)
+        self.angles = pitches * per_pitch
 
     def destroy(self) -> None:
         """Release the model."""
@@ -160,29 +160,33 @@ class DeviatingDrive:
         """
         ideals = self._ideal_states()
         self._displace_cam()
-        for phase, (state, ideal) in enumerate(ideals):
+        for place, (state, ideal) in enumerate(ideals):
             ideal.copy(self.model.problem.x)
-            self.model.problem.search(state)  # all states of the phase are near this one
+            self.model.problem.search(state)  # all states of the place are near this one
             states: dict[tuple[int, ...], list[int]] = {}
-            for pitch in range(self.pitches):
-                if pitch * len(ideals) + phase not in known:
-                    renamed = tuple(pitch % period for period in self.periods)
-                    states.setdefault(renamed, []).append(pitch)
+            for index in range(place, self.angles, self.per_period):
+                if index not in known:
+                    renamed = tuple(self._renamed(index) % period for period in self.periods)
+                    states.setdefault(renamed, []).append(index)
             start, guess = split(len(states), share[1]), ideal
             for first, *others in list(states.values())[start[share[0]] : start[share[0] + 1]]:
-                found = self._point(first * len(ideals) + phase, first, state, ideal, guess)
+                found = self._point(first, state, ideal, guess)
                 guess = self.model.problem.x.copy()
                 yield found
-                for pitch in others:
-                    yield self._repeated(first, found, pitch, pitch * len(ideals) + phase)
+                for index in others:
+                    yield self._repeated(found, index)
+
+    def _renamed(self, index: int) -> int:
+        """By how many pitches the teeth are renamed at the angle of an index."""
+        return index // self.per_period * self.design.kinematics.pitches
 
     def _ideal_states(self) -> list[tuple[LoadState, PETSc.Vec]]:
-        """Load state and x of the ideal drive at the angles of a pitch."""
-        x, count = self.model.problem.x, self.deviations.angles_per_pitch
+        """Load state and x of the ideal drive at the angles of a period."""
+        x = self.model.problem.x
         found = [(self.loaded, x.copy())]
-        for phase in range(1, count):
-            angle = self.design.kinematics.period_angle * phase / count
-            step = Stage.ROTATE + phase - 1
+        for place in range(1, self.per_period):
+            angle = self.design.kinematics.period_angle * place / self.per_period
+            step = Stage.ROTATE + place - 1
             state = replace(self.loaded, stage=Stage.ROTATE, step=step, angle=angle)
             self.stepper.advance(state)
             found.append((state, x.copy()))
@@ -201,46 +205,51 @@ class DeviatingDrive:
 
         self.model.problem.wave_generator.cam.pose = pose
 
-    def _displace_bore(self, pitch: int, state: LoadState, share: float) -> None:
-        """Hold the bore off the axis, in the direction that its material has at a pitch."""
+    def _displace_bore(self, renamed: int, state: LoadState, share: float) -> None:
+        """Hold the bore off the axis, in the direction that its material has where teeth are
+        renamed."""
         part = self.deviations.cup
         offsets = self.model.problem.supports.offsets
-        turn = -2.0 * np.pi * pitch / self.design.drive.teeth_fs
+        turn = -2.0 * np.pi * renamed / self.design.drive.teeth_fs
         if self.design.kinematics.output_gear == "flexible_spline":
             turn += state.angle / self.design.kinematics.ratio
         lean = share * rotated(part.lean, turn)
         offsets[SPLINE_COUPLING, [X, Y]] = share * rotated(part.shift, turn) + self.bore_z * lean
         offsets[SPLINE_COUPLING, [TILT_X, TILT_Y]] = -lean[1], lean[0]
 
-    def _point(
-        self, index: int, pitch: int, state: LoadState, ideal: PETSc.Vec, guess: PETSc.Vec
-    ) -> TurnPoint:
-        """The state at a phase of a pitch, from a guess, or from the ideal one step by step."""
-        problem, iterations = self.model.problem, 0
-        deviations = self.tables.rolled(pitch)
+    def _point(self, index: int, state: LoadState, ideal: PETSc.Vec, guess: PETSc.Vec) -> TurnPoint:
+        """The state at an angle, from a guess, or from the ideal one step by step.
+
+        state, ideal : of the ideal drive at the same place of a period
+        """
+        problem, iterations, renamed = self.model.problem, 0, self._renamed(index)
+        deviations, turned = (
+            self.tables.rolled(renamed),
+            renamed * self.design.kinematics.pitch_angle,
+        )
         for start, steps in ((guess, 1), *((ideal, steps) for steps in STEPS)):
             start.copy(problem.x)
             for share in np.arange(1, steps + 1) / steps:
-                self._displace_bore(pitch, state, share)
+                self._displace_bore(renamed, state, share)
                 problem.flanks_of(RING_GEAR).deviate(deviations.scaled(share))
                 result = self.model.solver.solve(state, search=False)
                 iterations += result.iterations
                 if not result.converged:
                     break
             else:
-                turned = pitch * self.design.kinematics.period_angle
                 output = problem.output_rotation() + turned / self.design.kinematics.ratio
                 torque = torques(problem, state).wave_generator
                 return TurnPoint(index, state.angle + turned, output, torque, iterations)
-        angle = np.degrees(state.angle + pitch * self.design.kinematics.period_angle)
+        angle = np.degrees(state.angle + turned)
         raise ConvergenceError(
             f"the drive with [deviations] did not converge at a wave-generator angle of "
             f"{angle:.4g} degrees: {result.reason}, residual {result.residual:.1e} of the contact "
             "force"
         )
 
-    def _repeated(self, first: int, point: TurnPoint, pitch: int, index: int) -> TurnPoint:
-        """The state of the pitch `first` again, at another one."""
-        turned = (pitch - first) * self.design.kinematics.period_angle
+    def _repeated(self, point: TurnPoint, index: int) -> TurnPoint:
+        """The state of a point again, at the angle of another index."""
+        pitches = self._renamed(index) - self._renamed(point.index)
+        turned = pitches * self.design.kinematics.pitch_angle
         output = point.output_angle + turned / self.design.kinematics.ratio
         return TurnPoint(index, point.wg_angle + turned, output, point.wg_torque, 0)

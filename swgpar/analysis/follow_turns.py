@@ -35,12 +35,12 @@ def follow_turns(recipe: MeshRecipe, recorder: Recorder) -> None:
     recipe : of the run's mesh. Raises ConvergenceError; the rows up to then are kept.
     """
     design = recorder.model.design
-    step = design.kinematics.period_angle / design.deviations.angles_per_pitch
+    step = design.kinematics.pitch_angle / design.deviations.angles_per_pitch
     known = {_index(row, step): row for row in recorder.known_turns()}
     comm, shared = recorder.comm, design.drive.model == "plane"
     with recorder.model.phases("turns"):
         drive = DeviatingDrive(design, recipe, MPI.COMM_SELF if shared else comm)
-        total = drive.pitches * design.deviations.angles_per_pitch
+        total = drive.angles
         logger.info(
             "transmission error at %d angles of %d turns: %d unknowns%s",
             total,

@@ -15,7 +15,7 @@ from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.geometry.cup_wall import WallPoint
-from swgpar.input.require import require, require_available
+from swgpar.input.require import require
 from swgpar.meshing.drive_geometry import THICK_CUP
 
 THINNEST = 0.1
@@ -88,8 +88,7 @@ def check_cup(design: DriveDesign) -> None:
 
 
 def _check_period(design: DriveDesign) -> None:
-    """Angles of a period of teeth and bolts show the teeth at as many places, and no answer renames
-    teeth that bolts make different."""
+    """Angles of a period of teeth and bolts show the teeth at as many places."""
     pitches = design.kinematics.pitches
     steps, stiffness = design.steps, design.stiffness
     counts = {"steps.samples": steps.samples}
@@ -104,12 +103,6 @@ def _check_period(design: DriveDesign) -> None:
         allowed = f"{pitches} and more with [{section}], as many as the pitches in a period of "
         allowed += "teeth and bolts: a stress cycle then has a value at every pitch"
         require(not given or not samples or samples >= pitches, "steps.samples", samples, allowed)
-    require_available(
-        design.deviations is None or pitches == 1,
-        "[deviations]",
-        'cup.attachment = "bolted"',
-        'with "edge" and "clamped", because the effect of one tooth is renamed to that of others',
-    )
 
 
 def _check_shape(cup: Cup) -> None:

@@ -172,7 +172,8 @@ class Causes:
 
     A gear that stands is passed by both waves in every turn: its deviations have whole orders. The
     other gear turns with the output, against which the wave generator turns 1 - 1 / ratio times.
-    The teeth mesh once per pitch of the standing gear, with odd numbers of teeth twice.
+    The teeth mesh once per pitch of the standing gear, with odd numbers of teeth twice. Bolts turn
+    with the flexible spline.
 
     Parameters
     ----------
@@ -186,14 +187,19 @@ class Causes:
         self.of_wave_generator = _kinds(deviations, "wave_generator")
         gears: tuple[GearName, ...] = ("ring_gear", "flexible_spline")
         self.gears = [
-            (
-                gear.replace("_", " "),
-                kinds,
-                1.0 - 1.0 / kinematics.ratio if gear == kinematics.output_gear else 1.0,
-            )
+            (gear.replace("_", " "), kinds, self._passes(gear))
             for gear in gears
             if (kinds := _kinds(deviations, gear))
         ]
+        self.bolts = 0.0
+        if kinematics.bolts:
+            per_turn = math.lcm(kinematics.bolts, kinematics.lobes)
+            self.bolts = per_turn * self._passes("flexible_spline")
+
+    def _passes(self, gear: GearName) -> float:
+        """Turns of the wave generator against a gear in one of its turns."""
+        turns_too = gear == self.kinematics.output_gear
+        return 1.0 - 1.0 / self.kinematics.ratio if turns_too else 1.0
 
     def of(self, order: float) -> str:
         """Cause of an order, or several that the spectrum cannot tell apart."""
@@ -201,6 +207,9 @@ class Causes:
         times = round(order / self.mesh)
         if times and abs(order - times * self.mesh) < half:
             return "mesh of the teeth" if times == 1 else f"mesh of the teeth, {times} times"
+        times = round(order / self.bolts) if self.bolts else 0
+        if times and abs(order - times * self.bolts) < half:
+            return "bolts" if times == 1 else f"bolts, {times} times"
         found = []
         for name, kinds, passes in self.gears:
             times = round(order / passes)
@@ -256,8 +265,12 @@ def evaluate_turns(
     """
     if not rows:
         return None
-    per_period = samples if deviations is None else deviations.angles_per_pitch
-    turns = len(rows) * (kinematics.period_angle / per_period) / (2.0 * np.pi)
+    step = (
+        kinematics.period_angle / samples
+        if deviations is None
+        else kinematics.pitch_angle / deviations.angles_per_pitch
+    )
+    turns = len(rows) * step / (2.0 * np.pi)
     error, torque = column(rows, "transmission_error_arcsec"), column(rows, "wg_torque_Nmm")
     causes = Causes(kinematics, deviations, turns)
     known = errors if deviations is None else None

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from mpi4py import MPI
 
 from support.cup_shapes import bolted, shaped
+from support.paths import RECIPE
 from support.stepping import loaded, rotate
+from swgpar.analysis.deviating_drive import DeviatingDrive, turn_design
+from swgpar.constraints.distributing_coupling import X, Y
+from swgpar.constraints.supports import SPLINE_COUPLING
 from swgpar.evaluation.losses import hysteresis_work
 from swgpar.evaluation.stress_cycle import StressCycle, sector_stress
-from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.geometry.rotation import rotated
 from swgpar.load.load_sequence import load_sequence
+from swgpar.meshing import load_recipe
 
 SAMPLES = 6
 BOLTS = 8
@@ -60,3 +68,47 @@ def test_a_sampled_period_of_teeth_and_bolts() -> None:
     print(f"mean input torque / (T / ratio) = {mean * 20.0 / TORQUE:.5f}")
     assert mean == pytest.approx(TORQUE / 20.0, rel=0.01)
     assert hysteresis_work(cycle) > 0.0
+
+
+def _pitch_errors(teeth: int) -> list[float]:
+    """Micrometres."""
+    return np.random.default_rng(teeth).normal(0.0, 3.0, teeth).round(2).tolist()
+
+
+DEVIATIONS = [f"deviations.{part}={json.dumps(keys)}" for part, keys in {
+    "ring_gear": {"eccentricity": 0.01, "direction": 30.0, "pitch_errors": _pitch_errors(42)},
+    "flexible_spline": {"pitch_errors": _pitch_errors(40)},
+    "cup": {"eccentricity": 0.005, "direction": 70.0},
+}.items()]  # fmt: skip
+
+
+@pytest.mark.parallel(1)
+def test_deviations_are_renamed_after_a_period_of_teeth_and_bolts() -> None:
+    """The states after 3 and 7 of 42 pitches, of which five are a period, equal those of a drive
+    whose wave generator is rotated step by step. Far teeth are modelled: that they are one element
+    moves the torque by 1e-3, and which ones these are depends on the search."""
+    more = ('deviations.mesh="same"', "deviations.angles_per_pitch=1")
+    design = shaped(bolted(BOLTS), *DEVIATIONS, *more, 'solver.far_teeth="modelled"')
+    drive = DeviatingDrive(design, load_recipe(RECIPE), MPI.COMM_SELF)
+    assert (drive.per_period, drive.angles) == (5, 42)
+    wanted = (3, 7)
+    points = drive.points(set(range(drive.angles)).difference(wanted))
+    found = {point.index: point for point in points}
+    drive.destroy()
+    stepper, _ = loaded(turn_design(design), MPI.COMM_SELF)
+    problem, kinematics = stepper.problem, design.kinematics
+    problem.flanks_of(RING_GEAR).deviate(drive.tables)
+    for index in wanted:
+        angle = index * kinematics.pitch_angle
+        shift = rotated(design.deviations.cup.shift, angle / kinematics.ratio)
+        problem.supports.offsets[SPLINE_COUPLING, [X, Y]] = shift
+        row = rotate(stepper, angle)
+        mine, kinematic = (
+            np.degrees(found[index].output_angle),
+            np.degrees(angle / kinematics.ratio),
+        )
+        print(index, mine - kinematic, row["output_angle_deg"] - kinematic, found[index].wg_torque)
+        expected = pytest.approx(row["output_angle_deg"] - kinematic, rel=1e-7)
+        assert mine - kinematic == expected
+        assert found[index].wg_torque == pytest.approx(row["wg_torque_Nmm"], rel=1e-6)
+    stepper.model.destroy()

@@ -142,7 +142,7 @@ def test_stiffness_with_a_bearing() -> None:
 def turn_points(*overrides: str, indices: tuple[int, ...] = (0, 1)) -> dict[int, TurnPoint]:
     design = small("plane", 'deviations.mesh="same"', "deviations.angles_per_pitch=1", *overrides)
     drive = DeviatingDrive(design, load_recipe(RECIPE), MPI.COMM_SELF)
-    known = set(range(drive.pitches)).difference(indices)
+    known = set(range(drive.angles)).difference(indices)
     found = {point.index: point for point in drive.points(known)}
     drive.destroy()
     return found

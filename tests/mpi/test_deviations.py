@@ -43,7 +43,7 @@ def deviating(*overrides: str, model: str = "plane", comm: MPI.Comm = WORLD) -> 
 
 def points(drive: DeviatingDrive, indices: Iterable[int] | None = None) -> dict[int, TurnPoint]:
     """Points by index, at some indices or at all."""
-    total = drive.pitches * drive.deviations.angles_per_pitch
+    total = drive.angles
     known = set() if indices is None else set(range(total)).difference(indices)
     found = {point.index: point for point in drive.points(known)}
     drive.destroy()

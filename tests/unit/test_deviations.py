@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from support.cup_shapes import bolted, shaped
 from support.paths import DRIVERS
 from swgpar import load_design
 from swgpar.design.deviations import gear_deviations
@@ -148,6 +149,19 @@ def test_causes() -> None:
     assert " or " in Causes(design.kinematics, design.deviations, 1).of(2.0)
     odd = plane("drive.teeth_fs=119", "drive.teeth_rg=121")
     assert Causes(odd.kinematics, odd.deviations, 1).of(242.0) == "mesh of the teeth"
+
+
+@pytest.mark.parametrize(("bolts", "per_turn"), [(8, 8), (9, 18)])
+def test_bolts_have_orders_of_their_own(bolts: int, per_turn: int) -> None:
+    """The waves pass them 1 - 1 / ratio times per turn; two waves pass an odd number twice."""
+    design = shaped(bolted(bolts))
+    causes = Causes(design.kinematics, design.deviations, 20)
+    assert causes.of(per_turn * 1.05) == "bolts"
+    assert causes.of(2 * per_turn * 1.05) == "bolts, 2 times"
+    assert causes.of(42.0) == "mesh of the teeth"
+    assert "bolts" not in causes.of(4.0 * 1.05)
+    still = shaped(bolted(bolts), 'drive.layout="spline_fixed"')
+    assert Causes(still.kinematics, None, 21).of(float(per_turn)) == "bolts"
 
 
 BAD = [
