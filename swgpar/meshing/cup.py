@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -19,15 +20,37 @@ SHORTEST = 0.25
 elements."""
 
 GROWTH = 1.6
-"""Ratio of the lengths of successive elements behind the fillet at the back of the teeth."""
+"""Ratio of the lengths of successive elements behind the fillet at the back of the teeth, and from
+the ends of a long cylinder to its middle, at most."""
+
+LONG = 6.0
+"""Length of a cylinder over its decay length sqrt(radius thickness) up to which a recipe's elements
+share all of it. Bending by the teeth and by the closed end decays within some decay lengths of
+them, however long the wall is: a longer one has the same elements at its ends, and more of them."""
 
 
-def cylinder_stations(length: float, recipe: CupRecipe, fillet: float, layers: int) -> Floats:
+def graded(length: float, recipe: CupRecipe, decay: float) -> Floats:
+    """Distances (n,), mm, of the stations of a cylinder, as far as `length`; decay : length, mm."""
+    usual = length * symmetric_steps(recipe.cylinder, recipe.end_ratio)
+    if length <= LONG * decay:
+        return usual
+    longest = float(np.diff(usual).max())
+    steps = [usual[1] * LONG * decay / length]
+    while sum(steps) < 0.5 * length:
+        steps.append(min(GROWTH * steps[-1], longest))
+    half = 0.5 * length * np.cumsum([0.0, *steps]) / sum(steps)
+    return np.concatenate((half, length - half[-2::-1]))
+
+
+def cylinder_stations(
+    length: float, recipe: CupRecipe, decay: float, fillet: float, layers: int
+) -> Floats:
     """Distances (n,), mm, of the cylinder's stations from the back of the teeth as far as `length`.
 
+    decay : length, mm, over which bending of the wall decays
     fillet : its radius, mm;  layers : elements along it, from which those behind it grow
     """
-    usual = length * symmetric_steps(recipe.cylinder, recipe.end_ratio)
+    usual = graded(length, recipe, decay)
     if fillet == 0.0:
         return usual
     step = fillet / layers
@@ -78,7 +101,8 @@ def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
     length = float(wall.along(np.array([wall.length]))[0])
     elements = int(np.clip(np.ceil(length / (SHORTEST * wall.thickness)), 1, recipe.cylinder))
     recipe = recipe.model_copy(update={"cylinder": elements})
-    usual = wall.at_length(cylinder_stations(length, recipe, back_fillet, layers))
+    decay = math.sqrt(float(wall.inner.radius(np.zeros(1))[0]) * wall.thickness)
+    usual = wall.at_length(cylinder_stations(length, recipe, decay, back_fillet, layers))
     s = wall.stations(usual, back_fillet * (1.0 + 1e-9))
     angle = wall.turn_angles(recipe.fillet)[1:]
     share = symmetric_steps(recipe.closed_end, recipe.end_ratio)

@@ -54,7 +54,11 @@ class FaceWidthRecipe(Section):
 class CupRecipe(Section):
     """Elements along the cup's wall, from the back of the teeth to the bore."""
 
-    cylinder: int = quantity(text="elements along the cylinder", ge=1, le=400)
+    cylinder: int = quantity(
+        text="elements along the cylinder; of six decay lengths at most, a longer one has more",
+        ge=1,
+        le=400,
+    )
     fillet: int = quantity(text="elements along the fillet", ge=1, le=100)
     closed_end: int = quantity(
         text="elements along closed end or flange; without its clamped ring, which has one",

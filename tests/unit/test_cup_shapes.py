@@ -36,7 +36,7 @@ from swgpar.errors import InputError
 from swgpar.fem.element_matrices import element_matrices
 from swgpar.geometry.cup_wall import RoundedLine, thicknesses
 from swgpar.meshing import SectorMesh, load_recipe
-from swgpar.meshing.cup import meridian
+from swgpar.meshing.cup import GROWTH, LONG, cylinder_stations, meridian
 from swgpar.meshing.quality import hex_volumes
 from swgpar.meshing.tooth_sector import build_sector
 from swgpar.model.drive_model import build_drive_model
@@ -69,6 +69,22 @@ def test_elements_of_a_clamped_end_lie_where_it_bends(changes: Changes) -> None:
     assert len(radius) == recipe.closed_end + 2 and radius[-2] == pytest.approx(clamped)
     assert radius[-1] == pytest.approx(case.cup.edge)
     assert np.abs(np.diff(radius))[:-1].max() < 0.6 * abs(clamped - begin)
+
+
+@pytest.mark.parametrize("length", [6.1, 11.0, 25.0])
+@pytest.mark.parametrize("name", ["forces", "full"])
+def test_elements_at_the_ends_of_a_long_wall_are_those_of_a_short_one(
+    name: str, length: float
+) -> None:
+    """Four elements along 20 decay lengths left one of 4 of them behind the teeth: the largest
+    stress there was off by 40 %."""
+    recipe = load_recipe(name).cup
+    short, long = (np.diff(cylinder_stations(of, recipe, 1.0, 0.0, 1)) for of in (LONG, length))
+    assert long.sum() == pytest.approx(length)
+    assert np.allclose(long, long[::-1])
+    assert 0.4 * short[0] < long[0] <= short[0] * (1.0 + 1e-9)
+    assert (long[1:] / long[:-1]).max() < GROWTH * (1.0 + 1e-9)
+    assert long.max() <= length / LONG * short.max() * (1.0 + 1e-9)
 
 
 @walls
