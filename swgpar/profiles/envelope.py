@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from swgpar.geometry.arrays import Complex, Floats
 from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints
+from swgpar.profiles.fitted_curve import fitted
 from swgpar.profiles.flank import FlankSegment, Segment, ToothProfile
 from swgpar.profiles.tooth_motion import Pose, ToothMotion
 
@@ -232,7 +233,7 @@ class Envelope:
                 point, contacts.angle, np.abs(span * contacts.speed), span * contacts.angle_rate
             )
 
-        return CurvedSegment("conjugate", evaluate)
+        return fitted(CurvedSegment("conjugate", evaluate))
 
     def pieces(self, low: float, high: float) -> list[Segment | CurvedSegment]:
         """Segments between two arc lengths, mm, of the given flank, from the tip to the root of the

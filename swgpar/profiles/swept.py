@@ -22,6 +22,7 @@ from swgpar.geometry.arrays import Complex, Floats
 from swgpar.geometry.bracketed_root import root_between
 from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints, points_of
 from swgpar.profiles.envelope import REACH, Contacts, Envelope
+from swgpar.profiles.fitted_curve import fitted
 
 POSITIONS, PLACES, RADII = 1281, 65, 401
 """Positions of the moving tooth, places on each of its segments, and radii, between which the
@@ -159,7 +160,7 @@ class _SegmentEnvelope:
             turning = contacts.turning / (square * outwards)
             return CurvePoints(point, contacts.angle, np.abs(span / outwards), span * turning)
 
-        return CurvedSegment("swept", evaluate)
+        return fitted(CurvedSegment("swept", evaluate))
 
 
 @dataclass(frozen=True)
@@ -198,7 +199,7 @@ class _EdgePath:
             point, velocity, change = self.envelope.path(s, pose)
             return points_of(point, span * velocity, span**2 * change)
 
-        return CurvedSegment("swept", evaluate)
+        return fitted(CurvedSegment("swept", evaluate))
 
 
 @dataclass(frozen=True)

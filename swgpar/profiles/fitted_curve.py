@@ -1,0 +1,62 @@
+"""A curve that costs much to evaluate, such as an envelope, replaced by a spline."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy
+
+from swgpar.geometry.arrays import Floats
+from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints, points_of
+
+DEGREE = 7
+
+INTERVALS = 128, 256, 512, 1024
+"""Of splines that are tried, one after the other."""
+
+BEYOND = 0.01
+"""Share of the parameter's range by which a spline goes on at either end."""
+
+CLOSE = 1e-10
+"""Distance of a spline over the length of its curve, and angle between the tangents over 100 (rad),
+in the middles of its intervals, at most."""
+
+
+@dataclass(frozen=True)
+class _Spline:
+    """point, first, second : of (n, 2) mm, by the parameter;  angle : rad, of the middle tangent"""
+
+    point: scipy.interpolate.BSpline
+    first: scipy.interpolate.BSpline
+    second: scipy.interpolate.BSpline
+    angle: float
+
+    def evaluate(self, t: Floats) -> CurvePoints:
+        """Curve at the parameters t (n,), for `CurvedSegment`."""
+        points, back = self.point(t), np.exp(-1j * self.angle)
+        first, second = (back * (of(t) @ (1.0, 1j)) for of in (self.first, self.second))
+        curve = points_of(points @ (1.0, 1j), first, second)
+        # counted from the middle tangent, the angle does not jump by a turn
+        return replace(curve, point=points, angle=curve.angle + self.angle)
+
+
+def fitted(curve: CurvedSegment) -> CurvedSegment:
+    """The curve as a spline through some hundred of its points; itself where a spline is not
+    `CLOSE`, as beside a cusp."""
+    angle = float(curve.evaluate(np.array([0.5])).angle[0])
+    for count in INTERVALS:
+        t = np.linspace(-BEYOND, 1.0 + BEYOND, count + 1)
+        points = curve.evaluate(t).point
+        if not np.isfinite(points).all():
+            return curve
+        spline = scipy.interpolate.make_interp_spline(t, points, DEGREE)
+        known = _Spline(spline, spline.derivative(1), spline.derivative(2), angle)
+        middles = t[:-1] + 0.5 * (t[1] - t[0])
+        exact, found = (of.evaluate(middles) for of in (curve, known))
+        length = float(exact.speed.mean())
+        distance = np.linalg.norm(found.point - exact.point, axis=1).max()
+        turned = np.abs(found.angle - exact.angle).max()
+        if distance < CLOSE * length and turned < 100.0 * CLOSE:
+            return CurvedSegment(curve.name, known.evaluate)
+    return curve
