@@ -179,9 +179,6 @@ class IncrementProgress:
                 self._task,
                 description=f"{step} {angle_deg:.2f}° Newton {iteration} residual {residual:.1e}",
             )
-        watch.doing(
-            f"{step} {angle_deg:.2f} degrees, Newton iteration {iteration}, residual {residual:.1e}"
-        )
         logger.debug(
             "   %s %.3f deg  Newton %d  residual %.3e", step, angle_deg, iteration, residual
         )

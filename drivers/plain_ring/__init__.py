@@ -4,6 +4,7 @@ teeth."""
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from mpi4py import MPI
@@ -105,6 +106,13 @@ class PlainRingDesign:
         return self.contact.wg_penalty_coef * self.material.modulus / REFERENCE_LENGTH
 
 
+class RingSectors(Protocol):
+    """What meshes the congruent sectors of a ring."""
+
+    def mesh(self, design: PlainRingDesign) -> SectorMesh:
+        """The sector centred on +y."""
+
+
 @dataclass(frozen=True)
 class RingCounts:
     """Elements: two around each of `sectors`, `radial` through the thickness, `axial` along the
@@ -113,6 +121,11 @@ class RingCounts:
     sectors: int
     radial: int
     axial: int
+
+    def mesh(self, design: PlainRingDesign) -> SectorMesh:
+        """See `RingSectors`."""
+        radii, counts = (design.inner_radius, design.outer_radius), (self.radial, self.axial)
+        return ring_sector(*radii, design.width, self.sectors, *counts, design.plane)
 
     def refined(self) -> RingCounts:
         """Twice as many in every direction."""
@@ -140,7 +153,7 @@ class RingBody:
 
     Parameters
     ----------
-    design, counts : the ring and its mesh
+    design, sectors : the ring and its mesh
     comm : communicator
     copies : how many times the model makes the whole ring, which equals itself rotated by that part
     of a turn
@@ -150,24 +163,15 @@ class RingBody:
     def __init__(
         self,
         design: PlainRingDesign,
-        counts: RingCounts,
+        sectors: RingSectors,
         comm: MPI.Comm,
         copies: int,
         incompatible: bool = True,
     ) -> None:
         self.design, self.copies = design, copies
-        inner, width = design.inner_radius, design.width
-        mesh = ring_sector(
-            inner,
-            design.outer_radius,
-            width,
-            counts.sectors,
-            counts.radial,
-            counts.axial,
-            design.plane,
-        )
-        count, fixed = counts.sectors // copies, np.zeros(0, dtype=np.int32)
-        body = Body(mesh, (design.material,), width, incompatible=incompatible)
+        mesh = sectors.mesh(design)
+        count, fixed = mesh.n_sectors // copies, np.zeros(0, dtype=np.int32)
+        body = Body(mesh, (design.material,), design.width, incompatible=incompatible)
         layout = BodyLayout(
             body=body, first_tooth=0, count=count, closed=True, copies=copies, fixed=fixed
         )
@@ -213,7 +217,7 @@ class RingModel:
 
     Parameters
     ----------
-    design, counts, comm, copies, incompatible : of `RingBody`
+    design, sectors, comm, copies, incompatible : of `RingBody`
     cam : curve of the rigid surface, which may have two parts that move along the major axis
     half_angle : rad, the ring can touch within this angle of the major axis while the parts move
     """
@@ -221,7 +225,7 @@ class RingModel:
     def __init__(
         self,
         design: PlainRingDesign,
-        counts: RingCounts,
+        sectors: RingSectors,
         cam: Cam,
         half_angle: float,
         comm: MPI.Comm,
@@ -229,10 +233,8 @@ class RingModel:
         incompatible: bool = True,
     ) -> None:
         self.design, self.comm = design, comm
-        self.ring = RingBody(design, counts, comm, copies, incompatible)
-        self.body, mesh = self.ring.body, self.ring.mesh
-        layers = mesh.node_sets["outer"].reshape(-1, AROUND + 1)
-        self.outline = layers[np.abs(mesh.coords[layers[:, 0], 2]).argmin()]  # counter-clockwise
+        self.ring = RingBody(design, sectors, comm, copies, incompatible)
+        self.body = self.ring.body
         self.travel = 0.0
         self.surface = RigidContact(
             self.body,
@@ -309,14 +311,16 @@ class RingModel:
 
     def dial(self, angle: float, moved: float = 0.0) -> float:
         """Inward reading (mm) of a dial on the outer surface at mid-width, at `angle` (rad) from
-        the major axis.
+        the major axis, of a ring without teeth.
 
         Its pin slides along the ring: it stands where the deformed outline crosses the dial's line.
 
         angle : from the middle of the first to that of the last modelled sector, 0 to almost pi
         moved : mm, by which the dial travels along the major axis, with the support at +y
         """
-        nodes, radius = self.outline, self.design.outer_radius
+        mesh, radius = self.ring.mesh, self.design.outer_radius
+        layers = mesh.node_sets["outer"].reshape(-1, AROUND + 1)
+        nodes = layers[np.abs(mesh.coords[layers[:, 0], 2]).argmin()]  # counter-clockwise
         u = self.body.displacement(self.problem.displacement())[self.body.owned][:, nodes, :2]
         position = self.body.positions()[self.body.owned][:, nodes, :2]
         along = np.array([-np.sin(angle), np.cos(angle)])

@@ -15,6 +15,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from mpi4py import MPI
 
+from swgpar import watch
 from swgpar.errors import TimeLimitError
 from swgpar.fem.vectors import create_vector
 from swgpar.load.load_states import LoadState, Stage
@@ -189,8 +190,14 @@ class NewtonSolver:
         """Convergence test of SNES: its reason, or None to go on."""
         state, norm = self.state, norms[2]
         state.residuals.append(norm / self.convergence_test.reference(self.last_residual))
+        at = state.load_state
+        watch.doing(
+            f"{at.stage.label} {np.degrees(at.angle):.2f} degrees, "
+            f"{self.problem.x.getSize() // 3} nodes, Newton iteration {its}, "
+            f"residual {state.residual:.1e}"
+        )
         if self.monitor is not None:
-            self.monitor(state.load_state, its, state.residual)
+            self.monitor(at, its, state.residual)
         decision = self.convergence_test.decide(
             state,
             its,

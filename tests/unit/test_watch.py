@@ -9,8 +9,11 @@ import sys
 import time
 
 import pytest
+from mpi4py import MPI
 
+from support.cam_ring import ring_on_cam
 from support.commands import environment
+from swgpar import watch
 
 # PyDLL keeps the interpreter's lock: no Python code runs in these seconds, no handler either
 BUSY = """
@@ -127,3 +130,12 @@ def test_there_is_none_on_a_terminal_or_after_other_output() -> None:
     for begin in (BEGIN.format(terminal=True), BEGIN.format(terminal=False) + quiet):
         process = busy(begin, seconds=0 if quiet in begin else 1)
         assert process.communicate(timeout=20) == ("", "") and process.returncode == 0
+
+
+def test_every_newton_iteration_is_a_sign_of_life(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of every model: a run also solves on coarser meshes and in windows."""
+    said: list[str] = []
+    monkeypatch.setattr(watch, "doing", said.append)
+    ring_on_cam(0, True, True, 2, "direct", MPI.COMM_SELF)
+    assert said[0].startswith("deflect 0.00 degrees, ") and ", Newton iteration 0, " in said[0]
+    assert ", Newton iteration 1, " in said[1]
