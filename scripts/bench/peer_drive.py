@@ -46,6 +46,29 @@ PLANE += ("micro_geometry.fs_crowning=0",)
 CLAMPED = ("cup.attachment=clamped", "cup.clamping_radius=10")
 """A hub of the cup, from the bore of 6 mm on."""
 
+BOLTED = (
+    "cup.attachment=bolted",
+    "cup.bolts=8",
+    "cup.bolt_circle=20",
+    "cup.washer_diameter=3",
+)
+
+CARRIED = (
+    "output_bearing.radial_stiffness=2e4",
+    "output_bearing.axial_stiffness=1e4",
+    "output_bearing.tilting_stiffness=2e3",
+    "output_bearing.position=20",
+    "output_bearing.radial_force=20",
+    "output_bearing.radial_direction=30",
+)
+"""The output on a bearing little stiffer than the teeth, behind the closed end, and a force."""
+
+TILTED = (
+    "output_bearing.axial_force=20",
+    "output_bearing.tilting_moment=1",
+    "output_bearing.tilting_direction=70",
+)
+
 HEATED = (
     "material.expansion=12e-6",
     "flexible_spline.temperature=100",
@@ -73,8 +96,17 @@ CASES = {
     "plane, flank 8, root 4, rim 2": Case(PLANE, {"flank": 8, "root": 4, "rim": 2}),
     "plane, flank 6, spline fixed": Case((*PLANE, "drive.layout=spline_fixed"), {"flank": 6}),
     "plane, flank 6, heated": Case((*PLANE, *HEATED), {"flank": 6}),
+    "plane, flank 6, on a bearing": Case((*PLANE, *CARRIED), {"flank": 6}),
+    "plane, flank 6, spline fixed, on a bearing": Case(
+        (*PLANE, *CARRIED, "drive.layout=spline_fixed"), {"flank": 6}
+    ),
     "cup, flank 2": Case((), {"flank": 2}),
     "cup, flank 2, clamped": Case(CLAMPED, {"flank": 2}),
+    "cup, flank 2, clamped, heated": Case((*CLAMPED, *HEATED), {"flank": 2}),
+    "cup, flank 2, bolted": Case(BOLTED, {"flank": 2}, {"closed_end": 4}),
+    "cup, flank 2, bolted, on a bearing": Case(
+        (*BOLTED, *CARRIED, *TILTED), {"flank": 2}, {"closed_end": 4}
+    ),
     "cup, flank 2, finer wall": Case(
         (), {"flank": 2}, {"cylinder": 4, "fillet": 2, "closed_end": 4}
     ),

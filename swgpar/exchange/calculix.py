@@ -7,7 +7,7 @@ Steps:
    contact. Bodies and the rigid frame get their temperatures and fits.
 2. It is let go on the cam. The output does not rotate.
 3. The flanks may touch. The output rotates until the loaded flanks meet.
-4. The torque acts in place of that rotation.
+4. The torque acts in place of that rotation, with the forces on the output.
 5. Nothing changes. CalculiX keeps the places of contact of the beginning of an increment. Where
    surfaces slide in it, forces on both are not on one line. In this step nothing slides.
 """
@@ -22,12 +22,12 @@ import numpy as np
 from swgpar.analysis.bent_start import BentSpline
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
-from swgpar.exchange.calculix_growth import grown_frame, initial_temperature, temperatures
-from swgpar.exchange.calculix_model import CoupledSurface, JobModel, Term
+from swgpar.exchange.calculix_growth import initial_temperature, temperatures
+from swgpar.exchange.calculix_model import JobModel, Term
+from swgpar.exchange.calculix_supports import JobSupports
 from swgpar.exchange.cam_facets import OUTER_FACE, CamFacets, cam_facets
-from swgpar.geometry.arrays import Ints
 from swgpar.meshing import MeshRecipe
-from swgpar.meshing.inp import number_lines, write_inp
+from swgpar.meshing.inp import write_inp
 
 JOB, MESH = "drive.inp", "drive_mesh.inp"
 
@@ -77,7 +77,6 @@ def _check(design: DriveDesign) -> None:
         "[ring_gear.housing]": design.ring_gear.housing,
         "[dynamic_spline]": design.dynamic_spline,
         "[deviations]": design.deviations,
-        "[output_bearing]": design.output_bearing,
         "[stiffness]": design.stiffness,
         "[ratcheting]": design.ratcheting,
         "load.program": design.load.program,
@@ -85,20 +84,10 @@ def _check(design: DriveDesign) -> None:
     for key, given in sections.items():
         if given:
             refuse(key, "a design without it")
-    if design.growths["flexible_spline"] and design.has_attachment:
-        refuse(
-            'cup.attachment = "clamped" with flexible_spline.temperature',
-            '"edge", because a *RIGID BODY does not grow with the flexible spline',
-        )
     if design.frame_growth and design.kinematics.standing_gear != "ring_gear":
         refuse(
             "a temperature or a fit of [ring_gear.frame] around a ring gear that rotates",
             'drive.layout = "ring_fixed", because the guide in the job does not grow',
-        )
-    if design.is_bolted:
-        refuse(
-            'cup.attachment = "bolted"',
-            '"edge" or "clamped", because nodes do not lie on the rims of washers',
         )
     least = 0.001 * design.negligible_torque
     if design.load.torque <= least:
@@ -116,40 +105,17 @@ def _equation(terms: list[Term]) -> Iterator[str]:
 
 
 def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
-    design, ring_fixed = model.design, model.design.kinematics.standing_gear == "ring_gear"
-    output = len(model.points) + len(cam.points)
-    first, second = output + 1, output + 2
-    bore, outer = model.surface(model.spline, "bore"), model.surface(model.ring, "outer")
-    planar = ("ALL_NODES, 3, 3",) if model.plane else ()
-    fixed, frame = ["CAM, 1, 3", *planar], grown_frame(model)
-    bore_held: list[str] = []
-    equations: list[list[Term]] = []
-    in_steps = [*fixed, *frame]
-    if ring_fixed:
-        outer_held = f"RING_GEAR_OUTER, 1, {2 if model.plane else 3}"
-        fixed.append(outer_held)
-        if not frame:
-            in_steps.append(outer_held)
-    else:
-        equations += [*model.mean_motion(outer, output, in_housing=True), *model.housing(outer)]
-        bore_held = [f"{output + 3}, 1, 3", f"{output + 4}, 1, 3"]
-    of_spline = output if ring_fixed else output + 2
-    if not design.has_attachment:
-        equations += model.mean_motion(bore, of_spline)
-    held, turn = [f"{first}, 1, 3", f"{second}, 1, 2", *bore_held], f"{second}, 3"
-    rotation = f"{turn}, 3"
-    dependent = {terms[0][0] for terms in equations}
-    equations += model.ties() if model.plane else ()
-
+    design = model.design
+    supports = JobSupports(
+        model,
+        len(model.points) + len(cam.points) + 1,
+        model.n_elements + len(cam.elements) + 1,
+    )
     yield from _heading(model, cam)
     yield f"*INCLUDE, INPUT={MESH}"
     yield from _cam(model, cam)
-    yield from ("*NODE, NSET=OUTPUT", f"{first}, 0., 0., 0.", f"{second}, 0., 0., 0.")
-    if bore_held:
-        yield from ("*NODE, NSET=HELD", f"{output + 3}, 0., 0., 0.", f"{output + 4}, 0., 0., 0.")
-    if design.has_attachment:
-        yield from _clamped(model.clamped_nodes(), of_spline)
-    for terms in equations:
+    yield from supports.lines()
+    for terms in (*supports.equations, *(model.ties() if model.plane else ())):
         yield from _equation(terms)
     on_flanks = design.penalty("flexible_spline", "ring_gear")
     for name, penalty in (("ON_CAM", design.wg_penalty), ("ON_FLANKS", on_flanks)):
@@ -160,18 +126,14 @@ def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
         yield from (f"*CONTACT PAIR, INTERACTION={name}, TYPE=SURFACE TO SURFACE", pair)
     # the facets of the cam are at their places at its temperature
     yield from initial_temperature(model, "CAM", "OUTPUT")
+    fixed = ["CAM, 1, 3", *supports.fixed]
     yield from ("*BOUNDARY", *fixed)
-
-    ring_held = [line for line in [*held, rotation] if not ring_fixed and line not in bore_held]
-    yield from _bend(model, dependent, [*frame, *ring_held])
-    yield from _step("2: on the cam", "*BOUNDARY, OP=NEW", *in_steps, *held, rotation, add=[CAM])
+    yield from _bend(model, supports)
+    held, rotation = [*fixed, *supports.frame, *supports.held], f"{supports.turn}, 3"
+    yield from _step("2: on the cam", "*BOUNDARY, OP=NEW", *held, rotation, add=[CAM])
     rotate = ("*BOUNDARY", f"{rotation}, {model.closing_rotation:.12e}")
     yield from _step("3: the loaded flanks meet", *rotate, add=FLANKS, acting=[CAM, *FLANKS])
-    if ring_fixed and design.has_attachment:
-        torque = ["*CLOAD", f"{turn}, {_internal_torque(design):.12e}"]
-    else:
-        torque = [*_torque(model, bore if ring_fixed else outer)]
-    load = ["*BOUNDARY, OP=NEW", *in_steps, *held, *torque]
+    load = ["*BOUNDARY, OP=NEW", *held, *supports.loads()]
     yield from _step("4: torque", *load, acting=[CAM, *FLANKS], parameters=", AMPLITUDE=STEP")
     yield from _step("5: at rest", acting=[CAM, *FLANKS], parameters=", AMPLITUDE=STEP")
 
@@ -202,9 +164,9 @@ def _cam(model: JobModel, cam: CamFacets) -> Iterator[str]:
     yield from ("*SURFACE, NAME=CAM, TYPE=ELEMENT", f"CAM, S{OUTER_FACE + 1}")
 
 
-def _bend(model: JobModel, dependent: set[int], held: Iterable[str]) -> Iterator[str]:
-    """Step 1. dependent : nodes whose displacement an equation gives;  held : further boundary
-    conditions"""
+def _bend(model: JobModel, supports: JobSupports) -> Iterator[str]:
+    """Step 1."""
+    dependent = {terms[0][0] for terms in supports.equations}
     nodes = np.array([k for k in model.inner_nodes() if k not in dependent])
     u = BentSpline(model.design).displacement(model.points[nodes])
     bent = [
@@ -212,30 +174,13 @@ def _bend(model: JobModel, dependent: set[int], held: Iterable[str]) -> Iterator
         for node, values in zip(nodes + 1, u[:, : 2 if model.plane else 3], strict=True)
         for axis, value in enumerate(values, start=1)
     ]
-    lines = (*temperatures(model), "*BOUNDARY", *held, *bent)
-    yield from _step("1: bent without contact", *lines, remove=[CAM, *FLANKS])
-
-
-def _clamped(nodes: Ints, reference: int) -> Iterator[str]:
-    """Nodes of a clamped ring as one rigid body, whose rotations are the degrees of freedom 1 to 3
-    of the node after `reference`."""
-    yield "*NSET, NSET=CLAMPED"
-    yield from number_lines(nodes)
-    yield f"*RIGID BODY, NSET=CLAMPED, REF NODE={reference + 1}, ROT NODE={reference + 2}"
-
-
-def _internal_torque(design: DriveDesign) -> float:
-    return design.kinematics.internal_torque(design.load.torque)
-
-
-def _torque(model: JobModel, surface: CoupledSurface) -> Iterator[str]:
-    """Forces of the torque: those of the distributing coupling at the angle zero of the output."""
-    torque = _internal_torque(model.design)
-    x = model.points[surface.nodes, :2]
-    share = torque * surface.weight / float((surface.weight * (x**2).sum(axis=1)).sum())
-    yield "*CLOAD"
-    for node, fx, fy in zip(surface.nodes + 1, -share * x[:, 1], share * x[:, 0], strict=True):
-        yield from (f"{node}, 1, {fx:.12e}", f"{node}, 2, {fy:.12e}")
+    growth = supports.flange.forces() if supports.flange else ()
+    lines = [*temperatures(model), *growth, "*BOUNDARY", *supports.frame]
+    if supports.bearing or not supports.ring_fixed:  # the inner surface holds the spline
+        lines += supports.output_held
+    if not supports.ring_fixed:
+        lines.append(f"{supports.turn}, 3")
+    yield from _step("1: bent without contact", *lines, *bent, remove=[CAM, *FLANKS])
 
 
 def _step(

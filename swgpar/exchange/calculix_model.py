@@ -33,9 +33,6 @@ MEAN_NODES = 8
 """Least number of nodes of a mean motion; the mean of this many nodes at equal angles is free of
 the waves of the bent flexible spline up to this order."""
 
-AT_EDGE = 1e-6
-"""Distance (mm) within which a node lies on the edge of a clamped ring."""
-
 Term = tuple[int, int, float]
 """Node from 0, degree of freedom from 1, coefficient."""
 
@@ -114,14 +111,6 @@ class JobModel:
         nodes = np.intersect1d(nodes, self.spline.node_sets["bore"]) if self.plane else nodes
         return np.unique(self.numbers(self.spline, nodes))
 
-    def clamped_nodes(self) -> Ints:
-        """Nodes (n,), from 0, of the clamped ring of closed end or flange."""
-        low, high = self.design.cup.attached_ring
-        nodes = np.unique(self.spline.faces["end"])
-        radius = np.hypot(*self.spline.coords[nodes, :2].T)
-        within = (radius >= low - AT_EDGE) & (radius <= high + AT_EDGE)
-        return np.unique(self.numbers(self.spline, nodes[within]))
-
     def inner_gap(self) -> float:
         """Mean distance (mm) of the inner surface's facets from the exact cylinder."""
         corners = self.spline.coords[self.spline.faces["inner"]]
@@ -161,15 +150,24 @@ class JobModel:
             closing = self.design.backlash_angle
         return self.design.kinematics.torque_direction * closing
 
-    def housing(self, surface: CoupledSurface) -> Iterator[list[Term]]:
-        """The nodes of a surface, that of the ring gear, move along its circle and the axis.
+    def housing(self, nodes: Ints, guide: int | None = None) -> Iterator[list[Term]]:
+        """Nodes (n,) of the outer surface of the ring gear move along its circle and the axis.
+
+        guide : node of the displacement of the circle along x and y, the next one of its slopes
+        along z; without it the circle stands still
 
         The equations are linear: a node moves on the chord of the rotation that brings the flanks
         together.
         """
-        normal, axes = self._chords(surface.nodes)
-        for node, n, pair in zip(surface.nodes.tolist(), normal, axes.tolist(), strict=True):
-            yield [(node, axis + 1, float(n[axis])) for axis in pair]
+        normal, axes = self._chords(nodes)
+        for node, n, pair in zip(nodes.tolist(), normal, axes.tolist(), strict=True):
+            terms = [(node, axis + 1, float(n[axis])) for axis in pair]
+            if guide is not None:
+                terms += [(guide, axis + 1, -float(n[axis])) for axis in pair]
+            if guide is not None and not self.plane:
+                z = float(self.points[node, 2])
+                terms += [(guide + 1, axis + 1, -z * float(n[axis])) for axis in pair]
+            yield terms
 
     def _chords(self, nodes: Ints) -> tuple[Floats, Ints]:
         """Normals (n, 2) mm of the chords, and the axes (n, 2): of the displacement that follows,
@@ -179,48 +177,68 @@ class JobModel:
         return normal, np.column_stack([first, 1 - first])
 
     def mean_motion(
-        self, surface: CoupledSurface, reference: int, in_housing: bool = False
+        self,
+        surface: CoupledSurface,
+        reference: int,
+        *,
+        place: float | None = None,
+        in_housing: bool = False,
+        guide: int | None = None,
     ) -> Iterator[list[Term]]:
         """Mean displacements, tilts and rotation about z of a surface, linear: the degrees of
         freedom 1 to 3 of the node `reference`, and those of the next one.
 
-        in_housing : the nodes move in a housing; there is no mean displacement along x and y then
+        place : mm along z, of the point whose displacement the first node has; default the middle
+        of the surface, as in the plane model
+        in_housing : the nodes move in a housing, with `guide` as in `housing`; without a guide
+        there is no mean displacement along x and y
         """
         x = self.points[surface.mean]
         arm, n = x - x.mean(axis=0), len(x)
+        lever = 0.0 if place is None or self.plane else place - float(x[:, 2].mean())
         radius2 = float((arm[:, :2] ** 2).sum())
         (right, top), (left, bottom) = arm[:, :2].argmax(axis=0), arm[:, :2].argmin(axis=0)
         one, none = np.full(n, 1.0 / n), np.zeros(n)
-        # of the displacements along x, y and z; the node that depends on the others, and its axis
+        first, second = reference, reference + 1
+        # factors of the displacements along x, y and z; the displacement that depends on the
+        # others, by node and axis; factors of the references
         turn = -arm[:, 1] / radius2, arm[:, 0] / radius2, none
-        rows = [((reference + 1, 3), turn, (bottom, 0))]
-        if not in_housing:
+        rows = [(turn, (bottom, 0), {(second, 3): -1.0})]
+        if not in_housing or guide is not None:
             rows += [
-                ((reference, 1), (one, none, none), (top, 0)),
-                ((reference, 2), (none, one, none), (right, 1)),
+                ((one, none, none), (top, 0), {(first, 1): -1.0, (second, 2): lever}),
+                ((none, one, none), (right, 1), {(first, 2): -1.0, (second, 1): -lever}),
             ]
         if not self.plane:
             rows += [
-                ((reference, 3), (none, none, one), (left, 2)),
-                ((reference + 1, 1), (none, none, 2.0 / radius2 * arm[:, 1]), (top, 2)),
-                ((reference + 1, 2), (none, none, -2.0 / radius2 * arm[:, 0]), (right, 2)),
+                ((none, none, one), (left, 2), {(first, 3): -1.0}),
+                ((none, none, 2.0 / radius2 * arm[:, 1]), (top, 2), {(second, 1): -1.0}),
+                ((none, none, -2.0 / radius2 * arm[:, 0]), (right, 2), {(second, 2): -1.0}),
             ]
-        factors = np.array([np.stack(factor, axis=-1).ravel() for _, factor, _ in rows])
+        freedoms = [(int(node), axis) for node in surface.mean for axis in (1, 2, 3)]
+        freedoms += [(node, axis) for node in (first, second) for axis in (1, 2, 3)]
+        if guide is not None:
+            freedoms += [(guide + k, axis) for k in (0, 1) for axis in (1, 2)]
+        column = {freedom: k for k, freedom in enumerate(freedoms)}
+        factors = np.zeros((len(rows), len(freedoms)))
+        for row, (of_nodes, _, of_references) in zip(factors, rows, strict=True):
+            row[: 3 * n] = np.stack(of_nodes, axis=-1).ravel()
+            for freedom, factor in of_references.items():
+                row[column[freedom]] = factor
         if in_housing:
-            normal, axes = self._chords(surface.mean)
-            for k, (first, second) in enumerate(axes):
-                slope = normal[k, second] / normal[k, first]
-                factors[:, 3 * k + second] -= slope * factors[:, 3 * k + first]
-                factors[:, 3 * k + first] = 0.0
-        dependent = [3 * k + axis for *_, (k, axis) in rows]
+            for (node, axis, factor), *others in self.housing(surface.mean, guide):
+                inside = factors.T[column[node, axis]]
+                by_inside = inside / factor
+                inside[:] = 0.0
+                for other, other_axis, share in others:
+                    factors.T[column[other, other_axis]] -= share * by_inside
+        dependent = [3 * int(k) + axis for _, (k, axis), _ in rows]
         # none of the dependent displacements is left in the equations of the others
-        inverse = np.linalg.inv(factors[:, dependent])
-        solved = inverse @ factors
-        for i, first in enumerate(dependent):
-            used = np.flatnonzero(np.abs(solved[i]) > 1e-12 * np.abs(solved[i]).max())
-            columns = [first, *np.setdiff1d(used, dependent)]
-            terms = [(int(surface.mean[c // 3]), c % 3 + 1, float(solved[i, c])) for c in columns]
-            yield terms + [(*rows[j][0], -float(f)) for j, f in enumerate(inverse[i]) if f]
+        solved = np.linalg.inv(factors[:, dependent]) @ factors
+        for row, first_column in zip(solved, dependent, strict=True):
+            used = np.flatnonzero(np.abs(row) > 1e-12 * np.abs(row).max())
+            columns = [first_column, *np.setdiff1d(used, dependent)]
+            yield [(*freedoms[c], float(row[c])) for c in columns]
 
 
 def _quads(grid: Ints) -> Ints:

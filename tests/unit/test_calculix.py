@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mpi4py import MPI
+from scipy.spatial import cKDTree
 
 import swgpar
 from support.bearing import BEARING
@@ -15,12 +17,14 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.errors import InputError
 from swgpar.exchange.calculix import write_calculix
+from swgpar.exchange.calculix_flange import Flange
 from swgpar.exchange.calculix_model import JobModel
 from swgpar.exchange.cam_facets import OUTER_FACE, SAGITTA, cam_facets
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing import load_recipe
 from swgpar.meshing.inp import HEX_FACES
 from swgpar.meshing.quality import hex_volumes
+from swgpar.model.drive_model import build_drive_model
 
 ROLLERS = ("wave_generator.type=four_roller", "wave_generator.beta=15", "wave_generator.r_4=4")
 
@@ -42,6 +46,41 @@ def test_facets_lie_on_the_cam(overrides: tuple[str, ...]) -> None:
     # along the width the facets have a height of their own, where crowning curves the cam
     crowned = design.micro_geometry.wg_crowning / 16**2
     assert np.abs(height).max() < cam.sagitta + crowned
+
+
+@pytest.mark.parametrize("overrides", [(), PLANE], ids=["cup", "plane"])
+def test_equations_of_a_gear_in_a_guide_that_follows(overrides: tuple[str, ...]) -> None:
+    """The ring gear moves with its bearing, 9 mm from the middle, and turns in its guide."""
+    model = JobModel(
+        swgpar.load_design(DESIGN, [*overrides, "drive.layout=spline_fixed"]), load_recipe(RECIPE)
+    )
+    surface, n = model.surface(model.ring, "outer"), len(model.points)
+    middle = float(model.points[surface.mean, 2].mean())
+    lever = 0.0 if model.plane else 9.0
+    x = model.points - [0.0, 0.0, middle]
+    move = np.array([2e-3, -1e-3, 0.0 if model.plane else 3e-3])
+    tilt = np.array([1e-4, -2e-4, 0.0]) * (not model.plane)
+    u = move + np.cross(tilt, x - [0.0, 0.0, lever])
+    angle = model.closing_rotation
+    u[:, :2] += rotated(x[:, :2], angle) - x[:, :2]
+    at_zero = move + np.cross(tilt, [0.0, 0.0, -middle - lever])
+    values = {
+        n: move,
+        n + 1: [*tilt[:2], np.sin(angle)],
+        n + 2: at_zero,
+        n + 3: [tilt[1], -tilt[0], 0.0],
+    }
+    place = middle + 9.0
+    means = [*model.mean_motion(surface, n, place=place, in_housing=True, guide=n + 2)]
+    rows = [*means, *model.housing(surface.nodes, n + 2)]
+    dependent = [terms[0][:2] for terms in rows]
+    assert len(set(dependent)) == len(rows)
+    assert len(means) == (3 if model.plane else 6)
+    assert not {term[:2] for terms in means for term in terms[1:]} & set(dependent)
+    for terms in rows:
+        found = sum(f * (values[k] if k >= n else u[k])[axis - 1] for k, axis, f in terms)
+        # a tilt by 2e-4 of what is rotated
+        assert abs(found) < 1e-9 * sum(abs(f) for *_, f in terms)
 
 
 @pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
@@ -86,7 +125,7 @@ def test_equations_give_the_mean_motion(overrides: tuple[str, ...], layout: str)
         if housed:
             assert all(
                 abs(sum(f * u[n, k - 1] for n, k, f in terms)) < 1e-12
-                for terms in model.housing(surface)
+                for terms in model.housing(surface.nodes)
             )
 
 
@@ -102,11 +141,6 @@ def test_forces_have_the_torque_of_the_design(tmp_path: Path) -> None:
         moment += float(force) * (x if axis == "2" else -y)
     assert moment == pytest.approx(200.0)
     assert f"*INCLUDE, INPUT={mesh.name}" in text
-
-
-OUTPUT_BEARING = tuple(
-    f"output_bearing.{kind}_stiffness=1e5" for kind in ("radial", "axial", "tilting")
-)
 
 
 @pytest.mark.parametrize(
@@ -125,7 +159,6 @@ OUTPUT_BEARING = tuple(
         ("deviations.flexible_spline.eccentricity=0.01", "[deviations] is not available"),
         ("stiffness.torque=0.2", "[stiffness] is not available"),
         ("ratcheting.increment=0.1", "[ratcheting] is not available"),
-        (OUTPUT_BEARING, "[output_bearing] is not available"),
         (
             ("ring_gear.frame.interference=0.01", "drive.layout=spline_fixed"),
             "a temperature or a fit of [ring_gear.frame] around a ring gear that rotates is not",
@@ -143,28 +176,7 @@ def test_what_the_job_does_not_carry(
     assert words in str(raised.value)
 
 
-BOLTS = (
-    "cup.attachment=bolted",
-    "cup.bolts=6",
-    "cup.bolt_circle=20",
-    "cup.washer_diameter=3",
-)
-
-
-def test_bolts_are_not_carried(tmp_path: Path) -> None:
-    words = 'cup.attachment = "bolted" is not available with the format inp: allowed "edge" or'
-    with pytest.raises(InputError, match=words):
-        swgpar.export(swgpar.load_design(DESIGN, BOLTS), tmp_path, ["inp"], mesh=RECIPE)
-
-
 WARM = ("material.expansion=12e-6", "flexible_spline.temperature=70")
-
-
-def test_a_clamped_ring_that_grows_is_not_carried(tmp_path: Path) -> None:
-    clamped = ("cup.attachment=clamped", "cup.clamping_radius=10")
-    words = "because a \\*RIGID BODY does not grow with the flexible spline"
-    with pytest.raises(InputError, match=words):
-        swgpar.export(swgpar.load_design(DESIGN, [*clamped, *WARM]), tmp_path, ["inp"], mesh=RECIPE)
 
 
 def _after(text: str, keyword: str) -> list[list[str]]:
@@ -210,28 +222,57 @@ def test_temperatures_and_the_fit_of_the_frame(tmp_path: Path, overrides: tuple[
     assert growth == pytest.approx(12e-6 * 80.0, rel=0.01)
 
 
+ATTACHED = {
+    "clamped": ("cup.attachment=clamped", "cup.clamping_radius=10"),
+    "bolted": (
+        "cup.attachment=bolted",
+        "cup.bolts=6",
+        "cup.bolt_circle=20",
+        "cup.washer_diameter=3",
+    ),
+}
+
+
 @pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
-def test_a_clamped_ring_is_a_rigid_body(tmp_path: Path, layout: str) -> None:
-    clamped = ("cup.attachment=clamped", "cup.clamping_radius=10", f"drive.layout={layout}")
-    design = swgpar.load_design(DESIGN, clamped)
+@pytest.mark.parametrize("attachment", ATTACHED)
+def test_a_flange_has_the_bedding_of_the_program(
+    tmp_path: Path, attachment: str, layout: str
+) -> None:
+    design = swgpar.load_design(
+        DESIGN, [*ATTACHED[attachment], *WARM, f"drive.layout={layout}", "solver.symmetry=false"]
+    )
     job, _ = swgpar.export(design, tmp_path, ["inp"], mesh=RECIPE)
     model, text = JobModel(design, load_recipe(RECIPE)), job.read_text()
-    listed = text.split("*NSET, NSET=CLAMPED\n")[1].split("*")[0].replace("\n", ", ").split(", ")
-    nodes = np.array([int(node) for node in listed if node]) - 1
-    radius = np.hypot(*model.points[nodes, :2].T)
-    assert radius.min() == pytest.approx(design.cup.inner_radius)
-    assert radius.max() == pytest.approx(10.0)
-    # the whole ring: both faces, all sectors
-    assert len(np.unique(model.points[nodes, 2].round(6))) == 2
-    assert len(nodes) % design.drive.teeth_fs == 0
-    assert "*RIGID BODY, NSET=CLAMPED" in text
-    loads = text.split("*CLOAD\n")[1].split("*")[0].splitlines()
+    flange = Flange(model, 1, 1)
+    own = build_drive_model(design, load_recipe(RECIPE), comm=MPI.COMM_SELF)
+    bedding = own.problem.supports.couplings[0]
+    distance, places = cKDTree(bedding.undeformed).query(model.points[flange.nodes])
+    assert distance.max() < 1e-9
+    assert flange.stiffness == pytest.approx(bedding.stiffness[places], rel=1e-9)
+    assert len(flange.nodes) == len(bedding.nodes)
+    grown = flange.growth - (bedding.on_flange - bedding.arm)[places]
+    assert np.abs(grown).max() < 1e-12
+    # three springs each, whose stiffness the file has
+    sections = text.split("*ELEMENT, TYPE=SPRING2, ELSET=BEDDING_")[1:]
+    stiffness = np.zeros(3)
+    for section in sections:
+        elements, law = section.split("*SPRING, ELSET=BEDDING_")
+        _, freedoms, value = law.splitlines()[:3]
+        axis = int(freedoms.split(",")[0])
+        stiffness[axis - 1] += (len(elements.splitlines()) - 1) * float(value)
+    assert stiffness == pytest.approx(np.full(3, flange.stiffness.sum()), rel=1e-7)
+    loads = text.split("*CLOAD\n")
+    # forces of the growth of step 1 are in equilibrium
+    forces = np.array(_after(text, "*CLOAD"), dtype=float)
+    assert np.abs(forces[:, 2]).max() > 1.0
+    assert abs(forces[:, 2].sum()) < 1e-9 * np.abs(forces[:, 2]).sum()
+    last = loads[-1].split("*")[0].splitlines()
     if layout == "ring_fixed":  # the torque on the node of the rotations
-        (load,) = (line.split(", ") for line in loads)
+        (load,) = (line.split(", ") for line in last)
         assert load[1] == "3"
         assert float(load[2]) == pytest.approx(2000.0)
     else:  # forces on the ring gear
-        assert len(loads) > 100
+        assert len(last) > 100
 
 
 def test_a_mesh_is_needed_for_the_job_and_for_nothing_else(tmp_path: Path) -> None:
