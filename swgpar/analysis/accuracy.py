@@ -28,11 +28,6 @@ def require_refinable(design: DriveDesign, accuracy: float) -> None:
         (design.has_program, "a load program", "a mesh recipe"),
         (design.bearing is not None, "wave_generator.bearing", "without it"),
         (
-            design.is_bolted,
-            'cup.attachment = "bolted"',
-            '"edge" and "clamped", because coarse elements of the end do not resolve washers',
-        ),
-        (
             design.is_loaded_sideways,
             SIDEWAYS,
             "without them",
@@ -46,7 +41,8 @@ def require_refinable(design: DriveDesign, accuracy: float) -> None:
 
 
 def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
-    """The design with the angles of the period that suit an accuracy, unless it says them itself.
+    """The design with the angles of the period that suit an accuracy, unless it says them itself;
+    not with bolts, whose period is long.
 
     Raises InputError where the accuracy is out of range.
     """
@@ -55,7 +51,8 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
     whole_period = design.steps.rotation >= 0.999999 * design.periods * np.degrees(
         design.kinematics.period_angle
     )
-    if "samples" in design.steps.model_fields_set or not whole_period:
+    given = "samples" in design.steps.model_fields_set
+    if given or not whole_period or design.kinematics.pitches > 1:
         return design
     samples = next(count for least, count in SAMPLES if accuracy >= least)
     kinematics = design.kinematics

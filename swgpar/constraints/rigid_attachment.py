@@ -45,9 +45,9 @@ Inside = Callable[[np.ndarray], np.ndarray]
 
 
 def face_sides(mesh: SectorMesh, surface: str) -> np.ndarray:
-    """Largest lengths (4,) mm of the sides of a sector's plane faces."""
+    """Lengths (n, 4) mm of the sides of a sector's plane faces."""
     corners = mesh.coords[mesh.faces[surface]][..., :2]
-    return np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).max(axis=0)
+    return np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
 
 
 def area_shares(
@@ -59,7 +59,7 @@ def area_shares(
     """
     faces = mesh.faces[surface]
     corners = rotated(mesh.coords[faces][..., :2], angle)
-    sides = face_sides(mesh, surface)
+    sides = face_sides(mesh, surface).max(axis=0)
     counts = (int(np.ceil(POINTS * max(sides[k], sides[k + 2]) / width)) for k in (0, 1))
     at_a, at_b = ((2.0 * np.arange(n) + 1.0) / n - 1.0 for n in counts)
     a, b = (v.ravel()[:, None] for v in np.meshgrid(at_a, at_b, indexing="ij"))

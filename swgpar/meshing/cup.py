@@ -19,6 +19,12 @@ SHORTEST = 0.25
 """Mean length of the elements of the cylinder over its thickness, at least: a short wall has fewer
 elements."""
 
+ROUND_OFF = 1e-6
+"""Shares of closed end or flange that are nothing."""
+
+ACROSS_WASHERS = 2
+"""Elements across the ring of the washers, at least."""
+
 GROWTH = 1.6
 """Ratio of the lengths of successive elements behind the fillet at the back of the teeth, and from
 the ends of a long cylinder to its middle, at most."""
@@ -109,7 +115,26 @@ def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
     if cup.clamping_radius is not None:  # a clamped ring is not bent: one element
         free = (cup.clamping_radius - r_center) / (wall.edge - r_center)
         share = np.append(share * free, 1.0) if free > 0.0 else np.array([0.0, 1.0])
+    elif cup.attached_ring is not None:
+        share = _shares_with_washers(cup, cup.attached_ring, recipe)
     return section_lines(cup, s, angle, r_center + (wall.edge - r_center) * share[1:])
+
+
+def _shares_with_washers(
+    cup: CupGeometry, washers: tuple[float, float], recipe: CupRecipe
+) -> Floats:
+    """Stations (n,) on closed end or flange, 0 at the fillet and 1 at its edge, with those at both
+    edges of the washers. washers : radii, mm"""
+    begin, edge = cup.wall.center[0], cup.wall.edge
+    inner, outer = sorted((np.array(washers) - begin) / (edge - begin))
+    found = [0.0]
+    for end, least in ((inner, 1), (outer, ACROSS_WASHERS), (1.0, 1)):
+        length = end - found[-1]
+        if length > ROUND_OFF:
+            count = max(least, round(recipe.closed_end * length))
+            ratio = recipe.end_ratio if len(found) == 1 else 1.0
+            found += list(found[-1] + length * symmetric_steps(count, ratio)[1:])
+    return np.array(found)
 
 
 def section_lines(cup: CupGeometry, s: Floats, angle: Floats, r: Floats) -> Meridian:

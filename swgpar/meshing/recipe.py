@@ -61,7 +61,8 @@ class CupRecipe(Section):
     )
     fillet: int = quantity(text="elements along the fillet", ge=1, le=100)
     closed_end: int = quantity(
-        text="elements along closed end or flange; without its clamped ring, which has one",
+        text="elements along closed end or flange; without its clamped ring, which has one; across "
+        "washers two at least",
         ge=1,
         le=400,
     )

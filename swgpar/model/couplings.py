@@ -14,6 +14,7 @@ from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import Partition
 from swgpar.log import logger
 from swgpar.materials import NO_GROWTH, Growth
+from swgpar.meshing.sector import SectorMesh
 
 
 def spline_attachment(
@@ -30,14 +31,8 @@ def spline_attachment(
     penalty : MPa / mm;  images : whether the model is a part of the drive
     moves : whether a bearing carries the flange
     """
-    longest = float(face_sides(spline.layout.mesh, "end").max())
-    if cup.attachment == "bolted" and longest > cup.washer_diameter:
-        logger.warning(
-            "elements of the closed end or flange are up to %.3g mm long, a washer is %.3g mm "
-            "wide: a mesh with shorter elements there holds the bolts better",
-            longest,
-            cup.washer_diameter,
-        )
+    if cup.attachment == "bolted":
+        _warn_of_wide_elements(spline.layout.mesh, cup)
     return RigidAttachment(
         partition,
         spline,
@@ -49,6 +44,20 @@ def spline_attachment(
         growth=spline.layout.body.growths[0] if spline.layout.body.growths else NO_GROWTH,
         moves=moves,
     )
+
+
+def _warn_of_wide_elements(mesh: SectorMesh, cup: Cup) -> None:
+    """Tell where elements in the ring of the washers are wider than these."""
+    middles = np.hypot(*mesh.coords[mesh.faces["end"]][..., :2].mean(axis=1).T)
+    low, high = cup.attached_ring
+    longest = float(face_sides(mesh, "end")[(low < middles) & (middles < high)].max())
+    if longest > cup.washer_diameter:
+        logger.warning(
+            "elements between the bolts are up to %.3g mm wide, a washer is %.3g mm wide: a mesh "
+            "with narrower elements there holds the bolts better",
+            longest,
+            cup.washer_diameter,
+        )
 
 
 def output_springs(section: OutputBearing, output: NodeMeans, copies: int) -> OutputSprings:

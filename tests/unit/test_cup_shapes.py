@@ -27,7 +27,7 @@ from support.cup_shapes import (
 )
 from support.paths import DRIVERS, RECIPE
 from support.stepping import loaded
-from swgpar.analysis.accuracy import require_refinable
+from swgpar.analysis.accuracy import require_refinable, with_accuracy
 from swgpar.analysis.bent_start import BentSpline
 from swgpar.analysis.forecast import forecast
 from swgpar.checks.derived_geometry import derived_geometry
@@ -514,11 +514,27 @@ def test_a_period_of_teeth_and_bolts_is_covered() -> None:
         shaped(bolted(8), "steps.rotation=42.0", "steps.samples=4")
 
 
-def test_bolts_have_no_accuracy() -> None:
-    with pytest.raises(
-        InputError, match="because coarse elements of the end do not resolve washers"
-    ):
-        require_refinable(shaped(bolted(8)), 0.01)
+def test_an_accuracy_chooses_no_angles_with_bolts() -> None:
+    """Few angles do not show the period of teeth and bolts; with a bolt for every tooth it is a
+    pitch."""
+    require_refinable(shaped(bolted(8)), 0.01)
+    for bolts, samples in ((8, 0), (40, 4)):
+        design = shaped(bolted(bolts, 1.0), "steps.rotation=45.0")
+        assert with_accuracy(design, 0.02).steps.samples == samples
+
+
+@pytest.mark.parametrize("closed_end", [1, 4, 9])
+@pytest.mark.parametrize("changes", [bolted(8), HAT | bolted(10, 3.0) | {"bolt_circle": 47.0}])
+def test_elements_end_at_the_washers(changes: Changes, closed_end: int) -> None:
+    """Nodes on both edges of their ring and between; more elements elsewhere with more of them."""
+    cup = shaped(changes).geometry.cup
+    recipe = load_recipe(RECIPE).cup.model_copy(update={"closed_end": closed_end})
+    lines = meridian(cup, recipe)
+    radii, (low, high) = lines.inner[lines.end :, 0], cup.attached_ring
+    assert all(np.abs(radii - edge).min() < 1e-9 for edge in (low, high))
+    assert np.sum((radii > low + 1e-9) & (radii < high - 1e-9)) >= 1
+    assert radii[-1] == cup.wall.edge and np.all(np.diff(radii) * (radii[-1] - radii[0]) > 0.0)
+    assert len(radii) - 1 == pytest.approx(max(closed_end, 4), abs=1)
 
 
 def test_check_shows_the_period() -> None:
@@ -556,14 +572,12 @@ def test_what_goes_with_bolts(overrides: tuple[str, ...]) -> None:
     assert shaped(bolted(8), *overrides).kinematics.pitches == 5
 
 
-@pytest.mark.parametrize(("elements", "warned"), [(1, True), (4, False)])
+@pytest.mark.parametrize(("washer", "warned"), [(0.1, True), (6.0, False)])
 def test_elements_wider_than_a_washer_are_warned_of(
-    elements: int, warned: bool, caplog: pytest.LogCaptureFixture
+    washer: float, warned: bool, caplog: pytest.LogCaptureFixture
 ) -> None:
-    recipe = load_recipe(RECIPE)
-    recipe = recipe.model_copy(
-        update={"cup": recipe.cup.model_copy(update={"closed_end": elements})}
-    )
     with caplog.at_level("WARNING"):
-        build_drive_model(shaped(bolted(4, 6.0)), recipe, comm=MPI.COMM_SELF).destroy()
-    assert ("a washer is 6 mm wide" in caplog.text) == warned and len(caplog.records) == warned
+        design, recipe = shaped(bolted(4, washer)), load_recipe(RECIPE)
+        build_drive_model(design, recipe, comm=MPI.COMM_SELF).destroy()
+    assert (f"a washer is {washer:g} mm wide" in caplog.text) == warned
+    assert len(caplog.records) == warned
