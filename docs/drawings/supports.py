@@ -19,6 +19,7 @@ from _drafting import (
 )
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from swgpar.design.cup_section import Cup
 from swgpar.design.drive_design import DriveDesign
@@ -57,9 +58,43 @@ def closed_end(ax: Axes, design: DriveDesign, title: str) -> None:
     ax.set_title(title, fontsize=10)
 
 
+def joint(ax: Axes, design: DriveDesign) -> None:
+    """Section through a bolt: closed end between washer and flange, and what it puts on the
+    flange."""
+    cup, half, wide = design.cup, 0.5 * design.cup.end_thickness, 15.0
+    washer, shank = 0.5 * cup.washer_diameter, 2.2
+    parts = (
+        ((-wide, -half - 6.0), 2.0 * wide, 6.0, RING),
+        ((-wide, -half), 2.0 * wide, 2.0 * half, SPLINE),
+        ((-washer, half), 2.0 * washer, 1.2, "white"),
+        ((-1.7 * shank, half + 1.2), 3.4 * shank, 3.2, "white"),
+        ((-shank, -half - 6.0), 2.0 * shank, 6.0 + 2.0 * half + 1.2, "white"),
+    )
+    for corner, width, height, colour in parts:
+        ax.add_patch(Rectangle(corner, width, height, fc=colour, ec=INK, lw=0.8))
+    axis_line(ax, (0.0, -half - 8.0), (0.0, half + 6.5))
+    y = half + 7.5
+    dimension(ax, (-washer, y), (washer, y), "washer_diameter", at=(0.0, y + 1.2))
+    label(ax, (-14.6, -half - 3.0), "flange, rigid", color=INK, ha="left")
+    label(ax, (-14.6, 0.0), "closed end", color=INK, ha="left")
+    arrow = {"arrowstyle": "-|>", "color": NOTE, "lw": 1.4}
+    ax.annotate("", (-washer - 1.2, half + 3.6), (-washer - 1.2, half), arrowprops=arrow)
+    ax.annotate("", (washer + 7.0, 0.0), (washer + 1.0, 0.0), arrowprops=arrow)
+    for x, text in ((-washer - 2.0, "axial_N"), (washer + 4.0, "radial_N")):
+        below = text == "radial_N"
+        label(ax, (x, -half - 1.2 if below else half + 4.8), text, color=NOTE)
+    bend = {**arrow, "connectionstyle": "arc3,rad=-0.45"}
+    ax.annotate("", (washer + 4.0, half + 0.6), (washer - 0.6, half + 4.0), arrowprops=bend)
+    label(ax, (washer + 4.6, half + 4.6), "tilting_Nmm", color=NOTE)
+    label(ax, (0.0, -half - 10.5), "bolt_preload presses the end on the flange,", color=INK)
+    label(ax, (0.0, -half - 12.5), "with joint_friction between both", color=INK)
+    ax.set_ylim(-half - 16.0, half + 14.0)
+    ax.set_title("loads of a joint, on the flange", fontsize=10)
+
+
 def attachment() -> Figure:
-    """Bolts, and a clamped ring."""
-    figure, axes = canvas(10.5, 5.4, 1, 2)
+    """Bolts, a clamped ring, and a joint."""
+    figure, axes = canvas(15.0, 5.4, 1, 3)
     bolted, clamped = with_cup(BOLTED), with_cup(CLAMPED)
     closed_end(axes[0], bolted, 'attachment = "bolted": rigid where grey, under bolts')
     circle, washer = bolted.cup.bolt_circle, bolted.cup.washer_diameter
@@ -72,6 +107,7 @@ def attachment() -> Figure:
     closed_end(axes[1], clamped, 'attachment = "clamped": rigid where grey')
     at = clamped.cup.clamping_radius * np.array([-np.sin(0.9), np.cos(0.9)])
     dimension(axes[1], (0.0, 0.0), tuple(at), "clamping_radius", at=tuple(0.8 * at))
+    joint(axes[2], bolted)
     return figure
 
 

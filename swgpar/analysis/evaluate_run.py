@@ -13,6 +13,7 @@ from swgpar.checks.clearance import clearances
 from swgpar.drive_results.drive_tables import DriveTables
 from swgpar.drive_results.summary import BodySizes, DriveSummary
 from swgpar.evaluation.bearing_loads import BallLoads, evaluate_bearing
+from swgpar.evaluation.bolt_loads import evaluate_bolts
 from swgpar.evaluation.fatigue import FatigueResult, evaluate_fatigue
 from swgpar.evaluation.frequencies import NaturalFrequencies
 from swgpar.evaluation.housing_values import HousingStresses
@@ -138,6 +139,9 @@ def evaluate_run(
             [rows[k - 1] for k in _increments_under_load(rows)],
         )
         if design.output_bearing
+        else None,
+        bolts=evaluate_bolts(design.cup, record.bolts, _increments_under_load(rows))
+        if design.is_bolted
         else None,
         clearance=rigid_clearance(clearances(design)),
         frequencies=NaturalFrequencies(modes=record.modes) if record.modes else None,

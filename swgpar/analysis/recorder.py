@@ -19,6 +19,7 @@ from swgpar.drive_results.drive_tables import DriveTables, write_tables
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.drive_results.summary_file import summary_from, summary_to_json
 from swgpar.evaluation.bearing_loads import ball_rows
+from swgpar.evaluation.bolt_loads import bolt_rows
 from swgpar.evaluation.compliance import bearing_shares
 from swgpar.evaluation.frequencies import natural_modes
 from swgpar.evaluation.housing_values import housing_values, keep_largest
@@ -98,6 +99,9 @@ class Recorder(ABC):
             on_edge = self._keep_pairs(state)
             self._keep_places(state, body_fields, on_edge)
             self._keep_balls(state, race)
+            if model.design.is_bolted:
+                number, step = len(self.record.rows), self.record.rows[-1]["step"]
+                self.record.bolts += bolt_rows(model, state, number, step)
             if model.design.housing is not None and state.is_periodic:
                 keep_largest(self.record.housing, housing_values(model, housing))
         with model.phases("fatigue and losses"):
@@ -184,6 +188,7 @@ class Recorder(ABC):
                 program=as_columns(self.program_rows()),
                 transmission_error=as_columns(self.record.turns),
                 balls=as_columns(self.record.balls),
+                bolts=as_columns(self.record.bolts),
             )
             summary = summary_from(json.loads(summary_to_json(summary)), rows, tables.pairs)
         return self.comm.bcast((rows, summary, tables) if self.comm.rank == 0 else None)
@@ -294,6 +299,7 @@ class FolderRecorder(Recorder):
             "program": program,
             "stiffness": loop_rows(program) if self.model.design.stiffness else [],
             "balls": record.balls,
+            "bolts": record.bolts,
         }
         for name, rows in tables.items():
             if rows:

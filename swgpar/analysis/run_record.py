@@ -40,6 +40,7 @@ class RunRecord:
     slip_checks : increments with friction whose last step was taken again in halves
     turns : rows of transmission_error.csv
     balls : rows of balls.csv, the loads of a bearing's balls
+    bolts : rows of bolts.csv
     race_stress : largest stresses of the outer race under load, MPa
     housing : largest values under load, by fields of `HousingStresses`
     bearing_shares : of the bearing in the compliance of the loaded state
@@ -65,6 +66,7 @@ class RunRecord:
     slip_checks: list[SlipCheck] = field(default_factory=list)
     turns: list[Row] = field(default_factory=list)
     balls: list[Row] = field(default_factory=list)
+    bolts: list[Row] = field(default_factory=list)
     race_stress: dict[str, float] = field(default_factory=dict)
     housing: dict[str, float] = field(default_factory=dict)
     bearing_shares: dict[str, ComplianceShares] = field(default_factory=dict)

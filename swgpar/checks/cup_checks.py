@@ -117,6 +117,13 @@ def _check_shape(cup: Cup) -> None:
                     f"cup.{key} = {value:g} is not available: allowed only with cup.{choice} = "
                     f'"{kind}"'
                 )
+    preload, friction = cup.bolt_preload, cup.joint_friction
+    allowed = 'only with cup.attachment = "bolted"'
+    require(preload is None or cup.attachment == "bolted", "cup.bolt_preload", preload, allowed)
+    if preload is not None and friction is None:
+        raise InputError("cup.joint_friction is missing: it is needed with cup.bolt_preload")
+    allowed = "only with cup.bolt_preload"
+    require(friction is None or preload is not None, "cup.joint_friction", friction, allowed)
 
 
 def _check_corners(cup: Cup) -> None:

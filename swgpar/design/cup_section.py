@@ -119,6 +119,19 @@ class Cup(Section):
     washer_diameter: float | None = quantity(
         None, unit="mm", text='diameter of the area under a bolt, needed with "bolted"', gt=0.0
     )
+    bolt_preload: float | None = quantity(
+        None,
+        unit="N",
+        text="preload of a bolt: washers are judged against sliding and gaping",
+        gt=0.0,
+    )
+    joint_friction: float | None = quantity(
+        None,
+        text="friction coefficient between closed end or flange and what it is bolted to, needed "
+        "with bolt_preload",
+        gt=0.0,
+        le=1.0,
+    )
 
     def is_attached(self, points: Floats) -> NDArray[np.bool_]:
         """Whether points (..., 2) mm of closed end or flange are clamped or lie under a bolt,

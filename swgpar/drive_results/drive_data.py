@@ -83,6 +83,9 @@ class DriveData(DriveTables):
     balls : dict of (n,) arrays
         Columns of balls.csv, a value for every ball of a bearing at every computed increment; empty
         without a bearing.
+    bolts : dict of (n,) arrays
+        Columns of bolts.csv, a value for every bolt at every computed increment; empty without
+        bolts.
     folder : Path or None
         The results folder; None when the run was in memory.
     """

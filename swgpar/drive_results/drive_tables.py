@@ -26,6 +26,7 @@ class DriveTables:
     program: Columns = field(default_factory=dict)
     transmission_error: Columns = field(default_factory=dict)
     balls: Columns = field(default_factory=dict)
+    bolts: Columns = field(default_factory=dict)
     fatigue_cycle: Columns = field(default_factory=dict)
     losses: Columns = field(default_factory=dict)
     fatigue: SectorFields | None = None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from swgpar.drive_results.check import Check
 from swgpar.drive_results.summary import DriveSummary
+from swgpar.evaluation.bolt_loads import BoltLoads
 from swgpar.evaluation.largest_contact import LargestContact
 from swgpar.evaluation.safety_and_life import CRITERIA, SafetyAndLife
 
@@ -15,12 +16,22 @@ UNKNOWN = "no strengths are given ([fatigue]): compare stresses and pressures wi
 
 
 def strength_checks(summary: DriveSummary) -> list[Check]:
-    """Safety of the flexible spline, and pressure of the flanks."""
+    """Safety of bolts and of the flexible spline, and pressure of the flanks."""
     strengths = summary.design.fatigue
+    found = [_joints(summary.bolts)] if summary.bolts and summary.bolts.judged else []
     if strengths is None:
-        return [Check("strength", None, UNKNOWN, of_strength=True)]
-    found = [_safety(summary.fatigue)] if summary.fatigue else []
+        return [*found, Check("strength", None, UNKNOWN, of_strength=True)]
+    found += [_safety(summary.fatigue)] if summary.fatigue else []
     return [*found, _pressure(summary.contact, FIRST_YIELD * strengths.yield_strength)]
+
+
+def _joints(bolts: BoltLoads) -> Check:
+    safeties = {"sliding": bolts.sliding, "gaping": bolts.gaping}
+    known = {name: safety for name, safety in safeties.items() if safety is not None}
+    stated = ", ".join(f"against {name} {safety:.3g}" for name, safety in known.items())
+    good = all(safety >= 1.0 for safety in known.values())
+    text = f"least safety of a bolt {stated or 'without limit'} (no estimate of the error)"
+    return Check("bolts", good, f"{text}; good from 1", of_strength=True)
 
 
 def _safety(fatigue: SafetyAndLife) -> Check:

@@ -9,6 +9,7 @@ from swgpar.answers.answer import Answer, AnswerGroup, AnswerKind
 from swgpar.answers.table import AnswerTable
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.bearing_loads import BallLoads
+from swgpar.evaluation.bolt_loads import BoltLoads
 from swgpar.evaluation.frequencies import NaturalFrequencies
 from swgpar.evaluation.housing_values import HousingStresses
 from swgpar.evaluation.largest_contact import LargestContact
@@ -45,6 +46,7 @@ ANSWER_GROUPS: dict[str, type[AnswerGroup]] = {
     "losses": DriveLosses,
     "bearing": BallLoads,
     "output_bearing": OutputBearingLoads,
+    "bolts": BoltLoads,
     "frequencies": NaturalFrequencies,
     "housing": HousingStresses,
     "stresses": LargestStresses,
@@ -128,6 +130,7 @@ class DriveSummary(AnswerTable):
     clearance: RigidClearance | None = None
     frequencies: NaturalFrequencies | None = None
     housing: HousingStresses | None = None
+    bolts: BoltLoads | None = None
     slip: SlipError | None = None
     strains: LargestStrains | None = None
 

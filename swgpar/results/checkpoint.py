@@ -25,7 +25,7 @@ from swgpar.results.parallel_hdf5 import Block
 
 T = TypeVar("T")
 
-VERSION = 12
+VERSION = 13
 """Of the content, a run's included."""
 
 _ATTRS, _VERSION, _DIGEST = "attrs_json", "version", "attrs_sha256"

@@ -35,6 +35,7 @@ DRIVE_TABLES = {
     "losses": "losses at the angles of the sampled period",
     "fatigue_cycle": "stress over a cycle where the safety is the least",
     "balls": "loads of the balls of a bearing",
+    "bolts": "loads of the bolts that hold the cup",
 }
 """Tables that a drive adds to its history: name of the file without .csv -> what it has."""
 

@@ -7,13 +7,16 @@ import json
 import numpy as np
 import pytest
 from mpi4py import MPI
+from pytest_mpi import parallel_assert
 
-from support.cup_shapes import bolted, shaped
+from support.cup_shapes import ATTACHMENTS, bolted, shaped
 from support.paths import RECIPE
-from support.stepping import loaded, rotate
+from support.stepping import WORLD, loaded, rotate
 from swgpar.analysis.deviating_drive import DeviatingDrive, turn_design
 from swgpar.constraints.distributing_coupling import X, Y
 from swgpar.constraints.supports import SPLINE_COUPLING
+from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.bolt_loads import bolt_rows
 from swgpar.evaluation.losses import hysteresis_work
 from swgpar.evaluation.stress_cycle import StressCycle, sector_stress
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
@@ -23,6 +26,7 @@ from swgpar.meshing import load_recipe
 
 SAMPLES = 6
 BOLTS = 8
+HAT_BOLTED = ATTACHMENTS["hat, ten bolts"]
 TORQUE = 2000.0
 """N mm, on the output."""
 
@@ -68,6 +72,40 @@ def test_a_sampled_period_of_teeth_and_bolts() -> None:
     print(f"mean input torque / (T / ratio) = {mean * 20.0 / TORQUE:.5f}")
     assert mean == pytest.approx(TORQUE / 20.0, rel=0.01)
     assert hysteresis_work(cycle) > 0.0
+
+
+LOADS = ("tangential_N", "radial_N", "axial_N", "tilting_Nmm", "twisting_Nmm")
+
+
+def bolt_loads(design: DriveDesign, comm: MPI.Comm) -> np.ndarray:
+    """Columns (bolts, 5) of `LOADS` in the loaded state. Their moment about the axis is that of
+    teeth and wave generator on the flexible spline."""
+    stepper, row = loaded(design, comm)
+    rows = bolt_rows(stepper.model, stepper.load_state, 1, 3)
+    assert [row["bolt"] for row in rows] == list(range(design.cup.bolts))
+    if design.kinematics.output_gear == FLEXIBLE_SPLINE:  # the bolts turn with it
+        turned = [(row["angle_deg"] - stepper.row()["output_angle_deg"]) % 360.0 for row in rows]
+        assert turned[1] == pytest.approx(360.0 / len(rows))
+    stepper.model.destroy()
+    loads = np.array([[row[name] for name in LOADS] for row in rows])
+    carried = float(np.sum(loads[:, 0] * 0.5 * design.cup.bolt_circle + loads[:, 4]))
+    print(f"{carried:.6f} N mm, {loads[:5].round(2).tolist()}")
+    acting = row["wg_torque_Nmm"] + row["tooth_torque_Nmm"]
+    parallel_assert(carried == pytest.approx(acting, abs=1e-6 * TORQUE))
+    return loads
+
+
+@pytest.mark.parallel([1, 2, 3])
+def test_bolts_carry_the_torque() -> None:
+    """Half of the drive gives the rows of the whole."""
+    found = bolt_loads(shaped(bolted(BOLTS)), WORLD)
+    whole = bolt_loads(shaped(bolted(BOLTS), "solver.symmetry=false"), MPI.COMM_SELF)
+    parallel_assert(whole == pytest.approx(found, rel=1e-5, abs=1e-5 * np.abs(found).max()))
+
+
+@pytest.mark.parallel(1)
+def test_bolts_of_a_flange_that_stands() -> None:
+    bolt_loads(shaped(HAT_BOLTED, 'drive.layout="spline_fixed"', "load.torque=2.1"), MPI.COMM_SELF)
 
 
 def _pitch_errors(teeth: int) -> list[float]:
