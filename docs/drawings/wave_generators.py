@@ -96,9 +96,13 @@ def along(ax: Axes) -> None:
         leader(ax, (3.6, sign * 0.8), f"groove: {name}\n· ball_diameter", tuple(to))
     ax.add_patch(Circle((0.0, 0.0), 0.5 * diameter, fc="white", ec=INK, lw=0.8))
     dimension(ax, (-0.5 * width, 2.9), (0.5 * width, 2.9), "race_width")
+    outside, taper = 0.5 * diameter + race, 0.16
+    ends = np.array([(-0.5 * width, outside + taper), (0.5 * width, outside - taper)])
+    ax.plot(*ends.T, color=NOTE, lw=0.9)
+    leader(ax, (-3.1, 3.4), "race_taper, at the open end", tuple(ends[0]))
     axis_line(ax, (-3.4, -4.0), (3.4, -4.0))
     ax.set_xlim(-3.4, 5.2)
-    ax.set_ylim(-4.4, 3.3)
+    ax.set_ylim(-4.4, 3.7)
     ax.set_title("section through a ball (grooves exaggerated)", fontsize=10)
 
 

@@ -38,6 +38,21 @@ def check_bearing(design: DriveDesign) -> None:
     require(width <= face_width, f"{SECTION}.race_width", width, allowed)
     allowed = f"0 to below {half:g} mm (half the deflection)"
     require(bearing.clearance < half, f"{SECTION}.clearance", bearing.clearance, allowed)
-    slope = design.micro_geometry.wg_slope
-    allowed = f"only 0 with {SECTION}, whose balls run at mid-width, where a slope moves nothing"
+    _check_taper(design)
+
+
+def _check_taper(design: DriveDesign) -> None:
+    """A taper of the race's outside, and no slope of the cam."""
+    slope, taper = design.micro_geometry.wg_slope, f"{SECTION}.race_taper"
+    allowed = (
+        f"only 0 with {SECTION}: the slope goes round with the cam and the outer race does not, "
+        f"and balls do not lean with their grooves; {taper} is the taper of the race"
+    )
     require(slope == 0.0, "micro_geometry.wg_slope", slope, allowed)
+    most = min(0.5 * design.deflection, 0.25 * design.race_width) if design.has_cup else 0.0
+    allowed = (
+        f"{-most:g} to {most:g} mm (half the deflection, a quarter of the race's width)"
+        if design.has_cup
+        else f'only 0 with drive.model = "{design.drive.model}", which has no open end'
+    )
+    require(abs(design.bearing.race_taper) <= most, taper, design.bearing.race_taper, allowed)

@@ -78,10 +78,11 @@ def build_ball_contact(design: DriveDesign, elements: Elements) -> BallContact:
 def race_relief(design: DriveDesign) -> Callable[[np.ndarray], np.ndarray]:
     """What gives the gap (n,) mm between race and flexible spline at z (n,) mm, both undeformed."""
     micro, width = design.micro_geometry, design.wave_generator.face_width
+    bearing, slope = design.bearing, 2.0 * design.bearing.race_taper / design.race_width
 
     def relief(z: np.ndarray) -> np.ndarray:
         removed = crowning(micro.wg_crowning, z, width, micro.crowning_shape)[0]
-        return removed - 0.5 * design.bearing.race_interference
+        return removed + slope * z - 0.5 * bearing.race_interference
 
     return relief
 

@@ -68,6 +68,33 @@ def test_cup() -> None:
 
 
 @pytest.mark.parallel([1, 2])
+def test_a_taper_of_the_race_moves_its_load_to_the_open_end() -> None:
+    """The race presses on the bore of a cup, which is a cone at the lobes: without a taper its edge
+    at the closed end carries there. A taper that follows the cone spreads the load."""
+    places, largest = [], []
+    for taper in (0.0, 0.02):
+        stepper = jumped(
+            *BEARING,
+            "micro_geometry.wg_slope=0",
+            "micro_geometry.wg_crowning=0",
+            f"wave_generator.bearing.race_taper={taper}",
+            model="cup",
+        )
+        model, values = stepper.model, row(stepper)
+        pressed, u = model.problem.wave_generator.race.owned_pressure(), model.problem.positions()
+        z = np.einsum("qa,fa->fq", pressed.shape, u[pressed.conn, 2])
+        force = pressed.weight * pressed.pressure
+        total = WORLD.allreduce(np.array([force.sum(), (force * z).sum()]))
+        places.append(total[1] / total[0])
+        largest.append(WORLD.allreduce(float(pressed.pressure.max(initial=0.0)), op=MPI.MAX))
+        parallel_assert(values["torque_balance_Nmm"] < 1e-6 * 2000.0)
+        model.destroy()
+    print(f"middle of the load at z = {places} mm, largest pressure {largest} MPa")
+    parallel_assert(places[0] > 0.1 and places[1] < 0.8 * places[0])
+    parallel_assert(largest[1] < largest[0])
+
+
+@pytest.mark.parallel([1, 2])
 def test_balls_balance_the_force_on_the_spline() -> None:
     """Forces and moments of the balls are those on the spline. All of the drive is modelled: their
     number is odd."""

@@ -17,6 +17,7 @@ from swgpar.evaluation.bearing_loads import ball_passing_angle
 from swgpar.geometry.bearing import ball_lines
 from swgpar.geometry.cams import EllipticalCam
 from swgpar.materials import Isotropic, contact_modulus
+from swgpar.model.bearing_model import race_relief
 
 STEEL = contact_modulus(Isotropic(E=210e3, nu=0.3), Isotropic(E=210e3, nu=0.3))
 
@@ -181,6 +182,33 @@ def test_bad_bearing(override: str, key: str, words: str) -> None:
         load_design(DESIGN, [*PLANE, *BEARING, f"wave_generator.bearing.{override}"])
     message = str(caught.value)
     assert f"wave_generator.bearing.{key}" in message and words in message and "\n" not in message
+
+
+CUP = ("micro_geometry.wg_slope=0", *BEARING)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words"),
+    [
+        ((*PLANE, *BEARING, "wave_generator.bearing.race_taper=0.01"), "which has no open end"),
+        ((*CUP, "wave_generator.bearing.race_taper=-1.2"), "allowed -1 to 1 mm"),
+        (BEARING, "micro_geometry.wg_slope = 0.1 is out of range: allowed only 0 with wave_gen"),
+    ],
+)
+def test_bad_tapers(overrides: tuple[str, ...], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        load_design(DESIGN, overrides)
+
+
+def test_a_taper_raises_the_race_under_the_open_end() -> None:
+    """By its amount at the ends of the race's width, beside crowning and interference."""
+    design = load_design(
+        DESIGN,
+        [*CUP, "wave_generator.bearing.race_taper=0.03", "wave_generator.bearing.race_width=3"],
+    )
+    z = np.array([-1.5, 0.0, 1.5])  # the closed end is at z > 0
+    crowned = 0.1 * (z / 2.0) ** 2
+    assert race_relief(design)(z) - crowned == pytest.approx([-0.03, 0.0, 0.03], abs=1e-15)
 
 
 def test_bearing_on_rollers() -> None:

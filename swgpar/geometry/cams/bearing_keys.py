@@ -49,6 +49,12 @@ class Bearing(Section):
         text="by how much the outer diameter of the outer race exceeds the bore of the flexible "
         "spline; below 0 a clearance",
     )
+    race_taper: float = quantity(
+        0.0,
+        unit="mm",
+        text="taper of the outer race's outside: by how much its radius is larger at the end of "
+        "race_width under the open end than at mid-width",
+    )
     temperature: float | None = temperature("outer race and balls")
     material: OptionalMaterial = None
     load_rating: float | None = quantity(
