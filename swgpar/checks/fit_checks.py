@@ -11,6 +11,7 @@ from swgpar.checks.cup_checks import check_cup
 from swgpar.checks.deviation_checks import check_deviations
 from swgpar.checks.frequency_checks import check_frequencies
 from swgpar.checks.growth_checks import check_growth
+from swgpar.checks.inertia import check_inertia
 from swgpar.checks.output_bearing_checks import check_output_bearing
 from swgpar.checks.program_checks import check_program
 from swgpar.checks.strain_checks import check_strains
@@ -58,6 +59,7 @@ def check_fit(design: DriveDesign) -> None:
         check_output_bearing(design, design.output_bearing)
     if design.frequencies is not None:
         check_frequencies(design)
+    check_inertia(design)
 
 
 def _check_conjugate(design: DriveDesign) -> None:

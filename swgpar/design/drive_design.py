@@ -121,6 +121,13 @@ class DriveDesign(DriveSections):
         return negligible_torque(self.modulus_of("flexible_spline"), self.deflection, *sizes)
 
     @property
+    def speeds(self) -> tuple[float, float]:
+        """Speeds (rad/s) of flexible spline and wave generator in space at `load.input_speed`."""
+        spline, wave = self.kinematics.speeds_in_space
+        rate = np.pi / 30.0 * self.load.input_speed
+        return float(rate * spline), float(rate * wave)
+
+    @property
     def rim_inertia(self) -> RimInertia | None:
         """The rim of the flexible spline with half of the mass of full teeth; None without a
         density.

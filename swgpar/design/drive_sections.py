@@ -191,8 +191,8 @@ class DriveSections(Design):
 
     @property
     def condenses_teeth(self) -> bool:
-        """Whether a tooth is one element where nothing touches it."""
-        return self.leaves_out_far_teeth and self.drive.model != "plane"
+        """Whether a tooth is one element where nothing touches it, and no mass counts."""
+        return self.leaves_out_far_teeth and self.drive.model != "plane" and not self.load.inertia
 
     @property
     def leaves_out_sectors(self) -> bool:

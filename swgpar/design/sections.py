@@ -169,6 +169,11 @@ class Load(Section):
     input_speed: float = quantity(
         2000.0, unit="1/min", text="speed of the input, for sliding speeds", gt=0.0, le=1e6
     )
+    inertia: bool = quantity(
+        False,
+        text="forces of inertia of flexible spline and outer race, through which the wave passes "
+        "at input_speed",
+    )
     reference_temperature: float = quantity(
         20.0, unit="°C", text="temperature at which all sizes hold", ge=-273.15, le=1000.0
     )

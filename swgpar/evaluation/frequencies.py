@@ -21,8 +21,8 @@ from swgpar.answers.answer import (
     part_answers,
 )
 from swgpar.design.drive_design import DriveDesign
-from swgpar.evaluation.losses import mass_matrices
-from swgpar.fem.body import FLEXIBLE_SPLINE, Body
+from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.fem.masses import sector_masses
 from swgpar.fem.vectors import create_vector, sum_at_owners
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
@@ -30,9 +30,6 @@ from swgpar.petsc import PETSc
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.eigenmodes import Eigenmodes, lowest_modes
 from swgpar.solve.newton import NewtonSolver
-
-TONNES_PER_MM3 = 1e-12
-"""One kg/m³ in t/mm³, the unit of densities with mm, N and s."""
 
 TONNES_MM2 = 1e3
 """One kg·m² in t·mm²."""
@@ -143,19 +140,6 @@ class LumpedMass:
         """Release the vectors."""
         for vector in (self.total, *self.bodies.values()):
             vector.destroy()
-
-
-def sector_masses(body: Body) -> np.ndarray:
-    """Masses (n_node,) t of the nodes of a sector: row sums of the consistent mass matrix."""
-    mesh = body.mesh
-    thickness = body.thickness if mesh.plane else None
-    of_element = mass_matrices(mesh.coords, mesh.elements, thickness).sum(axis=2)
-    density = np.full(len(mesh.elements), np.nan)
-    for part, material in zip(mesh.parts, body.materials, strict=True):
-        density[part] = TONNES_PER_MM3 * material.density
-    return np.bincount(
-        mesh.elements.ravel(), (density[:, None] * of_element).ravel(), minlength=len(mesh.coords)
-    )
 
 
 def modes_of(solver: NewtonSolver, state: LoadState, number: int, mass: LumpedMass) -> Eigenmodes:

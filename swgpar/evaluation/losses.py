@@ -17,9 +17,9 @@ from swgpar.answers.answer import AnswerGroup, answer, evaluation
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.stress_cycle import StressCycle, elements_of_rank
 from swgpar.fem.body_layout import BodyLayout
+from swgpar.fem.masses import mass_matrices
 from swgpar.log import logger
 from swgpar.materials import Material
-from swgpar.meshing.quality import CORNERS, GAUSS, PLANE_CORNERS, jacobian_matrices
 from swgpar.model.drive_model import DriveModel
 from swgpar.results.history import Row
 
@@ -242,15 +242,3 @@ def energy_coordinates(amplitude: np.ndarray, material: Material) -> np.ndarray:
     coordinates = amplitude @ np.linalg.cholesky(0.5 * material.compliance())
     stacked = np.concatenate([coordinates.real, coordinates.imag], axis=0)
     return np.moveaxis(stacked, 1, 0).reshape(amplitude.shape[1], -1)
-
-
-def mass_matrices(coords: np.ndarray, elements: np.ndarray, thickness: float | None) -> np.ndarray:
-    """Integrals (m, k, k) mm³ of products of the shape functions of hexahedra (m, 8), or of
-    quadrilaterals (m, 4) in the plane.
-
-    coords : (n, 3) mm;  thickness : mm, of quadrilaterals; None for hexahedra
-    """
-    corners = CORNERS if thickness is None else PLANE_CORNERS
-    shape = (0.5 * (1.0 + GAUSS * corners[:, None] * corners)).prod(axis=2)  # point, node
-    weight = np.abs(np.linalg.det(jacobian_matrices(coords, elements, GAUSS)))
-    return np.einsum("eq,qa,qb->eab", weight * (thickness or 1.0), shape, shape)

@@ -80,6 +80,7 @@ def _check(design: DriveDesign) -> None:
         "[stiffness]": design.stiffness,
         "[ratcheting]": design.ratcheting,
         "load.program": design.load.program,
+        "load.inertia = true": design.load.inertia,
     }
     for key, given in sections.items():
         if given:

@@ -38,6 +38,7 @@ from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.model.bearing_model import build_bearing_contacts, build_race, race_coupling
 from swgpar.model.contact_distances import contact_search, foot_reach
 from swgpar.model.couplings import output_springs, ring_guide, spline_attachment
+from swgpar.model.inertia import inertia_terms
 from swgpar.model.layouts import build_gear, build_layout
 from swgpar.model.regions import sector_regions
 from swgpar.model.window_mesh import WindowMesh
@@ -211,6 +212,7 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
             + max(design.deflection, design.drive.standard_deflection),
             condensed_teeth=design.condenses_teeth,
         ),
+        boundary_terms=inertia_terms(design, elements),
         module=design.drive.module,
         modelled=modelled,
         phases=phases,

@@ -159,6 +159,7 @@ def test_forces_have_the_torque_of_the_design(tmp_path: Path) -> None:
         ("deviations.flexible_spline.eccentricity=0.01", "[deviations] is not available"),
         ("stiffness.torque=0.2", "[stiffness] is not available"),
         ("ratcheting.increment=0.1", "[ratcheting] is not available"),
+        (("material.density=7850", "load.inertia=true"), "load.inertia = true is not available"),
         (
             ("ring_gear.frame.interference=0.01", "drive.layout=spline_fixed"),
             "a temperature or a fit of [ring_gear.frame] around a ring gear that rotates is not",

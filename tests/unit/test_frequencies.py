@@ -9,7 +9,8 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar import load_design
 from swgpar.errors import InputError
-from swgpar.evaluation.frequencies import NaturalFrequencies, NaturalMode, sector_masses
+from swgpar.evaluation.frequencies import NaturalFrequencies, NaturalMode
+from swgpar.fem.masses import sector_masses
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.quality import hex_volumes
 from swgpar.model.layouts import build_gear

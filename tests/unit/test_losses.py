@@ -13,7 +13,8 @@ from plain_ring import PlainRingDesign, RingCounts, RingModel
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.errors import InputError
-from swgpar.evaluation.losses import energy_coordinates, force_without_sliding, mass_matrices
+from swgpar.evaluation.losses import energy_coordinates, force_without_sliding
+from swgpar.fem.masses import mass_matrices
 from swgpar.geometry.cams.simplified import simplified
 from swgpar.materials import Isotropic
 

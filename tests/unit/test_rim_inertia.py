@@ -9,6 +9,7 @@ import pytest
 from support.paths import DESIGN
 from swgpar import load_design
 from swgpar.checks.inertia import inertia_remarks, negligible_speeds
+from swgpar.errors import InputError
 from swgpar.geometry.rim_inertia import RimInertia
 
 DENSE = "material.density=7850.0"
@@ -87,6 +88,43 @@ def test_a_fast_input_is_said() -> None:
     assert "is 100 % of the forces" in said[0] and "takes them from the cam" in said[0]
     default = load_design(DESIGN, [DENSE])
     assert not inertia_remarks(default.rim_inertia, default.kinematics, default.load)
+    speed = f"load.input_speed={2.0 * first}"
+    acting = load_design(DESIGN, [DENSE, "load.inertia=true", speed])
+    assert not inertia_remarks(acting.rim_inertia, acting.kinematics, acting.load)
+
+
+BEARING = ("micro_geometry.wg_slope=0", "wave_generator.bearing.balls=20")
+BEARING += ("wave_generator.bearing.ball_diameter=2", "wave_generator.bearing.race_thickness=0.5")
+BOLTED = ("cup.attachment=bolted", "cup.bolts=6", "cup.bolt_circle=20", "cup.washer_diameter=3")
+CARRIED = tuple(f"output_bearing.{kind}_stiffness=1e5" for kind in ("radial", "axial", "tilting"))
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words"),
+    [
+        ((), "the density of flexible_spline is missing: load.inertia = true needs it"),
+        ((DENSE, "load.input_speed=1e5"), r"load.input_speed = 100000 is out of range: allowed ab"),
+        ((DENSE, "stiffness.torque=0.2"), "not available with a load program"),
+        ((DENSE, "deviations.flexible_spline.eccentricity=0.01"), r"with \[deviations\]"),
+        ((DENSE, *BOLTED), "sectors are alike"),
+        ((DENSE, *CARRIED, "output_bearing.radial_force=5"), "a radial force or a tilting moment"),
+        (
+            ("flexible_spline.material={E=210e3, nu=0.3, density=7850.0}", *BEARING),
+            "the density of bearing is missing",
+        ),
+    ],
+)
+def test_forces_of_inertia_that_are_refused(overrides: tuple[str, ...], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        load_design(DESIGN, [*overrides, "load.inertia=true"])
+
+
+def test_the_largest_speed_of_forces_of_inertia_is_that_of_a_natural_wave() -> None:
+    with pytest.raises(InputError) as caught:
+        load_design(DESIGN, [DENSE, "load.inertia=true", "load.input_speed=1e5"])
+    most = float(str(caught.value).split("above 0 to ")[1].split()[0])
+    design = load_design(DESIGN, [DENSE, "load.inertia=true", f"load.input_speed={0.999 * most}"])
+    assert design.rim_inertia.share_of_bending(*design.speeds) == pytest.approx(1.0, rel=0.01)
 
 
 def test_inertia_of_a_deflected_ring_at_rest_is_its_mass_by_its_acceleration() -> None:
