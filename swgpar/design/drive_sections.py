@@ -180,9 +180,8 @@ class DriveSections(Design):
 
     @property
     def resolves_wall(self) -> bool:
-        """Whether rings resolve the stress of the wall of a cup. Their columns are too wide for
-        bolts."""
-        return self.output.root_stress and self.has_cup and not self.is_bolted
+        """Whether rings resolve the stress of the wall of a cup."""
+        return self.output.root_stress and self.has_cup
 
     @property
     def leaves_out_far_teeth(self) -> bool:

@@ -182,8 +182,7 @@ class WallProblem:
         """What supports or loads closed end or flange. A slice has it where it is attached."""
         design, layout = self.model.design, self.layout
         if design.has_attachment:
-            faces = layout.mesh.coords[layout.mesh.faces["end"]].mean(axis=1)
-            if not layout.closed and not design.cup.is_attached(faces[:, :2]).any():
+            if not layout.closed and not self._is_attached():
                 return []
             penalty, images = design.penalty("flexible_spline"), layout.copies > 1
             return [
@@ -192,6 +191,15 @@ class WallProblem:
         if not layout.closed:
             return []
         return [DistributingCoupling(self.partition, self.body, "bore", layout.copies > 1)]
+
+    def _is_attached(self) -> bool:
+        """Whether closed end or flange is attached in any of the sectors."""
+        layout = self.layout
+        faces = layout.mesh.coords[layout.mesh.faces["end"]].mean(axis=1)[:, :2]
+        angles = layout.sector_angle(layout.first_tooth + np.arange(layout.count))
+        return any(
+            self.model.design.cup.is_attached(rotated(faces, angle)).any() for angle in angles
+        )
 
     def _rotated(self) -> np.ndarray:
         """Displacement (n_owned, n_node, 3) mm of the rigid wall, rotated as closed end or flange

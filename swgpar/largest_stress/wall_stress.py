@@ -26,13 +26,17 @@ from swgpar.meshing.wall_sector import WallCounts, WallSector, wall_sector
 from swgpar.model.drive_model import DriveModel
 from swgpar.model.regions import FILLET, region_of, warning_of
 
-RINGS = WallCounts(4, 2), WallCounts(6, 3)
+RINGS = WallCounts(4, 2), WallCounts(6, 3, around=1.5)
 """Elements of the rings, coarse to fine."""
 
 RING_RATIO, RING_ORDER = 1.5, 2
 """Ratio of their element sizes; order of their displacements."""
 
-SLICES = WallCounts(8, 4, 0.5), WallCounts(16, 8, 0.25), WallCounts(32, 16, 0.125)
+SLICES = (
+    WallCounts(8, 4, 0.5, around=1.5),
+    WallCounts(16, 8, 0.25, around=1.5),
+    WallCounts(32, 16, 0.125, around=1.5),
+)
 SLICE_RATIO = 2.0
 """Elements of the slices, coarse to fine, and the ratio of their sizes."""
 

@@ -115,18 +115,16 @@ def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
     if cup.clamping_radius is not None:  # a clamped ring is not bent: one element
         free = (cup.clamping_radius - r_center) / (wall.edge - r_center)
         share = np.append(share * free, 1.0) if free > 0.0 else np.array([0.0, 1.0])
-    elif cup.attached_ring is not None:
-        share = _shares_with_washers(cup, cup.attached_ring, recipe)
+    elif cup.has_washers:
+        share = _shares_with_washers(cup, recipe)
     return section_lines(cup, s, angle, r_center + (wall.edge - r_center) * share[1:])
 
 
-def _shares_with_washers(
-    cup: CupGeometry, washers: tuple[float, float], recipe: CupRecipe
-) -> Floats:
+def _shares_with_washers(cup: CupGeometry, recipe: CupRecipe) -> Floats:
     """Stations (n,) on closed end or flange, 0 at the fillet and 1 at its edge, with those at both
-    edges of the washers. washers : radii, mm"""
+    edges of the washers."""
     begin, edge = cup.wall.center[0], cup.wall.edge
-    inner, outer = sorted((np.array(washers) - begin) / (edge - begin))
+    inner, outer = sorted((np.array(cup.attached_ring) - begin) / (edge - begin))
     found = [0.0]
     for end, least in ((inner, 1), (outer, ACROSS_WASHERS), (1.0, 1)):
         length = end - found[-1]

@@ -47,6 +47,11 @@ class CupGeometry:
     attached_ring: tuple[float, float] | None
 
     @property
+    def has_washers(self) -> bool:
+        """Whether closed end or flange is bolted."""
+        return self.attached_ring is not None and self.clamping_radius is None
+
+    @property
     def continues_root(self) -> bool:
         """Whether the wall continues the layers of elements below the root as well."""
         return self.thickness_coef > THICK_CUP

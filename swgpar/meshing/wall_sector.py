@@ -37,17 +37,23 @@ AROUND = 100
 hat by 0.15 % (docs/verification/largest_stress.md)."""
 
 
+PER_WASHER = 3
+"""Fewest elements around on the width of a washer."""
+
+
 @dataclass(frozen=True)
 class WallCounts:
     """Elements of the wall.
 
     fillet : along its fillet;  layers : through its thickness
     longest : length of the longest along the section over the thickness; None for `LONGEST`
+    around : factor on the elements around a wall on bolts, which bends from bolt to bolt
     """
 
     fillet: int
     layers: int
     longest: float | None = None
+    around: float = 1.0
 
     def limit(self, radius: float, thickness: float) -> float:
         """Length (mm) of the longest elements where the wall has a radius and a thickness (mm)."""
@@ -73,16 +79,51 @@ def graded_line(length: float, first: float, last: float, longest: float) -> Flo
 def flat_radii(cup: CupGeometry, counts: WallCounts, first: float) -> Floats:
     """Radii (n,) mm of the stations on closed end or flange, without that of the fillet.
 
-    first : mm, length of the element at the fillet and at the edge of a clamped ring
+    first : mm, length of the element at the fillet and at the edges of what is attached
     """
     wall, (begin, _) = cup.wall, cup.wall.center
     width, longest = abs(wall.edge - begin), counts.limit(begin, wall.end_thickness)
+    if cup.has_washers:
+        along = _with_washers(cup, first, longest)
+        return begin + np.sign(wall.edge - begin) * along[along > 0.0]
     free = width if cup.clamping_radius is None else abs(cup.clamping_radius - begin)
     last = 0.5 * wall.end_thickness if cup.clamping_radius is None else first
     along = graded_line(free, first, last, longest) if free > first else np.array([0.0, free])
     if free < width:
         along = np.append(along, free + graded_line(width - free, first, longest, longest)[1:])
     return begin + np.sign(wall.edge - begin) * along[along > 0.0]
+
+
+def _with_washers(cup: CupGeometry, first: float, longest: float) -> Floats:
+    """Distances (n,) mm of stations from the fillet, with those of both edges of the washers.
+
+    first : mm, length of elements at fillet and washers;  longest : mm, of any
+    """
+    wall, (begin, _) = cup.wall, cup.wall.center
+    near, far = sorted(abs(np.array(cup.attached_ring) - begin))
+    width = abs(wall.edge - begin)
+    across = 0.5 * (far - near)
+    along = np.zeros(1)
+    for end, last, limit in (
+        (near, first, longest),
+        (far, first, min(longest, across)),
+        (width, 0.5 * wall.end_thickness, longest),
+    ):
+        length = end - along[-1]
+        if length > 0.1 * first:  # washers may begin at the fillet, or end at the edge
+            part = graded_line(length, min(first, length), min(last, length), limit)
+            along = np.append(along, along[-1] + part[1:])
+    return along
+
+
+def _columns(geometry: DriveGeometry, counts: WallCounts) -> int:
+    """Elements around in a sector."""
+    cup, teeth = geometry.cup, geometry.gears["flexible_spline"].profile.n_teeth
+    if not cup.has_washers:
+        return -(-AROUND // teeth)
+    low, high = cup.attached_ring
+    around = max(AROUND, PER_WASHER * np.pi * (low + high) / (high - low))
+    return int(np.ceil(counts.around * np.ceil(around / teeth)))
 
 
 def graded_section(geometry: DriveGeometry, counts: WallCounts, start: float) -> Meridian:
@@ -184,7 +225,7 @@ def wall_sector(geometry: DriveGeometry, counts: WallCounts, start: float) -> Wa
     lines = graded_section(geometry, counts, start)
     fraction = symmetric_steps(counts.layers, LAYER_RATIO)[:, None]
     section = lines.inner[:, None] + fraction * (lines.outer - lines.inner)[:, None]
-    half, columns = np.pi / profile.n_teeth, -(-AROUND // profile.n_teeth)
+    half, columns = np.pi / profile.n_teeth, _columns(geometry, counts)
     angle = np.linspace(-half, half, columns + 1)
     radius, z = (
         np.repeat(part[..., None], columns + 1, axis=2) for part in np.moveaxis(section, -1, 0)

@@ -11,7 +11,7 @@ from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
 import swgpar
-from support.cup_shapes import HAT, HAT_CLAMPED, Changes, shaped
+from support.cup_shapes import HAT, HAT_CLAMPED, Changes, bolted, shaped
 from support.paths import RECIPE
 from support.stepping import WORLD, loaded
 from swgpar.analysis.load_stepping import LoadStepper
@@ -29,10 +29,14 @@ from swgpar.meshing.wall_sector import WallCounts
 from swgpar.model.regions import sector_regions
 
 SHARP: Changes = {"fillet_radius": 1.0, "end_thickness": 0.6, "length": 8.0}
-CASES: dict[str, Changes] = {"cup": SHARP, "clamped hat": HAT_CLAMPED | SHARP}
+FILLETS: dict[str, Changes] = {"cup": SHARP, "clamped hat": HAT_CLAMPED | SHARP}
 """Walls that bend most in a sharp fillet. The mesh has one element there."""
 
-cases = pytest.mark.parametrize("case", list(CASES))
+BOLTED: Changes = bolted(8) | SHARP | {"bolt_circle": 26.0}
+"""Eight bolts close to the fillet, around which the closed end bends most."""
+
+CASES = FILLETS | {"bolts": BOLTED}
+cases = pytest.mark.parametrize("case", list(FILLETS))
 
 
 @lru_cache
@@ -76,6 +80,23 @@ def test_a_finer_whole_ring_is_within_the_error(case: str, monkeypatch: pytest.M
         assert abs(place.value - truth) < place.error < 0.25 * truth
         assert average < 0.8 * truth
         assert len(found.levels[name]) == len(wall_stress.SLICES)
+
+
+def test_stress_beside_bolts_is_within_the_error() -> None:
+    """Of a finer ring with more elements from bolt to bolt. It lies in line with a bolt."""
+    stepper = drive("bolts")
+    model, state = stepper.model, stepper.load_state
+    found, closed_end = resolved(stepper), f"{OF_REGION}closed end"
+    ring = wall_stress._solved_ring(model, state, WallCounts(12, 6, around=2.0)).problem
+    truth = wall_stress._largest(ring, wall_stress._regions_of_ring(ring))
+    ring.destroy()
+    for stress in ("fs_s1", "fs_vm"):
+        place, finer = found.places[f"{stress}{closed_end}"], truth[f"{stress}{closed_end}"].value
+        print(f"{stress}: {place.value:.1f} ± {place.error:.1f}, {finer:.1f} on a finer ring")
+        assert abs(place.value - finer) < place.error < 0.15 * finer
+        assert len(found.levels[f"{stress}{closed_end}"]) == len(wall_stress.SLICES)
+        # eight bolts on 40 teeth, the first one on +y
+        assert place.tooth % 5 == 0
 
 
 def test_a_run_takes_the_largest_stress_from_the_wall() -> None:
