@@ -22,7 +22,8 @@ def coarse_period(
     run, fine : takes the run through its states, on the mesh of that recipe
 
     None without a sampled period or a torque; in a cup drive, where it would cost a third of the
-    run; with friction, whose first period settles; and where an angle does not converge.
+    run; with friction, whose first period settles; and where an angle does not converge in one
+    step: teeth that jam would take longer here than in the run.
     """
     stepper = LoadStepper(model)
     sequence = stepper.sequence
@@ -35,7 +36,7 @@ def coarse_period(
     rows, guides = [stepper.row()], [_on_mesh_of(run, stepper)]
     try:
         for state in sequence.from_loaded[1:]:
-            stepper.advance(state)
+            stepper.advance(state, cut_back=False)
             rows.append(stepper.row())
             guides.append(_on_mesh_of(run, stepper))
     except ConvergenceError as error:

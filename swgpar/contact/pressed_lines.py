@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -65,8 +65,23 @@ class PressedLine:
         """Whether the contact ends on the tip of the flexible spline, of the ring gear: the
         pressure rises to a sharp edge, where it is largest, and falls to 0 where smooth flanks
         part."""
-        gaps = (self.low[1:] - self.high[:-1]) / (self.high[-1] - self.low[0])
+        gaps = self._gaps
         return _rises(self.pressure, gaps), _rises(self.pressure[::-1], gaps[::-1])
+
+    @property
+    def _gaps(self) -> np.ndarray:
+        """Distances (n - 1,) between the cells, over the length of all."""
+        return (self.low[1:] - self.high[:-1]) / (self.high[-1] - self.low[0])
+
+    @property
+    def contact(self) -> PressedLine:
+        """Cells without a gap between them that have the largest pressure: flanks that nearly
+        conform may touch at two places of a line."""
+        apart = np.flatnonzero(self._gaps > ROUND_OFF) + 1
+        parts = np.split(np.arange(len(self.pressure)), apart)
+        cells = next(cells for cells in parts if self.pressure.argmax() in cells)
+        low, high, pressure = (each[cells] for each in (self.low, self.high, self.pressure))
+        return replace(self, low=low, high=high, pressure=pressure)
 
     def strips(self, number: int) -> np.ndarray:
         """Mean pressures (number,) MPa on equal strips between the ends of the contact."""

@@ -17,7 +17,7 @@ class ContactStation:
 
     z_mm : the station;  line_load_Nmm : N/mm
     s_mm : middle of the contact, arc length from the tip of the flexible spline's tooth;
-    half_width_mm : of it
+    half_width_mm : of it;  of the one with the largest pressure, where flanks touch at two places
     pressure_MPa : largest pressure
     first_cell_mm : middle of the first cell across, arc length from the tip
     cell_width_mm, cell_length_mm : of every cell, across and along the face width
@@ -43,19 +43,23 @@ class ContactStation:
 
 
 def line_station(line: PressedLine, strips: int) -> ContactStation:
-    """The contact at a station, with its pressure on equal strips."""
-    width, (low, high) = (line.high[-1] - line.low[0]) / strips, line.ends
-    pressure = line.strips(strips)
+    """The contact at a station, with its pressure on equal strips between the ends of the line.
+
+    The largest pressure is that on strips of the contact which has it: those of the line are wide
+    where it has two contacts far apart.
+    """
+    contact, width = line.contact, (line.high[-1] - line.low[0]) / strips
+    low, high = contact.ends
     return ContactStation(
         z_mm=line.z,
         line_load_Nmm=line.line_load,
         s_mm=0.5 * (low + high),
         half_width_mm=0.5 * (high - low),
-        pressure_MPa=float(pressure.max()),
+        pressure_MPa=float(contact.strips(strips).max()),
         first_cell_mm=float(line.low[0] + 0.5 * width),
         cell_width_mm=float(width),
         cell_length_mm=line.length,
-        cells_MPa=tuple(pressure.tolist()),
+        cells_MPa=tuple(line.strips(strips).tolist()),
     )
 
 

@@ -76,6 +76,8 @@ class PairContact:
     width; the pressure is then no property of the drive;  edge_place : which of them, in words
     ring : body whose tooth is meant, in a drive with two ring gears; else empty
     stations : along the face width, those that carry a load
+    peak_MPa : largest pressure of a cell of the law, 0 where it did not tell the pressure; strips
+    show less of a peak that is as narrow
 
     From `width_mm` to `sliding_mm_s` all are nan where the pressure is not computed.
     """
@@ -99,6 +101,13 @@ class PairContact:
     edge_place: str = ""
     ring: str = ""
     stations: tuple[ContactStation, ...] = ()
+    peak_MPa: float = 0.0
+
+    @property
+    def unresolved(self) -> float:
+        """What strips and cells of about the same width differ by, over the largest pressure; 0
+        where the law's cells did not tell it."""
+        return max(self.peak_MPa / self.pressure_MPa - 1.0, 0.0) if self.peak_MPa > 0.0 else 0.0
 
     @property
     def key(self) -> tuple[str, int, str]:
@@ -107,7 +116,7 @@ class PairContact:
 
     def row(self) -> dict[str, Any]:
         """The row of pairs.csv."""
-        left_out = ("stations",) if self.ring else ("stations", "ring")
+        left_out = ("stations", "peak_MPa") if self.ring else ("stations", "peak_MPa", "ring")
         return {name: value for name, value in asdict(self).items() if name not in left_out}
 
     def station_rows(self) -> list[dict[str, Any]]:
@@ -246,7 +255,7 @@ def _with_pressure(
     """
     tooth, facing = teeth[1], ring_teeth[1]
     gap, plane = FlankGap(tooth, facing), model.design.drive.model == "plane"
-    patch, lines, on_ring_tip = None, [], False
+    patch, lines, on_ring_tip, peak = None, [], False, 0.0
     try:
         if plane:
             lines = lines_of_law()
@@ -272,13 +281,13 @@ def _with_pressure(
         reaches = not plane and any(
             one.z - one.length < low or one.z + one.length > high for one in lines
         )
-        width = sum(one.length for one in lines)
+        width, peak = sum(one.length for one in lines), line.largest
         shear = largest_shear(line.low, line.high, line.pressure, station.half_width_mm)
     else:
         return contact
     top = max(stations, key=lambda station: station.pressure_MPa)
-    ends = top.s_mm + top.half_width_mm * np.array([[-1.0], [1.0]])
-    foot = gap.foot(ends, np.array([top.z_mm]))
+    ends = line.ends if lines else top.s_mm + top.half_width_mm * np.array([-1.0, 1.0])
+    foot = gap.foot(np.reshape(ends, (2, 1)), np.array([top.z_mm]))
     on_ring_tip = bool(on_ring_tip or foot.min() < ring_cell)
     places = {
         FACE_END: reaches,
@@ -303,6 +312,7 @@ def _with_pressure(
         edge=int(bool(edges)),
         edge_place=" and the ".join(edges),
         stations=stations,
+        peak_MPa=peak,
     )
 
 

@@ -151,3 +151,15 @@ def test_pressures_of_cups_are_less_certain_beside_an_edge() -> None:
     pairs = [pair(1, 600.0), pair(2, 900.0, edge=1)]
     found = contact_errors([CoarserMesh(coarse, {}, pairs)], cup, pairs, 2)
     assert found.pressure_off_edges == LEAST_PRESSURE_WITH_EDGES["cup"] > LEAST_PRESSURE["cup"]
+
+
+def test_a_peak_as_narrow_as_the_cells_has_an_error_of_its_own() -> None:
+    """The pair with the largest pressure counts, with and without edges; forces are as before."""
+    same = [pair(0, 100.0), pair(1, 50.0)]
+    peaked = [replace(same[0], peak_MPa=120.0), same[1]]
+    assert errors(same, same, peaked).pressure == pytest.approx(0.2)
+    assert errors(same, same, peaked).pressure_off_edges == pytest.approx(0.2)
+    assert errors(same, same, peaked).force == errors(same, same, same).force
+    beside = [same[0], replace(same[1], peak_MPa=60.0)]
+    assert errors(same, same, beside) == errors(same, same, same)
+    assert "peak_MPa" not in peaked[0].row()

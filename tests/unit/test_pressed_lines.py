@@ -9,6 +9,7 @@ import pytest
 
 from swgpar.contact.pressed_lines import PressedLine
 from swgpar.contact.search import FlankPair
+from swgpar.flank_pressure.contact_station import line_station
 
 
 def line(pressure: np.ndarray) -> PressedLine:
@@ -53,3 +54,21 @@ def test_the_end_is_not_known_within_the_outermost_cell() -> None:
     assert uneven.outermost_cells == pytest.approx((0.01, 0.03))
     low, high = uneven.ends
     assert ends[0] < low < ends[1] and ends[-2] < high < ends[-1]
+
+
+def test_a_line_with_two_contacts_has_the_pressure_and_width_of_one() -> None:
+    """Strips of the line, of which the contacts are a twentieth each, show less."""
+    x = np.linspace(-0.95, 0.95, 20)
+    one = line(np.sqrt(1.0 - x**2))
+    two = replace(
+        one,
+        low=np.concatenate([one.low - 1.9, one.low]),
+        high=np.concatenate([one.high - 1.9, one.high]),
+        pressure=np.concatenate([0.5 * one.pressure, one.pressure]),
+    )
+    alone, station = line_station(one, 48), line_station(two, 48)
+    assert station.pressure_MPa == pytest.approx(alone.pressure_MPa)
+    assert station.half_width_mm == pytest.approx(alone.half_width_mm)
+    assert station.s_mm == pytest.approx(alone.s_mm)
+    assert station.line_load_Nmm == pytest.approx(1.5 * alone.line_load_Nmm)
+    assert max(station.cells_MPa) < 0.98 * alone.pressure_MPa
