@@ -76,7 +76,7 @@ def test_the_pair_with_the_largest_value_is_compared_as_well() -> None:
     assert found.pressure == pytest.approx(FACTOR * 100.0 / 600.0)
     # a pair that one mesh does not have
     found = errors([pair(2, 600.0)], [pair(1, 598.0)], [pair(1, 600.0)])
-    assert found.pressure == pytest.approx(max(FACTOR * 4.0 / 600.0, LEAST_PRESSURE["plane"]))
+    assert found.pressure == pytest.approx(max(FACTOR * 4.0 / 600.0, LEAST_PRESSURE))
 
 
 def test_pairs_on_edges_do_not_count_among_those_off_edges() -> None:
@@ -85,7 +85,7 @@ def test_pairs_on_edges_do_not_count_among_those_off_edges() -> None:
     assert found.pressure_off_edges == pytest.approx(FACTOR * 40.0 / 600.0)
     assert found.pressure == pytest.approx(FACTOR * 600.0 / 1500.0)
     found = errors([edge], [edge], [edge])
-    assert found.pressure_off_edges is None and found.pressure == LEAST_PRESSURE["plane"]
+    assert found.pressure_off_edges is None and found.pressure == LEAST_PRESSURE
 
 
 def test_in_space_one_mesh_with_fewer_elements_in_all_directions_shows_the_errors() -> None:
@@ -97,7 +97,7 @@ def test_in_space_one_mesh_with_fewer_elements_in_all_directions_shows_the_error
     assert found.pressure == pytest.approx(100.0 / 600.0 / (ratio**2 - 1.0))
     assert found.force == LEAST_FORCE["cup"]
     same = contact_errors([CoarserMesh(coarse, {}, [pair(1, 600.0)])], cup, [pair(1, 600.0)], 2)
-    assert same.pressure == LEAST_PRESSURE["cup"]
+    assert same.pressure == LEAST_PRESSURE
 
 
 def test_without_coarser_meshes_nothing_is_known() -> None:
@@ -111,7 +111,7 @@ def test_the_force_of_a_pair_that_carries_alone_has_no_estimate() -> None:
     """It follows from the torque, until another pair touches."""
     alone = [replace(pair(1, 600.0), force_share=0.5)]
     found = errors(alone, alone, alone)
-    assert found.force is found.force_share is None and found.pressure == LEAST_PRESSURE["plane"]
+    assert found.force is found.force_share is None and found.pressure == LEAST_PRESSURE
 
 
 def test_every_other_increment_shows_what_lies_between() -> None:
@@ -150,7 +150,7 @@ def test_pressures_of_cups_are_less_certain_beside_an_edge() -> None:
     (coarse,) = coarser_recipes(cup)
     pairs = [pair(1, 600.0), pair(2, 900.0, edge=1)]
     found = contact_errors([CoarserMesh(coarse, {}, pairs)], cup, pairs, 2)
-    assert found.pressure_off_edges == LEAST_PRESSURE_WITH_EDGES["cup"] > LEAST_PRESSURE["cup"]
+    assert found.pressure_off_edges == LEAST_PRESSURE_WITH_EDGES["cup"] > LEAST_PRESSURE
 
 
 def test_a_peak_as_narrow_as_the_cells_has_an_error_of_its_own() -> None:
