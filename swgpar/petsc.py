@@ -9,6 +9,7 @@ they name no file.
 from __future__ import annotations
 
 import ctypes
+import gc
 import os
 import re
 import shlex
@@ -54,6 +55,14 @@ _given: set[str] = set()
 """Names of the options at the start."""
 
 _warned_of: set[str] = set()
+
+
+def release_unused(comm: MPI.Comm) -> None:
+    """Release the models of runs that have ended: Python finds their references to one another only
+    when it looks, and PETSc keeps what Python lets go of; collective."""
+    gc.collect()
+    if "PETSc" in globals():  # else it was never started
+        globals()["PETSc"].garbage_cleanup(comm)
 
 
 def start(arguments: Sequence[str] = ()) -> None:

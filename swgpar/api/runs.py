@@ -16,6 +16,7 @@ from swgpar.input.design import Design
 from swgpar.input.toml_file import Overrides, read_toml, require_source
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.meshing.recipe import make_recipe
+from swgpar.petsc import release_unused
 from swgpar.results.atomic import agreed, on_all, raise_first, reason_of, write_file
 from swgpar.results.figure_set import save_figures
 from swgpar.results.folder import REPORT, given_folder, read_design
@@ -171,6 +172,7 @@ def run(
     with log.session(comm, terminal=terminal):
         system = system_of_section(checked.system)
         result = system.run(checked, options)
+        release_unused(comm)  # runs in a loop would fill the memory
         if folder is not None:
             if system.draws_figures(checked):
                 save_figures(result.plot, folder)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import json
 from contextlib import suppress
 from dataclasses import replace
@@ -15,7 +14,7 @@ from swgpar import log
 from swgpar.errors import InputError, SwgparError, printable
 from swgpar.input.design import Design
 from swgpar.log import logger
-from swgpar.petsc import PETSc
+from swgpar.petsc import release_unused
 from swgpar.results.atomic import agreed, on_root, reason_of, to_json, write_file, write_from_root
 from swgpar.results.figure_set import save_figures
 from swgpar.results.folder import SUMMARY
@@ -82,8 +81,7 @@ def run_one(
                     write_file(folder / STATUS, to_json(status))
             raise
     log.close_file()
-    gc.collect()
-    PETSc.garbage_cleanup(comm)  # the model of this run: PETSc keeps what Python lets go of
+    release_unused(comm)
     if folder is not None:
         with suppress(SwgparError):  # the table has it
             _record(folder, comm, {"status": outcome.status, **record, "reason": outcome.reason})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import logging
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from mpi4py import MPI
 import swgpar
 from support.paths import DESIGN, DRIVERS, RECIPE
 from support.small_drive import NO_SHORTCUTS, PLANE
+from swgpar.model.drive_model import DriveModel
 from swgpar.presentation.figures import DriveFigures
 
 SMALL = [*PLANE, *NO_SHORTCUTS, "steps.rotation=2.0", "steps.increment=2.0", "output.fields=true"]
@@ -34,6 +36,21 @@ def numbers(result: swgpar.DriveResult) -> list[np.ndarray]:
         *fields,
         result.field("s1", 0, "ring_gear"),
     ]
+
+
+@pytest.mark.parallel([1, 2])
+def test_a_run_leaves_no_model_behind() -> None:
+    """Models and their parts refer to one another: each run in a loop kept 150 MB."""
+    threshold = gc.get_threshold()
+    gc.collect()
+    before = sum(isinstance(one, DriveModel) for one in gc.get_objects())
+    gc.set_threshold(0)  # Python does not look by itself
+    try:
+        swgpar.run(swgpar.load_design(DESIGN, SMALL), RECIPE)
+        left = sum(isinstance(one, DriveModel) for one in gc.get_objects())
+    finally:
+        gc.set_threshold(*threshold)
+    assert left == before
 
 
 @pytest.mark.parallel([1, 2])
