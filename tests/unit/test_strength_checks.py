@@ -22,6 +22,7 @@ def verdicts(
     edge: int = 0,
     known: bool = True,
     pressure_error: float | None = 20.0,
+    bolts: SimpleNamespace | None = None,
 ) -> dict[str, Check]:
     least = {
         "goodman": SimpleNamespace(safety=safety),
@@ -33,6 +34,7 @@ def verdicts(
         design=SimpleNamespace(fatigue=SimpleNamespace(yield_strength=YIELD) if known else None),
         fatigue=SimpleNamespace(least=least, goodman_error=error),
         contact=SimpleNamespace(largest=largest, error_MPa=pressure_error),
+        bolts=bolts,
     )
     return {one.name: one for one in strength_checks(cast(DriveSummary, summary))}
 
@@ -69,3 +71,15 @@ def test_a_pressure_without_an_error_says_so() -> None:
     ]
     assert check.good is True
     assert "no estimate of the error" in check.text
+
+
+@pytest.mark.parametrize(
+    ("sliding", "gaping", "good"),
+    [(1.01, 1.5, True), (0.99, 1.5, False), (1.5, 0.99, False), (None, 1.5, True)],
+)
+def test_a_joint_holds_where_it_neither_slides_nor_gapes(
+    sliding: float | None, gaping: float, good: bool
+) -> None:
+    bolts = SimpleNamespace(judged=True, sliding=sliding, gaping=gaping)
+    assert verdicts(bolts=bolts)["bolts"].good is good
+    assert "bolts" not in verdicts(bolts=SimpleNamespace(judged=False))
