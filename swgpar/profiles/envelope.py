@@ -222,12 +222,13 @@ class Envelope:
         segment, begin = self.given.segments[index], float(self.given.breaks[index])
         s = np.linspace(low, high, PIECE_STATIONS)
         contacts = self.solved(segment, s, np.interp(begin + s, *self.branch))
-        # an error of psi moves the point along the envelope, and off it with its square only
         psi = scipy.interpolate.CubicHermiteSpline(s, contacts.psi, contacts.psi_rate)
 
         def evaluate(t: Floats) -> CurvePoints:
             s = high + (low - high) * t
-            contacts = self.contacts(segment, s, psi(s))
+            # without Newton's method points move along the envelope, by 1e-9 of its length, with a
+            # kink at every station
+            contacts = self.solved(segment, s, psi(s))
             point, span = np.stack((contacts.point.real, contacts.point.imag), axis=-1), low - high
             return CurvePoints(
                 point, contacts.angle, np.abs(span * contacts.speed), span * contacts.angle_rate

@@ -9,18 +9,20 @@ import scipy
 
 from swgpar.geometry.arrays import Floats
 from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints, points_of
+from swgpar.profiles.flank import MISMATCH
 
 DEGREE = 7
 
-INTERVALS = 128, 256, 512, 1024
-"""Of splines that are tried, one after the other."""
+INTERVALS = 16, 32, 64, 128, 256, 512, 1024
+"""Of splines that are tried, one after the other: of a short curve with many of them tangents show
+the round-off of its points."""
 
 BEYOND = 0.01
 """Share of the parameter's range by which a spline goes on at either end."""
 
-CLOSE = 1e-10
-"""Distance of a spline over the length of its curve, and angle between the tangents over 100 (rad),
-in the middles of its intervals, at most."""
+CLOSE, TURNED = 1e-10, 0.25 * MISMATCH
+"""Distance of a spline over the length of its curve, and angle between the tangents (rad), at the
+ends and in the middles of its intervals, at most: so that pieces still join."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,7 @@ class _Spline:
 
 
 def fitted(curve: CurvedSegment) -> CurvedSegment:
-    """The curve as a spline through some hundred of its points; itself where a spline is not
+    """The curve as a spline through some of its points; itself where a spline is not
     `CLOSE`, as beside a cusp."""
     angle = float(curve.evaluate(np.array([0.5])).angle[0])
     for count in INTERVALS:
@@ -52,11 +54,11 @@ def fitted(curve: CurvedSegment) -> CurvedSegment:
             return curve
         spline = scipy.interpolate.make_interp_spline(t, points, DEGREE)
         known = _Spline(spline, spline.derivative(1), spline.derivative(2), angle)
-        middles = t[:-1] + 0.5 * (t[1] - t[0])
-        exact, found = (of.evaluate(middles) for of in (curve, known))
+        between = np.array([0.0, *(t[:-1] + 0.5 * (t[1] - t[0])), 1.0])
+        exact, found = (of.evaluate(between) for of in (curve, known))
         length = float(exact.speed.mean())
         distance = np.linalg.norm(found.point - exact.point, axis=1).max()
         turned = np.abs(found.angle - exact.angle).max()
-        if distance < CLOSE * length and turned < 100.0 * CLOSE:
+        if distance < CLOSE * length and turned < TURNED:
             return CurvedSegment(curve.name, known.evaluate)
     return curve
