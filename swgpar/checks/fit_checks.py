@@ -59,7 +59,8 @@ def check_fit(design: DriveDesign) -> None:
         check_output_bearing(design, design.output_bearing)
     if design.frequencies is not None:
         check_frequencies(design)
-    check_inertia(design)
+    if design.load.inertia:
+        check_inertia(design)
 
 
 def _check_conjugate(design: DriveDesign) -> None:

@@ -71,10 +71,8 @@ def inertia_remarks(rim: RimInertia | None, kinematics: Kinematics, load: Load) 
 
 
 def check_inertia(design: DriveDesign) -> None:
-    """Raise InputError where forces of inertia are asked for and the wave does not pass all sectors
-    alike, a mass is missing, or the input is too fast."""
-    if not design.load.inertia:
-        return
+    """Raise InputError where the wave does not pass all sectors alike, a mass is missing, or the
+    input is too fast for forces of inertia."""
     carried = design.output_bearing is not None and design.output_bearing.is_loaded_sideways
     for given, beside, allowed in (
         (design.has_program, "a load program, [stiffness] or [ratcheting]", "under one torque"),

@@ -212,7 +212,7 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
             + max(design.deflection, design.drive.standard_deflection),
             condensed_teeth=design.condenses_teeth,
         ),
-        boundary_terms=inertia_terms(design, elements),
+        boundary_terms=inertia_terms(design, elements) if design.load.inertia else [],
         module=design.drive.module,
         modelled=modelled,
         phases=phases,

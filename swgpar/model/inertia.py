@@ -9,9 +9,7 @@ from swgpar.fem.elements import Elements
 
 
 def inertia_terms(design: DriveDesign, elements: Elements) -> list[WaveInertia]:
-    """Those of flexible spline and outer race at `load.input_speed`, with `load.inertia`."""
-    if not design.load.inertia:
-        return []
+    """Those of flexible spline and outer race at `load.input_speed`."""
     bodies = [name for name in (FLEXIBLE_SPLINE, OUTER_RACE) if name in elements.bodies]
     lobes = design.wave_generator.lobes
     return [WaveInertia(elements.bodies[name], lobes, *design.speeds) for name in bodies]

@@ -190,14 +190,9 @@ class NewtonSolver:
         """Convergence test of SNES: its reason, or None to go on."""
         state, norm = self.state, norms[2]
         state.residuals.append(norm / self.convergence_test.reference(self.last_residual))
-        at = state.load_state
-        watch.doing(
-            f"{at.stage.label} {np.degrees(at.angle):.2f} degrees, "
-            f"{self.problem.x.getSize() // 3} nodes, Newton iteration {its}, "
-            f"residual {state.residual:.1e}"
-        )
+        watch.doing(state.words(self.problem.x.getSize() // 3, its))
         if self.monitor is not None:
-            self.monitor(at, its, state.residual)
+            self.monitor(state.load_state, its, state.residual)
         decision = self.convergence_test.decide(
             state,
             its,

@@ -135,6 +135,14 @@ class SolveState:
         """Last residual over the contact force."""
         return self.residuals[-1] if self.residuals else np.inf
 
+    def words(self, nodes: int, iteration: int) -> str:
+        """What is being solved, for a run that is silent for long. nodes : of the model"""
+        here = self.load_state
+        return (
+            f"{here.stage.label} {np.degrees(here.angle):.2f} degrees, {nodes} nodes, "
+            f"Newton iteration {iteration}, residual {self.residual:.1e}"
+        )
+
     def time_limit_text(self) -> str:
         """The sentence for a time limit that has passed."""
         here = self.load_state
