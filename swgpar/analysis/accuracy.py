@@ -51,11 +51,10 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
     whole_period = design.steps.rotation >= 0.999999 * design.periods * np.degrees(
         design.kinematics.period_angle
     )
-    given = "samples" in design.steps.model_fields_set
-    if given or not whole_period or design.kinematics.pitches > 1:
+    given, kinematics = "samples" in design.steps.model_fields_set, design.kinematics
+    if given or not whole_period or kinematics.pitches > 1:
         return design
     samples = next(count for least, count in SAMPLES if accuracy >= least)
-    kinematics = design.kinematics
     while kinematics.states(samples) < samples:  # some angles would show the same state
         samples += 1
     return design.model_copy(update={"steps": design.steps.model_copy(update={"samples": samples})})

@@ -48,12 +48,12 @@ def negligible_speeds(rim: RimInertia | None, kinematics: Kinematics) -> dict[st
     }
 
 
-def inertia_remarks(rim: RimInertia | None, kinematics: Kinematics, load: Load) -> list[str]:
-    """Sentences where the input is so fast that forces of inertia count."""
+def inertia_remarks(rim: RimInertia | None, speeds: tuple[float, float], load: Load) -> list[str]:
+    """Sentences where the input is so fast that forces of inertia count. speeds : rad/s, of
+    flexible spline and wave generator in space"""
     if rim is None or load.inertia or "input_speed" not in load.model_fields_set:
         return []
-    spline, wave = (PER_MINUTE * load.input_speed * one for one in kinematics.speeds_in_space)
-    share, stress = rim.share_of_bending(spline, wave), rim.hoop_stress(spline)
+    share, stress = rim.share_of_bending(*speeds), rim.hoop_stress(speeds[0])
     sentences = []
     if abs(share) > NEGLIGIBLE:
         sentences.append(

@@ -29,7 +29,7 @@ def remarks(design: DriveDesign) -> list[str]:
         *tooth_remarks(design),
         *strain_remarks(design),
         *growth_remarks(design),
-        *inertia_remarks(design.rim_inertia, design.kinematics, design.load),
+        *inertia_remarks(design.rim_inertia, design.speeds, design.load),
     ]
     torque, negligible = design.load.torque, design.negligible_torque
     if 0.0 < 1000.0 * torque <= negligible:

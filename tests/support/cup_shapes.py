@@ -26,6 +26,17 @@ CONTOUR: Changes = {
 HAT: Changes = {"shape": "hat", "inner_radius": None, "flange_radius": 26.0, "end_thickness": 0.8}
 SHORT: Changes = {"length": 6.0}
 
+ATTACHED = {
+    "clamped": ("cup.attachment=clamped", "cup.clamping_radius=10"),
+    "bolted": (
+        "cup.attachment=bolted",
+        "cup.bolts=6",
+        "cup.bolt_circle=20",
+        "cup.washer_diameter=3",
+    ),
+}
+"""Overrides that clamp or bolt the closed end of the small drive."""
+
 
 def cone(degrees: float, thickness: float = 0.48, rounding: float = 0.0) -> Changes:
     """A wall with a cone of this slope between two cylinders, all equally thick."""

@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 
 import swgpar
 from support.bearing import BEARING
+from support.cup_shapes import ATTACHED
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.errors import InputError
@@ -221,17 +222,6 @@ def test_temperatures_and_the_fit_of_the_frame(tmp_path: Path, overrides: tuple[
     warm = cam_facets(design, 2.0, 0.0).points
     growth = np.hypot(*warm.T[:2]).max() / np.hypot(*cold.T[:2]).max() - 1.0
     assert growth == pytest.approx(12e-6 * 80.0, rel=0.01)
-
-
-ATTACHED = {
-    "clamped": ("cup.attachment=clamped", "cup.clamping_radius=10"),
-    "bolted": (
-        "cup.attachment=bolted",
-        "cup.bolts=6",
-        "cup.bolt_circle=20",
-        "cup.washer_diameter=3",
-    ),
-}
 
 
 @pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])

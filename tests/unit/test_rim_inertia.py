@@ -78,19 +78,19 @@ def test_a_fast_input_is_said() -> None:
     (least,) = speeds(*turning).values()
     for factor, count in ((0.99, 0), (1.01, 1)):
         design = load_design(DESIGN, [*turning, f"load.input_speed={factor * least}"])
-        assert len(inertia_remarks(design.rim_inertia, design.kinematics, design.load)) == count
+        assert len(inertia_remarks(design.rim_inertia, design.speeds, design.load)) == count
     first, _ = speeds(DENSE).values()
     for factor, count in ((0.99, 0), (10.0, 1)):
         design = load_design(DESIGN, [DENSE, f"load.input_speed={factor * first}"])
-        said = inertia_remarks(design.rim_inertia, design.kinematics, design.load)
+        said = inertia_remarks(design.rim_inertia, design.speeds, design.load)
         assert len(said) == count
     # forces of inertia grow with the square of the speed
     assert "is 100 % of the forces" in said[0] and "takes them from the cam" in said[0]
     default = load_design(DESIGN, [DENSE])
-    assert not inertia_remarks(default.rim_inertia, default.kinematics, default.load)
+    assert not inertia_remarks(default.rim_inertia, default.speeds, default.load)
     speed = f"load.input_speed={2.0 * first}"
     acting = load_design(DESIGN, [DENSE, "load.inertia=true", speed])
-    assert not inertia_remarks(acting.rim_inertia, acting.kinematics, acting.load)
+    assert not inertia_remarks(acting.rim_inertia, acting.speeds, acting.load)
 
 
 BEARING = ("micro_geometry.wg_slope=0", "wave_generator.bearing.balls=20")

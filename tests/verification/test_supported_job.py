@@ -12,6 +12,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import swgpar
+from support.cup_shapes import ATTACHED
 from support.paths import DESIGN, RECIPE
 from swgpar.exchange.calculix import MESH, write_calculix
 from swgpar.exchange.calculix_growth import initial_temperature, temperatures
@@ -35,16 +36,7 @@ CARRIED = (
     "output_bearing.tilting_direction=70",
 )
 
-ATTACHMENTS = {
-    "edge": (),
-    "clamped": ("cup.attachment=clamped", "cup.clamping_radius=10"),
-    "bolted": (
-        "cup.attachment=bolted",
-        "cup.bolts=6",
-        "cup.bolt_circle=20",
-        "cup.washer_diameter=3",
-    ),
-}
+ATTACHMENTS: dict[str, tuple[str, ...]] = {"edge": (), **ATTACHED}
 
 
 def _printed(path: Path, count: int) -> np.ndarray:
