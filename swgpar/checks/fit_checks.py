@@ -16,9 +16,9 @@ from swgpar.checks.output_bearing_checks import check_output_bearing
 from swgpar.checks.program_checks import check_program
 from swgpar.checks.strain_checks import check_strains
 from swgpar.checks.tooth_checks import check_teeth
-from swgpar.design.drive_design import DriveDesign
+from swgpar.design.drive_design import OMITTED_BENDING, DriveDesign
 from swgpar.design.linear_solvers import LINEAR_SOLVERS
-from swgpar.design.sections import GEARS, OMITTED_BENDING
+from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.input.quantities import show
 from swgpar.input.require import require, require_available

@@ -7,16 +7,13 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.kinematics import Kinematics
-from swgpar.design.sections import Load
+from swgpar.design.sections import PER_MINUTE, Load
 from swgpar.errors import InputError
 from swgpar.geometry.rim_inertia import RimInertia
 from swgpar.input.require import require, require_available
 
 NEGLIGIBLE = 0.01
 """Share of the bending up to which inertia is negligible."""
-
-PER_MINUTE = np.pi / 30.0
-"""A turn per minute in rad/s."""
 
 LARGEST = 1.0
 """Share of the bending up to which forces of inertia are a part of the model: there the wave is as

@@ -11,7 +11,7 @@ import numpy as np
 from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.drive_sections import DriveSections
 from swgpar.design.negligible_torque import negligible_torque
-from swgpar.design.sections import OMITTED_BENDING, ExternalGear, GearName, InternalGear
+from swgpar.design.sections import ExternalGear, GearName, InternalGear
 from swgpar.geometry.bearing import BallLines, BearingSizes, ball_lines
 from swgpar.geometry.cams import Cam, make_cam
 from swgpar.geometry.cams.semi_axes import minor_semi_axis, radial_deflection
@@ -32,6 +32,9 @@ from swgpar.profiles import (
 )
 from swgpar.profiles.rigid_teeth import RigidTeeth
 from swgpar.profiles.tip_relief import relieved
+
+OMITTED_BENDING = 0.01
+"""Largest share of the bending strain that condensed sectors may leave out."""
 
 SOLVER_CHOICES = {
     "linear",
@@ -124,8 +127,7 @@ class DriveDesign(DriveSections):
     def speeds(self) -> tuple[float, float]:
         """Speeds (rad/s) of flexible spline and wave generator in space at `load.input_speed`."""
         spline, wave = self.kinematics.speeds_in_space
-        rate = np.pi / 30.0 * self.load.input_speed
-        return float(rate * spline), float(rate * wave)
+        return self.load.input_rate * spline, self.load.input_rate * wave
 
     @property
     def rim_inertia(self) -> RimInertia | None:

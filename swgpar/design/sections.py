@@ -24,8 +24,8 @@ DesignBody = Literal["flexible_spline", "ring_gear", "dynamic_spline", "housing"
 GEARS: tuple[GearName, GearName] = ("flexible_spline", "ring_gear")
 """The gears that every drive has, in the order of the bodies."""
 
-OMITTED_BENDING = 0.01
-"""Largest share of the bending strain that condensed sectors may leave out."""
+PER_MINUTE = np.pi / 30.0
+"""A turn per minute in rad/s."""
 
 
 class Drive(Section):
@@ -180,6 +180,11 @@ class Load(Section):
     program: list[ProgramStage] = quantity(
         [], text="stages of a load program, which takes the place of torque and rotation"
     )
+
+    @property
+    def input_rate(self) -> float:
+        """Speed of the input, rad/s."""
+        return PER_MINUTE * self.input_speed
 
 
 class ContactSection(Section):

@@ -101,7 +101,7 @@ def evaluate_losses(
     """
     model = cycle.model
     design, losses = model.design, model.design.losses
-    omega = design.load.input_speed * np.pi / 30.0
+    omega = design.load.input_rate
     sliding = np.array(
         [_flank_torque(design, pairs, increment, model.copies) for increment in increments]
     )
@@ -162,7 +162,7 @@ def flank_coefficient(design: DriveDesign) -> float:
 
 def _flank_torque(design: DriveDesign, pairs: Sequence[Row], increment: int, copies: int) -> float:
     """Power of the friction between the flanks over the speed of the wave generator, N mm."""
-    omega, coefficient = design.load.input_speed * np.pi / 30.0, flank_coefficient(design)
+    omega, coefficient = design.load.input_rate, flank_coefficient(design)
     here = [
         pair
         for pair in pairs

@@ -62,7 +62,7 @@ class LoadedLosses:
             section,
             ratio=loaded.summary.ratio,
             torque=design.load.torque,
-            speed=design.load.input_speed * np.pi / 30.0,
+            speed=design.load.input_rate,
         )
 
     def at_input(self, torque: float, speed: float) -> float:

@@ -120,7 +120,7 @@ def spring_model(
         viscous_loss=losses.drag.input_viscous_drag,
         output_drag=losses.drag.output_drag,
         output_viscous_drag=losses.drag.output_viscous_drag,
-        loss_speed=SHARE * summary.design.load.input_speed * np.pi / 30.0,
+        loss_speed=SHARE * summary.design.load.input_rate,
     )
 
 

@@ -305,10 +305,7 @@ def _with_pressure(
         pressure_MPa=top.pressure_MPa,
         half_width_mm=top.half_width_mm,
         shear_MPa=shear,
-        sliding_mm_s=_sliding(model, gap, teeth, ring_teeth, top)
-        * model.design.load.input_speed
-        * np.pi
-        / 30.0,
+        sliding_mm_s=_sliding(model, gap, teeth, ring_teeth, top) * model.design.load.input_rate,
         edge=int(bool(edges)),
         edge_place=" and the ".join(edges),
         stations=stations,

@@ -354,7 +354,7 @@ def test_the_table_of_losses_balances_the_power() -> None:
     assert table["driving_efficiency"][moving] == pytest.approx(drives)
     # at the speed of the run and its load: seals included
     design = loaded.summary.design
-    omega = design.load.input_speed * np.pi / 30.0
+    omega = design.load.input_rate
     seals = design.losses.drag_at_input(omega, RATIO)
     assert losses.at_input(0.2, omega) == pytest.approx(0.045 + seals)
 
