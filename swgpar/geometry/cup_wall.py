@@ -6,6 +6,7 @@ bore or outwards as a flange. All lines are straight pieces, arcs and quarters o
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -303,6 +304,11 @@ class CupWall:
         for at in ends:
             stations = with_station(stations, at, keep)
         return stations
+
+
+def decay_length(radius: float, thickness: float) -> float:
+    """Length (mm) over which a disturbance of a wall decays, of its radius and thickness (mm)."""
+    return math.sqrt(radius * thickness)
 
 
 def end_reach(fillet: float, inside: float | None, end_thickness: float) -> float:

@@ -26,7 +26,7 @@ from swgpar.fem.vectors import read_field, write_field
 from swgpar.flank_pressure.flank_loads import flank_forces, line_loads, nodal_forces
 from swgpar.geometry.rotation import rotated
 from swgpar.largest_stress.places import OF_REGION
-from swgpar.largest_stress.window_regions import decay_length, pressed, read_regions
+from swgpar.largest_stress.window_regions import pressed, read_regions
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe
@@ -112,7 +112,7 @@ def window_sector(
     mesh = build_sector(geometry, recipe, gear)
     if mesh.plane or gear != FLEXIBLE_SPLINE:
         return mesh
-    end = 0.5 * geometry.face_width + CUP_LENGTH * decay_length(geometry)
+    end = 0.5 * geometry.face_width + CUP_LENGTH * geometry.wall_decay
     return trimmed(mesh, mesh.coords[mesh.hexes, 2].min(axis=1) < end)
 
 
@@ -354,7 +354,7 @@ class LocalProblem:
         """Largest stresses of the regions that the window resolves, by names with `OF_REGION`;
         collective."""
         geometry, mesh = self.model.geometry, self.layout.mesh
-        length = CUP_LENGTH * decay_length(geometry) if "cut" in mesh.node_sets else 0.0
+        length = CUP_LENGTH * geometry.wall_decay if "cut" in mesh.node_sets else 0.0
         regions = read_regions(geometry, mesh, length)
         stresses, sectors = self._stresses
         near = pressed(geometry, mesh, self.pressing)[sectors]

@@ -35,11 +35,6 @@ BEHIND = 1.5
 wall do not resolve it, and that from the cut of a window from which it does."""
 
 
-def decay_length(geometry: DriveGeometry) -> float:
-    """Length (mm) over which a disturbance of the wall decays."""
-    return float(np.sqrt(geometry.inner_radius * geometry.cup_thickness))
-
-
 def wall_start(geometry: DriveGeometry, cup: CupGeometry) -> float:
     """Distance (mm) from the back of the teeth at which rings begin: behind its fillet, and where
     no cam touches."""
@@ -78,7 +73,7 @@ def _beside_edges(geometry: DriveGeometry, mesh: SectorMesh, length: float) -> n
     if geometry.cup is None:
         return beside
     thickness, back = geometry.cup_thickness, geometry.cup.wall.back
-    resolved = max(decay_length(geometry), wall_start(geometry, geometry.cup) + BEHIND * thickness)
+    resolved = max(geometry.wall_decay, wall_start(geometry, geometry.cup) + BEHIND * thickness)
     beside |= z > back + min(resolved, length - BEHIND * thickness)
     if geometry.cup.back_fillet == 0.0:
         corner = geometry.inner_radius + thickness

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from swgpar.geometry.arrays import Floats, Ints
+from swgpar.geometry.cup_wall import decay_length
 from swgpar.meshing.cross_section import CrossSection
 from swgpar.meshing.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.recipe import CupRecipe, MeshRecipe
@@ -30,9 +30,9 @@ GROWTH = 1.6
 the ends of a long cylinder to its middle, at most."""
 
 LONG = 6.0
-"""Length of a cylinder over its decay length sqrt(radius thickness) up to which a recipe's elements
-share all of it. Bending by the teeth and by the closed end decays within some decay lengths of
-them, however long the wall is: a longer one has the same elements at its ends, and more of them."""
+"""Length of a cylinder over its decay length up to which a recipe's elements share all of it.
+Bending by the teeth and by the closed end decays within some decay lengths of them, however long
+the wall is: a longer one has the same elements at its ends, and more of them."""
 
 
 def graded(length: float, recipe: CupRecipe, decay: float) -> Floats:
@@ -107,7 +107,7 @@ def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
     length = float(wall.along(np.array([wall.length]))[0])
     elements = int(np.clip(np.ceil(length / (SHORTEST * wall.thickness)), 1, recipe.cylinder))
     recipe = recipe.model_copy(update={"cylinder": elements})
-    decay = math.sqrt(float(wall.inner.radius(np.zeros(1))[0]) * wall.thickness)
+    decay = decay_length(float(wall.inner.points[0, 1]), wall.thickness)
     usual = wall.at_length(cylinder_stations(length, recipe, decay, back_fillet, layers))
     s = wall.stations(usual, back_fillet * (1.0 + 1e-9))
     angle = wall.turn_angles(recipe.fillet)[1:]

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from swgpar.geometry.cup_wall import CupWall
+from swgpar.geometry.cup_wall import CupWall, decay_length
 from swgpar.profiles import ToothProfile
 
 THICK_CUP = 0.85
@@ -91,6 +91,11 @@ class DriveGeometry:
         """Thickness (mm) of the wall at the back of the teeth; that of the rim without a cup."""
         share = 1.0 if self.cup is None else self.cup.thickness_coef
         return share * self.gears["flexible_spline"].rim
+
+    @property
+    def wall_decay(self) -> float:
+        """Length (mm) over which a disturbance of the wall decays at the back of the teeth."""
+        return decay_length(self.inner_radius, self.cup_thickness)
 
     @property
     def outer_radius(self) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from swgpar.geometry.arrays import Floats, Ints
-from swgpar.geometry.cup_wall import CupWall
+from swgpar.geometry.cup_wall import CupWall, decay_length
 from swgpar.meshing.cup import Meridian, section_lines
 from swgpar.meshing.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.quality import element_quality
@@ -26,8 +26,8 @@ GROWTH = 1.35
 """Ratio of the lengths of successive elements along the section."""
 
 LONGEST = 0.35
-"""Length of the longest elements along the section over sqrt(radius * thickness): a disturbance of
-the wall's edge decays by e within about 0.8 of that."""
+"""Length of the longest elements along the section over the decay length: a disturbance of the
+wall's edge decays by e within about 0.8 of that."""
 
 LAYER_RATIO = 2.0
 """Thickness of the layers in the middle of the wall over that of the outermost."""
@@ -58,7 +58,7 @@ class WallCounts:
     def limit(self, radius: float, thickness: float) -> float:
         """Length (mm) of the longest elements where the wall has a radius and a thickness (mm)."""
         if self.longest is None:
-            return LONGEST * np.sqrt(radius * thickness)
+            return LONGEST * decay_length(radius, thickness)
         return self.longest * thickness
 
 
