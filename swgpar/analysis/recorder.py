@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import replace
@@ -42,7 +41,7 @@ from swgpar.results import history
 from swgpar.results.atomic import agreed, on_root, write_from_root
 from swgpar.results.field_sources import FieldParts
 from swgpar.results.fields import BodyPart, FieldWriter, FlankGrids
-from swgpar.results.folder import RECIPE, SUMMARY
+from swgpar.results.folder import RECIPE, SUMMARY, StoredSummary
 from swgpar.results.history import Row
 from swgpar.results.table import as_columns, as_rows, format_csv, read_columns
 
@@ -190,7 +189,8 @@ class Recorder(ABC):
                 balls=as_columns(self.record.balls),
                 bolts=as_columns(self.record.bolts),
             )
-            summary = summary_from(json.loads(summary_to_json(summary)), rows, tables.pairs)
+            stored = StoredSummary.model_validate_json(summary_to_json(summary))
+            summary = summary_from(stored, rows, tables.pairs)
         return self.comm.bcast((rows, summary, tables) if self.comm.rank == 0 else None)
 
     def program_rows(self) -> list[PointRow]:

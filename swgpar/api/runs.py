@@ -19,7 +19,7 @@ from swgpar.meshing.recipe import make_recipe
 from swgpar.petsc import release_unused
 from swgpar.results.atomic import agreed, on_all, raise_first, reason_of, write_file
 from swgpar.results.figure_set import save_figures
-from swgpar.results.folder import REPORT, given_folder, read_design
+from swgpar.results.folder import REPORT, given_folder, read_summary
 from swgpar.run_options import RunOptions
 from swgpar.systems import Result, system_of_section, system_of_table
 
@@ -226,7 +226,7 @@ def open_result(folder: str | Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Result:
     """
     folder = Path(folder)
     with agreed(comm, folder, "read"):
-        system = system_of_table(read_design(folder))
+        system = system_of_table(read_summary(folder).design)
     return system.open(folder, comm)
 
 

@@ -302,9 +302,9 @@ def open_data(folder: Path, comm: MPI.Comm) -> DriveData:
     """Data of a finished run from its folder; collective, every rank reads the files."""
     folder = folder.absolute()  # the fields are read later
     with agreed(comm, folder, "read"):
-        content, rows = read_summary(folder), history.read_history(folder / history.NAME)
+        stored, rows = read_summary(folder), history.read_history(folder / history.NAME)
         tables = read_tables(folder)
-        summary = summary_from(content, rows, tables.pairs, folder / SUMMARY)
+        summary = summary_from(stored, rows, tables.pairs, folder / SUMMARY)
     return DriveData(rows, summary, tables, open_fields(folder, comm), comm, folder)
 
 

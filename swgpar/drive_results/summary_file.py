@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
@@ -16,7 +15,7 @@ from swgpar.drive_results.first_format import from_first_format
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.errors import OutputError
 from swgpar.results.atomic import to_json
-from swgpar.results.folder import SUMMARY
+from swgpar.results.folder import SUMMARY, StoredSummary
 from swgpar.results.history import Row
 from swgpar.version import __version__
 
@@ -34,7 +33,7 @@ def summary_to_json(summary: DriveSummary) -> bytes:
 
 
 def summary_from(
-    content: Mapping[str, Any],
+    stored: StoredSummary,
     rows: Sequence[Row],
     pairs: Mapping[str, np.ndarray],
     path: Path = Path(SUMMARY),
@@ -44,6 +43,7 @@ def summary_from(
 
     Raises OutputError for a format that this version does not read.
     """
+    content = stored.model_dump()
     number = content.get("format", 1)
     try:
         if number not in (1, FORMAT):
@@ -52,10 +52,9 @@ def summary_from(
             content = from_first_format(content, rows, pairs)
         found: DriveSummary = _adapter().validate_python(content)
     except (ValidationError, KeyError, TypeError, ValueError):
-        by = content.get("versions", {}).get("swgpar", "of unknown number")
         raise OutputError(
-            f"{path} of swgpar {by} has the format {number}, and not a content that swgpar "
-            f"{__version__} reads: allowed are results of formats 1 to {FORMAT}"
+            f"{path} of swgpar {stored.written_by} has the format {number}, and not a content "
+            f"that swgpar {__version__} reads: allowed are results of formats 1 to {FORMAT}"
         ) from None
     found.design.made_by(make_drive)
     return found

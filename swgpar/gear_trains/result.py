@@ -19,7 +19,7 @@ from swgpar.gear_trains.published import Comparison, numbered
 from swgpar.results import history
 from swgpar.results.atomic import agreed, to_json, write_from_root
 from swgpar.results.figure_set import NamedFigures
-from swgpar.results.folder import SUMMARY, TABLES
+from swgpar.results.folder import SUMMARY, TABLES, StoredSummary
 from swgpar.results.quantity import Quantity
 from swgpar.results.table import Columns, format_columns, format_csv, read_columns
 from swgpar.vibration.sampling import TaskSeconds
@@ -145,23 +145,29 @@ def write(result: TrainResult, out: Path, comm: MPI.Comm) -> None:
     write_from_root(comm, out / SUMMARY, to_json(content))
 
 
+class StoredTrainSummary(StoredSummary):
+    """What summary.json of a gear train has beside its table of answers."""
+
+    quantities: dict[str, Any]
+    ranks: int
+    wall_s: float
+    task_s: dict[str, TaskSeconds | Any] = {}  # lists and sums in earlier versions
+
+
 def summary_from(
-    content: Mapping[str, Any], design: TrainDesign, known: Mapping[str, Quantity]
+    stored: StoredTrainSummary, design: TrainDesign, known: Mapping[str, Quantity]
 ) -> TrainSummary:
     """The summary from the content of summary.json, its design and what is known of its
     quantities."""
-    given = content | content["quantities"]  # some stood beside the others in earlier versions
+    given = stored.quantities | stored.model_extra  # some stood there in earlier versions
+    times = {name: one for name, one in stored.task_s.items() if isinstance(one, TaskSeconds)}
     return TrainSummary(
         # null is a number that is not finite
         {name: np.array(given[name], dtype=float).tolist() for name in known if name in given},
-        content["ranks"],
-        content["versions"],
-        content["wall_s"],
-        {
-            name: TaskSeconds(**times)
-            for name, times in content.get("task_s", {}).items()
-            if isinstance(times, Mapping)  # lists and sums in earlier versions
-        },
+        stored.ranks,
+        stored.versions,
+        stored.wall_s,
+        times,
         design,
         known,
     )

@@ -20,6 +20,7 @@ from swgpar.gear_trains.common_sections import TrainDesign
 from swgpar.gear_trains.published import check_published, compare
 from swgpar.gear_trains.result import (
     Computed,
+    StoredTrainSummary,
     TrainResult,
     TrainSummary,
     read,
@@ -151,15 +152,15 @@ def open_train(folder: Path, comm: MPI.Comm) -> TrainResult:
     Raises OutputError for a summary.json that this version does not read.
     """
     with agreed(comm, folder, "read"):
-        content = read_summary(folder)
+        stored = read_summary(folder)
         try:
-            design = make_train(content["design"])
+            design = make_train(stored.design)
+            content = StoredTrainSummary.model_validate(stored.model_dump())
             summary = summary_from(content, design, model_of(design).quantities(design))
-        except (InputError, KeyError, TypeError, ValueError):
-            by = content.get("versions", {}).get("swgpar", "of unknown number")
+        except (InputError, TypeError, ValueError):
             raise OutputError(
-                f"{folder / SUMMARY} of swgpar {by} is not the summary of a gear train that "
-                f"swgpar {__version__} reads"
+                f"{folder / SUMMARY} of swgpar {stored.written_by} is not the summary of a gear "
+                f"train that swgpar {__version__} reads"
             ) from None
         result = read(folder.absolute(), summary)
     return _with_figures(result, comm)

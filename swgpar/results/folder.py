@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 from mpi4py import MPI
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from swgpar import log
 from swgpar.errors import InputError, OutputError
@@ -130,17 +130,28 @@ def remove_results(out: Path) -> None:
             old.unlink()
 
 
-def read_summary(folder: Path) -> dict[str, Any]:
+class StoredSummary(BaseModel):
+    """What summary.json of every system has. A system adds fields; `model_extra` has the others."""
+
+    model_config = ConfigDict(extra="allow")
+
+    design: dict[str, Any]
+    versions: dict[str, str] = {}
+
+    @property
+    def written_by(self) -> str:
+        """Words for the version of swgpar."""
+        return self.versions.get("swgpar", "of unknown number")
+
+
+def read_summary(folder: Path) -> StoredSummary:
     """Content of summary.json of a finished run; raises OutputError where there is none."""
     for name in (SUMMARY, history.NAME):
         if not (folder / name).exists():
             raise OutputError(f"{folder} has no {name} of a finished run")
     try:
-        return json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        return StoredSummary.model_validate_json((folder / SUMMARY).read_bytes())
+    except ValidationError as error:
+        raise OutputError(f"cannot read {folder / SUMMARY}: {error.errors()[0]['msg']}") from None
+    except OSError as error:
         raise OutputError(f"cannot read {folder / SUMMARY}: {reason_of(error)}") from None
-
-
-def read_design(folder: Path) -> dict[str, Any]:
-    """The design of a finished run, of its summary.json; raises OutputError as `read_summary`."""
-    return read_summary(folder)["design"]

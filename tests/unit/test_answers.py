@@ -19,6 +19,7 @@ from swgpar.presentation import terminal
 from swgpar.presentation.answer_text import error_text, value_text
 from swgpar.presentation.drive_report import drive_report
 from swgpar.results import history
+from swgpar.results.folder import StoredSummary
 from swgpar.systems.drive import DRIVE
 
 FOLDERS = sorted((DATA / "first_format").iterdir())
@@ -65,7 +66,7 @@ def test_the_file_has_the_table_and_gives_the_same_summary_again(
         DRIVE.measure(result).values.values()
     )
     rows = history.read_history(result.folder / history.NAME)
-    assert summary_from(content, rows, result.pairs) == result.summary
+    assert summary_from(StoredSummary.model_validate(content), rows, result.pairs) == result.summary
 
 
 def test_an_answer_says_what_it_is() -> None:
