@@ -211,6 +211,8 @@ class LocalProblem:
                 reuse_factor=True,
             ),
         )
+        if shared.factor_angle is not None:
+            self.solver.system.take_over_factor(shared.angle - shared.factor_angle)
         self.problem = problem
         begin = displacement
         if coarser is not None:
@@ -318,12 +320,14 @@ class LocalProblem:
     def solve(self) -> None:
         """Bring the window to equilibrium. Raises ConvergenceError."""
         state = replace(self.state, stage=Stage.ROTATE, control="rotation", flank_clearance=None)
+        self._shared.factor_angle = None
         result = self.solver.solve(state)
         if not result.converged:
             raise ConvergenceError(
                 f"a window around tooth {self.layout.first_tooth + self.layout.count // 2}: "
                 f"{result.reason}"
             )
+        self._shared.factor_angle = self._shared.angle - self.solver.system.turn
 
     @cached_property
     def _stresses(self) -> tuple[dict[str, np.ndarray], np.ndarray]:

@@ -59,7 +59,7 @@ def _of_sectors(partition: Partition, x: PETSc.Vec, teeth: np.ndarray) -> np.nda
 
 
 def of_drive(model: DriveModel) -> Source:
-    """Displacements of the drive at the back of its teeth."""
+    """Displacements of the drive at the back of its teeth, and of its own wall."""
 
     def source(layout: BodyLayout, sectors: np.ndarray, nodes: np.ndarray) -> np.ndarray:
         teeth = layout.first_tooth + sectors
@@ -124,7 +124,7 @@ class WallProblem:
     ) -> WallProblem:
         """The whole wall on a mesh, or as much of it as the drive models.
 
-        coarse : displacements to begin with; None for those of the rigid wall
+        coarse : displacements to begin with; None for those of the drive
         """
         whole = model.partition.layouts[FLEXIBLE_SPLINE]
         layout = BodyLayout(
@@ -138,7 +138,7 @@ class WallProblem:
         coupling = model.problem.supports.couplings[SPLINE_COUPLING]
         rotation = float(coupling.evaluate(model.problem.displacement()).value[ROTATION])
         ring = cls(model, state, layout, of_drive(model), rotation)
-        ring._begin(ring._rotated() if coarse is None else ring._everywhere(coarse))
+        ring._begin(ring._everywhere(of_drive(model) if coarse is None else coarse))
         return ring
 
     def displacements(self, grid: WallSector) -> Source:
@@ -200,12 +200,6 @@ class WallProblem:
         return any(
             self.model.design.cup.is_attached(rotated(faces, angle)).any() for angle in angles
         )
-
-    def _rotated(self) -> np.ndarray:
-        """Displacement (n_owned, n_node, 3) mm of the rigid wall, rotated as closed end or flange
-        of the drive."""
-        position = self.body.positions()[self.body.owned]
-        return rotated(position, np.array(self.rotation)) - position
 
     def _cuts(self, source: Source, stiffness: float) -> PrescribedDisplacement:
         """The nodes of all cuts, held at the displacements of the source."""

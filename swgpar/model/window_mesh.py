@@ -1,7 +1,8 @@
 """What windows of a gear on one mesh share: sector, elements, room of the tangent and its factor.
 
 A window around another tooth is the same chain of sectors, rotated. So the pattern of its tangent
-and the order in which MUMPS eliminates the unknowns stay.
+and the order in which MUMPS eliminates the unknowns stay. Its tangent is nearly the rotated one of
+the last window, whose factor serves it too.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ class WindowMesh:
     Attributes:
     from_drive : interpolation from the drive's mesh;  partition, elements : of the present window
     blocks : room of its tangent, with the factor
+    factor_angle : rad, of the first sector of the window whose tangent is factorised; None for none
     """
 
     def __init__(self, body: BodyLayout, mesh: SectorMesh, count: int, comm: MPI.Comm) -> None:
@@ -45,7 +47,14 @@ class WindowMesh:
         self.partition = Partition([chain], comm)
         self.elements = Elements(self.partition)
         self.blocks = TangentMatrix(self.elements)
+        self.factor_angle: float | None = None
         self._from_coarser: tuple[SectorMesh, csr_matrix] | None = None
+
+    @property
+    def angle(self) -> float:
+        """Angle (rad) of the first sector of the present window, counter-clockwise from +y."""
+        layout = self.partition.layouts[self.gear]
+        return float(layout.sector_angle(np.array(layout.first_tooth)))
 
     def move(self, first_tooth: int) -> BodyLayout:
         """Let the sectors begin with another tooth; returns their layout."""
@@ -63,3 +72,4 @@ class WindowMesh:
     def release(self) -> None:
         """Release tangent and factor; collective. The next window makes them anew."""
         self.blocks.destroy()
+        self.factor_angle = None

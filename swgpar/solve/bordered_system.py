@@ -10,6 +10,7 @@ from mpi4py import MPI
 
 from swgpar.fem.partition import Partition
 from swgpar.fem.vectors import create_vector, read_multipliers
+from swgpar.geometry.rotation import rotated
 from swgpar.petsc import PETSc
 from swgpar.solve.factor_reuse import ReusedFactor
 from swgpar.solve.linear_solver import LinearSolver
@@ -34,6 +35,9 @@ class BorderedSystem:
     reuse : use a factor for later tangents too, see `ReusedFactor`; only if the solver is one
 
     K has no rows of nodes that nothing acts on. Their part of every solution is zero.
+
+    Attributes:
+    turn : rad, by which the present problem is turned against that of the factor, counter-clockwise
     """
 
     def __init__(self, partition: Partition, solver: LinearSolver, *, reuse: bool = False) -> None:
@@ -51,6 +55,7 @@ class BorderedSystem:
         self.n_loaded = 0
         self.small_system = np.zeros((0, 0))
         self.failed = False
+        self.turn = 0.0
         self.reused: ReusedFactor | None = None
         if reuse and solver.is_factor:
             self.reused = ReusedFactor(
@@ -83,9 +88,26 @@ class BorderedSystem:
         dims = self.partition.dims
         vector.array.reshape(-1, 3)[self.active, :dims] = values.reshape(-1, dims)
 
+    def take_over_factor(self, turn: float) -> None:
+        """Let the solver's factor, made for another problem, serve the first systems of this one.
+        Without grounding and borders.
+
+        turn : rad, by which this problem is turned against that one, counter-clockwise
+        """
+        if self.reused is not None and not self.solver.failure:
+            self.turn = turn
+            self.reused.renew(self._layout())
+
+    def _turned(self, values: np.ndarray, angle: float) -> np.ndarray:
+        """Vectors in the rows of the matrix, turned by an angle (rad), counter-clockwise."""
+        if angle == 0.0:
+            return values
+        return rotated(values.reshape(-1, self.partition.dims), angle).ravel()
+
     def solve_grounded(self, right: PETSc.Vec, x: PETSc.Vec) -> None:
         """x = K'^-1 right in the rows of the matrix, zero elsewhere."""
-        self._extend(self.solver.solve(self._restricted(right)), x)
+        values = self._turned(self._restricted(right), -self.turn)
+        self._extend(self._turned(self.solver.solve(values), self.turn), x)
 
     def set_system(
         self,
@@ -108,15 +130,18 @@ class BorderedSystem:
         self.border = border
         self.rows = rows
         self.bound = bound
-        other = int(self.into is None or not np.array_equal(active, self.active))
+        first = self.into is None
+        other = int(first or not np.array_equal(active, self.active))
         if self.partition.comm.allreduce(other, op=MPI.MAX):
             for owned in (self.into, self.out):
                 if owned is not None:
                     owned.destroy()
             self.into, self.out = matrix.createVecs()
-            if self.solver.matrix is not matrix:  # else another system has left it
+            left = self.solver.matrix is matrix  # by another system
+            if not left:
                 self.solver.renew()
-            self.discard_factor()
+            if not (first and left):
+                self.discard_factor()
         self.active = active
         self.n_loaded = 0 if bound is None else 1
 
@@ -138,6 +163,7 @@ class BorderedSystem:
     def factorise(self) -> None:
         """Prepare the solver for the present matrix, and solve for the borders."""
         self.solver.prepare(self.matrix, self.active, keep=self.reused is not None)
+        self.turn = 0.0
         sides = self.grounding + self.border
         if len(self.columns) != len(sides):
             self.columns = [vector.duplicate() for vector in sides]

@@ -138,11 +138,17 @@ def test_a_window_lies_on_the_race_of_a_bearing(model: str) -> None:
 @pytest.mark.parametrize("model", ["plane", "cup"])
 @pytest.mark.parallel([1, 2])
 def test_a_window_on_the_mesh_of_another_one_has_its_own_stress(model: str) -> None:
-    """It takes over elements, room of the tangent and factor of the window around another tooth."""
+    """It takes over elements, room of the tangent and factor of the window around another tooth.
+
+    Newton's method then ends elsewhere within its tolerance, which changes the stress by up to 1e-5
+    in the plane and 5e-4 in a cup (`RTOL`). A factor that were not turned would be made anew.
+    """
+    rel = {"plane": 1e-5, "cup": 5e-4}[model]
     stepper = drive(model)
-    found = []
+    found, turns = [], []
     for tooth in (1, 7, 1):
         window = solved(stepper, tooth)
+        turns.append(window.solver.system.turn)
         found.append(window.largest().value)
         window.destroy()
     stepper.model.release_windows()
@@ -150,9 +156,13 @@ def test_a_window_on_the_mesh_of_another_one_has_its_own_stress(model: str) -> N
     expected = alone.largest().value
     alone.destroy()
     print(f"{found} and {expected:.6f} MPa")
-    parallel_assert(found[1] == pytest.approx(expected, rel=1e-9), f"{found} and {expected}")
-    parallel_assert(found[2] == pytest.approx(found[0], rel=1e-9), f"{found}")
+    parallel_assert(found[1] == pytest.approx(expected, rel=rel), f"{found} and {expected}")
+    parallel_assert(found[2] == pytest.approx(found[0], rel=rel), f"{found}")
     parallel_assert(abs(found[1] - found[0]) > 0.1, f"{found}")
+    # factors of this plane's windows cost less than a solve
+    pitch = 2.0 * np.pi / stepper.model.partition.layouts[FLEXIBLE_SPLINE].mesh.n_sectors
+    turned = 6 * pitch if model == "cup" else 0.0
+    parallel_assert(turns[1] == pytest.approx(turned), f"{turns}")
 
 
 def roots(stepper: LoadStepper, gear: str) -> tuple[dict[str, float], dict[str, float]]:
