@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 
@@ -16,7 +17,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgpar import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.input.toml_file import read_toml
 
@@ -33,19 +33,27 @@ NOTE = "#b03030"
 Point = tuple[float, float]
 
 
-def canvas(
-    width: float, height: float, rows: int = 1, columns: int = 1, **options
-) -> tuple[Figure, np.ndarray | Axes]:
+def canvas(width: float, height: float) -> tuple[Figure, Axes]:
     """Figure (inches) with axes of equal scale and no frame."""
-    figure, axes = plt.subplots(rows, columns, figsize=(width, height), **options)
-    for ax in np.atleast_1d(axes).ravel():
+    figure, axes = canvases(width, height)
+    return figure, axes[0]
+
+
+def canvases(
+    width: float, height: float, rows: int = 1, columns: int = 1, **options: Any
+) -> tuple[Figure, np.ndarray]:
+    """Figure (inches) with several axes of equal scale and no frame: (columns,) in one row,
+    (rows,) in one column, else (rows, columns)."""
+    figure, every = plt.subplots(rows, columns, figsize=(width, height), **options)
+    axes = np.atleast_1d(every)
+    for ax in axes.ravel():
         ax.set_aspect("equal")
         ax.axis("off")
     return figure, axes
 
 
 def dimension(
-    ax: Axes, start: Point, end: Point, text: str, at: Point | None = None, **style
+    ax: Axes, start: Point, end: Point, text: str, at: Point | None = None, **style: Any
 ) -> None:
     """Double arrow between two points with a text in its middle, or at another point."""
     arrow = {
@@ -61,7 +69,7 @@ def dimension(
     label(ax, middle, text, **style)
 
 
-def label(ax: Axes, at: Point, text: str, **style) -> None:
+def label(ax: Axes, at: Point, text: str, **style: Any) -> None:
     """Text on a white ground."""
     box = {"boxstyle": "square,pad=0.12", "fc": "white", "ec": "none", "alpha": 0.85}
     ax.text(
@@ -71,7 +79,7 @@ def label(ax: Axes, at: Point, text: str, **style) -> None:
     )
 
 
-def leader(ax: Axes, at: Point, text: str, to: Point, **style) -> None:
+def leader(ax: Axes, at: Point, text: str, to: Point, **style: Any) -> None:
     """Text at one point with a thin arrow to another one."""
     box = {"boxstyle": "square,pad=0.12", "fc": "white", "ec": "none", "alpha": 0.85}
     arrow = {
@@ -86,7 +94,7 @@ def leader(ax: Axes, at: Point, text: str, to: Point, **style) -> None:
     ax.annotate(text, xy=to, xytext=at, arrowprops=arrow, **style)
 
 
-def extension(ax: Axes, *points: Point, **style) -> None:
+def extension(ax: Axes, *points: Point, **style: Any) -> None:
     """Thin line through points, such as an extension line of a dimension."""
     ax.plot(*np.transpose(points), **{"color": NOTE, "lw": 0.5, **style})
 
@@ -128,7 +136,7 @@ def turned(points: np.ndarray, angle: float) -> np.ndarray:
 
 def reference(name: str = "cup_45deg") -> DriveDesign:
     """The design of a file in drivers/."""
-    return load_design(DRIVERS / f"{name}.toml")
+    return make_drive(read_toml(DRIVERS / f"{name}.toml"))
 
 
 def plane_with(**sections: Mapping[str, object]) -> DriveDesign:

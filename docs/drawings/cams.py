@@ -15,7 +15,7 @@ from _drafting import (
     angle_mark,
     arc,
     axis_line,
-    canvas,
+    canvases,
     dimension,
     label,
     leader,
@@ -31,7 +31,7 @@ from swgpar.geometry.cams.elliptical import EllipticalCam
 from swgpar.geometry.cams.harmonic import HarmonicCam
 from swgpar.geometry.cams.keys import CamPoints, Polar
 from swgpar.geometry.cams.parabolic import Side, parabolic, solve_quarter
-from swgpar.geometry.cams.piecewise import Parabola
+from swgpar.geometry.cams.piecewise import Circle, Parabola
 from swgpar.geometry.cams.rollers import RollerCam, rollers
 from swgpar.geometry.cams.simplified import simplified
 
@@ -105,7 +105,7 @@ def draw_simplified(ax: Axes) -> None:
 def draw_arcs(ax: Axes) -> None:
     cam = arcs(A, B, np.radians(40.0), "beta")
     base(ax, cam, "arcs")
-    side, top, _ = cam.pieces
+    side, top, _ = (piece for piece in cam.pieces if isinstance(piece, Circle))
     joint = cam.joints[0]
     for circle, name in ((top, "parabola"), (side, "lateral")):
         ax.plot(*circle.center, "+", color=PARTS[name], ms=10, mew=1.5)
@@ -147,7 +147,8 @@ def draw_parabolic(ax: Axes) -> None:
         for point in (points[0], points[-1]):
             ax.plot(*np.transpose([circle.center, point]), color=PARTS[name], lw=0.7, ls=":")
     c, lateral = quarter.connector.center, quarter.lateral
-    middle = arc(c, quarter.connector.radius, *np.degrees([quarter.alpha, quarter.theta]), 3)[1]
+    begin, end = np.degrees([quarter.alpha, quarter.theta])
+    middle = arc(c, quarter.connector.radius, begin, end, 3)[1]
     dimension(ax, c, tuple(middle), "$r_c$", at=(c[0] + 1.3, c[1] + 0.25))
     label(ax, (c[0] - 0.7, c[1] - 0.4), "$c$", color=PARTS["connector"])
     angle_mark(ax, lateral.center, 3.4, 0.0, np.degrees(quarter.alpha), r"$\alpha_l$", out=1.25)
@@ -300,7 +301,7 @@ def cams() -> Figure:
         draw_pins,
     )
     rows = (len(figures) + 1) // 2
-    figure, axes = canvas(9.0, 14.5 / 3.0 * rows, rows, 2)
+    figure, axes = canvases(9.0, 14.5 / 3.0 * rows, rows, 2)
     for ax, draw in zip(axes.ravel(), figures):
         draw(ax)
         ax.set_xlim(-12.5, 12.5)
@@ -309,7 +310,7 @@ def cams() -> Figure:
     return figure
 
 
-REFERENCE = {
+REFERENCE: dict[str, dict[str, object]] = {
     "elliptical": {"type": "elliptical"},
     "harmonic": {"type": "harmonic"},
     "simplified, C = 0.97": {"type": "simplified", "C": 0.97},
@@ -356,7 +357,7 @@ def cam_radius() -> Figure:
 
 def stages() -> Figure:
     """What is active in the load stages, exaggerated."""
-    figure, axes = canvas(8.5, 9.2, 2, 2)
+    figure, axes = canvases(8.5, 9.2, 2, 2)
     circle = np.linspace(0, 2 * np.pi, 361)
     titles = ("1 deflect", "2 engage", "3 load", "4, 5, … rotate")
     notes = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from _drafting import INK, NOTE, RING, SPLINE, axis_line, canvas, label, leader, reference, run
+from _drafting import INK, NOTE, RING, SPLINE, axis_line, canvases, label, leader, reference, run
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
@@ -79,7 +79,7 @@ def section(ax: Axes, design: DriveDesign, title: str) -> None:
 
 def shapes() -> Figure:
     """Contour, short cup, silk hat."""
-    figure, axes = canvas(11.0, 5.4, columns=3)
+    figure, axes = canvases(11.0, 5.4, columns=3)
     for ax, (title, cup) in zip(axes, CASES.items(), strict=True):
         design = reference().model_copy(
             update={"cup": Cup.model_validate({"thickness_coef": 0.8, **cup})}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from _drafting import (
     INK,
@@ -11,7 +13,7 @@ from _drafting import (
     angle_mark,
     arc,
     axis_line,
-    canvas,
+    canvases,
     dimension,
     label,
     plane_with,
@@ -101,11 +103,11 @@ def profile(ax: Axes) -> None:
     s = np.linspace(0.0, flank.length, 300)
     points, normal = flank.point(s), flank.normal(s)
     ax.plot(*points.T, color=INK, lw=0.8, ls="--", label="ideal flank")
-    for name, values, colour in (
-        ("profile_slope", {"profile_slope": 0.18}, SPLINE),
-        ("profile_form", {"profile_form": 0.12}, NOTE),
+    for name, deviations, colour in (
+        ("profile_slope", partial(GearDeviations, profile_slope=0.18), SPLINE),
+        ("profile_form", partial(GearDeviations, profile_form=0.12), NOTE),
     ):
-        gear = GearDeviations(60.0, np.zeros(1), **values)
+        gear = deviations(60.0, np.zeros(1))
         height, _ = gear.profile_height(flank, s)
         ax.plot(*(points + height[:, None] * normal).T, color=colour, lw=1.6, label=f"{name} > 0")
     ax.legend(fontsize=8, loc="upper right", frameon=False)
@@ -115,7 +117,7 @@ def profile(ax: Axes) -> None:
 
 def deviations() -> Figure:
     """All kinds beside each other."""
-    figure, axes = canvas(12.0, 8.0, 2, 3)
+    figure, axes = canvases(12.0, 8.0, 2, 3)
     for ax, draw in zip(axes.ravel(), (pitch, eccentric, oval, tilted, profile), strict=False):
         draw(ax)
     label(axes[1, 2], (0.5, 0.5), "dashed: without deviation", color=INK)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import matplotlib.pyplot as plt
 import numpy as np
 from _drafting import (
     CAM,
-    DRIVERS,
     INK,
     RING,
     SPLINE,
@@ -25,7 +26,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from swgpar import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GearName
 from swgpar.geometry.cams import EllipticalCam
@@ -33,7 +33,7 @@ from swgpar.meshing.cup import meridian
 from swgpar.meshing.recipe import load_recipe
 
 
-def fill(ax: Axes, points: np.ndarray, colour: str, **style) -> None:
+def fill(ax: Axes, points: np.ndarray, colour: str, **style: Any) -> None:
     """Closed outline (n, 2), filled."""
     ax.add_patch(
         Polygon(
@@ -221,7 +221,7 @@ def front_design() -> DriveDesign:
     return plane_with(drive={"teeth_fs": 40, "teeth_rg": 42})
 
 
-def outline_of_gear(design: DriveDesign, gear: str, n: int = 24) -> np.ndarray:
+def outline_of_gear(design: DriveDesign, gear: GearName, n: int = 24) -> np.ndarray:
     """All teeth of a gear (n_teeth, points, 2), mm, undeformed, tooth 0 of the spline and slot 0 of
     the ring on +y."""
     profile = design.profile(gear)
@@ -319,10 +319,14 @@ def front() -> Figure:
 def pancake() -> Figure:
     """The pancake drive: section along its axis, and the rigid tooth of the flexible spline in both
     of its slots."""
-    design = load_design(DRIVERS / "pancake.toml")
+    design = reference("pancake")
     figure, (ax, *slots) = plt.subplots(1, 3, figsize=(11.0, 4.4), width_ratios=(1.5, 1.0, 1.0))
     inner, half = design.inner_radius, 0.5 * design.drive.face_width
-    names = {"flexible_spline": SPLINE, "ring_gear": RING, "dynamic_spline": RING}
+    names: dict[GearName, str] = {
+        "flexible_spline": SPLINE,
+        "ring_gear": RING,
+        "dynamic_spline": RING,
+    }
     cam = design.major_semi_axis
     fill(ax, np.array([(-half, cam - 5.0), (half, cam - 5.0), (half, cam), (-half, cam)]), CAM)
     label(ax, (0.0, cam - 2.5), "wave generator", color=INK)
@@ -346,8 +350,8 @@ def pancake() -> Figure:
     ax.set(xlim=(-half - 1.0, half + 1.0), ylim=(cam - 5.5, outer + 1.6))
     ax.set(xlabel="z, mm", ylabel="r at the major axis, mm")
     ax.set_aspect("equal")
-    for ax, gear in zip(slots, ("ring_gear", "dynamic_spline"), strict=True):
-        _slot(ax, design, gear)
+    _slot(slots[0], design, "ring_gear")
+    _slot(slots[1], design, "dynamic_spline")
     figure.tight_layout()
     return figure
 

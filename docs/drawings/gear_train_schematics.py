@@ -3,6 +3,8 @@ from the drivers."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import matplotlib.pyplot as plt
 import numpy as np
 from _drafting import (
@@ -26,8 +28,11 @@ from matplotlib.patches import Circle, Rectangle
 
 from swgpar import load_design
 from swgpar.gear_trains.cascade.design import PINIONS
+from swgpar.gear_trains.gear_pair.design import GearPairDesign
+from swgpar.gear_trains.planetary.design import PlanetaryDesign
+from swgpar.gear_trains.ring.design import RingDesign
 
-WIRE = {"color": INK, "lw": 1.0, "solid_capstyle": "butt"}
+WIRE: dict[str, Any] = {"color": INK, "lw": 1.0, "solid_capstyle": "butt"}
 
 
 def local(start: Point, end: Point) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
@@ -40,7 +45,10 @@ def local(start: Point, end: Point) -> tuple[np.ndarray, np.ndarray, np.ndarray,
 
 
 def path(
-    ax: Axes, frame: tuple[np.ndarray, np.ndarray, np.ndarray, float], points: list[Point], **style
+    ax: Axes,
+    frame: tuple[np.ndarray, np.ndarray, np.ndarray, float],
+    points: list[Point],
+    **style: Any,
 ) -> None:
     """Line through points given along the frame's line (as parts of its length) and to its left."""
     a, along, left, length = frame
@@ -120,6 +128,7 @@ def body(ax: Axes, center: Point, radius: float, color: str) -> None:
 def gear_pair() -> Figure:
     """Gear pair of drivers/gear_pair.toml, radii to scale; the line of action is vertical."""
     design = load_design(DRIVERS / "gear_pair.toml")
+    assert isinstance(design, GearPairDesign)
     total = design.gear_1.radius + design.gear_2.radius
     r1, r2, gap = 3.4 * design.gear_1.radius / total, 3.4 * design.gear_2.radius / total, 1.5
     first, second = (0.0, r1 + 0.5 * gap), (r1 + r2, -r2 - 0.5 * gap)
@@ -212,6 +221,7 @@ def ring() -> Figure:
     """Elastic ring of drivers/ring_moving_load.toml: elements, supports, moving loads and
     displacements."""
     design = load_design(DRIVERS / "ring_moving_load.toml")
+    assert isinstance(design, RingDesign)
     elements, supports, loads = (
         design.ring.elements,
         design.supports.count,
@@ -272,6 +282,7 @@ def ring() -> Figure:
 def planetary() -> Figure:
     """Planetary train of drivers/planetary.toml, pitch circles to scale."""
     design = load_design(DRIVERS / "planetary.toml")
+    assert isinstance(design, PlanetaryDesign)
     scale = 3.6 / design.ring.root_radius
     sun, planet = (
         0.5 * scale * design.sun.pitch_diameter,

@@ -11,7 +11,7 @@ from _drafting import (
     SPLINE,
     arc,
     axis_line,
-    canvas,
+    canvases,
     label,
     leader,
     plane_with,
@@ -172,7 +172,7 @@ def shaper(ax: Axes, drive: DriveDesign) -> None:
 
 def involute() -> Figure:
     drive = design()
-    figure, axes = canvas(8.0, 12.0, 2, 1)
+    figure, axes = canvases(8.0, 12.0, 2, 1)
     rack(axes[0], drive)
     shaper(axes[1], drive)
     for ax, r_pitch in zip(axes, np.divide(TEETH, 2.0)):

@@ -9,7 +9,7 @@ from _drafting import (
     SPLINE,
     angle_mark,
     axis_line,
-    canvas,
+    canvases,
     dimension,
     label,
     leader,
@@ -43,7 +43,9 @@ def layers(ax: Axes) -> None:
     corner = np.array([low + 12.0, 46.0])
     for way, name in (((7.0, 0.0), "z"), ((0.0, 7.0), "y: radial")):
         tip = corner + way
-        ax.annotate("", xy=tip, xytext=corner, arrowprops={"arrowstyle": "-|>", "color": NOTE})
+        ax.annotate(
+            "", xy=tuple(tip), xytext=tuple(corner), arrowprops={"arrowstyle": "-|>", "color": NOTE}
+        )
         label(ax, tuple(tip + 0.25 * np.array(way)), name)
     ax.plot(*corner, "o", mfc="white", mec=NOTE, ms=8)
     ax.plot(*corner, "x", color=NOTE, ms=5)
@@ -84,7 +86,7 @@ def moduli(ax: Axes) -> None:
 
 def material() -> Figure:
     """Layers, and what they do to the modulus."""
-    figure, axes = canvas(11.0, 5.2, columns=2, layout="constrained")
+    figure, axes = canvases(11.0, 5.2, columns=2, layout="constrained")
     layers(axes[0])
     moduli(axes[1])
     return figure

@@ -24,7 +24,15 @@ def arrow(
         middle = at or (0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1]))
         ground = {"boxstyle": "square,pad=0.1", "fc": "white", "ec": "none"}
         ax.text(
-            *middle, text, ha="center", va="center", fontsize=8, color=NOTE, bbox=ground, zorder=4
+            middle[0],
+            middle[1],
+            text,
+            ha="center",
+            va="center",
+            fontsize=8,
+            color=NOTE,
+            bbox=ground,
+            zorder=4,
         )
 
 

@@ -3,8 +3,10 @@ one, in which the stress at the teeth is resolved."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
-from _drafting import INK, NOTE, SPLINE, canvas, extension, label, leader, reference, run, turned
+from _drafting import INK, NOTE, SPLINE, canvases, extension, label, leader, reference, run, turned
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
@@ -16,14 +18,14 @@ from swgpar.meshing import MeshRecipe, SectorMesh, load_recipe
 DRIVE_RECIPE, WINDOW_LEVEL = "plane_coarse", 1
 
 
-def sectors(ax: Axes, mesh: SectorMesh, around: range, **style) -> np.ndarray:
+def sectors(ax: Axes, mesh: SectorMesh, around: range, **style: Any) -> np.ndarray:
     """Draw sectors by their numbers from the one at +y; places (n, 2) mm of their nodes."""
     step = 2.0 * np.pi / mesh.n_sectors
     # the plane model's lower layer of nodes, the first four of an element
     sides = mesh.coords[mesh.hexes[:, :4], :2]
     for k in around:
         quads = turned(sides.reshape(-1, 2), k * step).reshape(sides.shape)
-        ax.add_collection(PolyCollection(quads, edgecolors=INK, linewidths=0.3, **style))
+        ax.add_collection(PolyCollection(list(quads), edgecolors=INK, linewidths=0.3, **style))
     nodes = mesh.coords[np.unique(mesh.hexes[:, :4]), :2]
     return np.concatenate([turned(nodes, k * step) for k in around])
 
@@ -35,7 +37,7 @@ def spline_mesh(recipe: MeshRecipe) -> SectorMesh:
 
 def output() -> Figure:
     """The drive's mesh with its nodes, and a window around the middle tooth."""
-    figure, (whole, window) = canvas(11.0, 4.6, 1, 2, layout="constrained")
+    figure, (whole, window) = canvases(11.0, 4.6, 1, 2, layout="constrained")
     half = SECTORS // 2
     shown = range(-half, half + 1)
     mesh = spline_mesh(load_recipe(DRIVE_RECIPE))

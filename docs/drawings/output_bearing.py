@@ -12,7 +12,7 @@ from _drafting import (
     angle_mark,
     arc,
     axis_line,
-    canvas,
+    canvases,
     dimension,
     extension,
     label,
@@ -93,7 +93,7 @@ def along_axis(ax: Axes) -> None:
 
 def bearing() -> Figure:
     """Section and view along the axis."""
-    figure, axes = canvas(11.0, 6.2, 1, 2, width_ratios=(1.5, 1.0))
+    figure, axes = canvases(11.0, 6.2, 1, 2, width_ratios=(1.5, 1.0))
     section(axes[0])
     along_axis(axes[1])
     return figure

@@ -4,7 +4,20 @@ from __future__ import annotations
 
 import matplotlib.pyplot as plt
 import numpy as np
-from _drafting import INK, NOTE, RING, SPLINE, arc, axis_line, canvas, label, leader, reference, run
+from _drafting import (
+    INK,
+    NOTE,
+    RING,
+    SPLINE,
+    arc,
+    axis_line,
+    canvas,
+    canvases,
+    label,
+    leader,
+    reference,
+    run,
+)
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
@@ -45,7 +58,7 @@ def sectors() -> Figure:
     """One sector of both gears, plane model."""
     design = reference("plane_half_turn")
     meshes = build_sector_meshes(design.geometry, load_recipe("plane_coarse"))
-    figure, axes = canvas(9.0, 5.6, 1, 2)
+    figure, axes = canvases(9.0, 5.6, 1, 2)
     draw_sector(
         axes[0], meshes["flexible_spline"], SPLINE, "sector of the flexible spline (plane_coarse)"
     )
@@ -73,7 +86,8 @@ def ring_of_sectors(ax: Axes, n: int, inner: float, outer: float, phase: float) 
         )
         at = arc((0, 0), 0.5 * (inner + outer), middle, middle, 1)[0]
         ax.text(
-            *at,
+            at[0],
+            at[1],
             str(k % (n // 2)),
             ha="center",
             va="center",

@@ -11,7 +11,7 @@ from _drafting import (
     SPLINE,
     arc,
     axis_line,
-    canvas,
+    canvases,
     label,
     leader,
     plane_with,
@@ -21,6 +21,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GEARS
 from swgpar.profiles import ToothProfile
 from swgpar.profiles.flank import Segment
 
@@ -81,7 +82,7 @@ def draw_profile(ax: Axes, profile: ToothProfile, r_pitch: float, spots: Spot) -
     for segment in profile.segments:
         points = segment.point(np.linspace(0.0, segment.length, 60))
         ax.plot(*points.T, color=COLOURS[segment.name], lw=2.6, solid_capstyle="butt")
-        if segment.curvature:
+        if isinstance(segment, Segment) and segment.curvature:
             middle, at = points[len(points) // 2], center(segment)
             ax.plot(*at, "+", color=COLOURS[segment.name], ms=9, mew=1.5)
             for point in (points[0], points[-1]):
@@ -94,7 +95,7 @@ def draw_profile(ax: Axes, profile: ToothProfile, r_pitch: float, spots: Spot) -
                 "shrinkA": 0,
                 "shrinkB": 0,
             }
-            ax.annotate("", xy=middle, xytext=at, arrowprops=arrow)
+            ax.annotate("", xy=middle, xytext=tuple(at), arrowprops=arrow)
             text = at + (0.62 if segment.name in ("dedendum", "addendum") else 0.5) * (middle - at)
             label(ax, tuple(text), f"$r_{short}$", color=COLOURS[segment.name], fontsize=9)
             name = f"O{short}"
@@ -140,8 +141,8 @@ def pitch_point(
     leader(ax, tuple(point + spots["P"]), "P", tuple(point), fontsize=9)
     ax.annotate(
         "",
-        xy=point + 0.62 * normal,
-        xytext=point,
+        xy=tuple(point + 0.62 * normal),
+        xytext=tuple(point),
         arrowprops={"arrowstyle": "-|>", "color": NOTE, "lw": 1.1},
     )
     label(ax, tuple(point + spots["n"]), r"$n(\alpha^*)$", fontsize=9)
@@ -152,7 +153,7 @@ def pitch_point(
     # alpha_P is drawn between the centre line and the pitch point
     ax.annotate(
         "",
-        xy=point,
+        xy=tuple(point),
         xytext=(0.0, r_pitch),
         arrowprops={"arrowstyle": "<|-|>", "color": NOTE, "lw": 0.8, "shrinkA": 0},
     )
@@ -162,11 +163,11 @@ def pitch_point(
 def pair(profile: dict[str, object], spots: tuple[Spot, Spot], title: str) -> Figure:
     """Both gears' flanks beside each other."""
     design = design_with(profile)
-    figure, axes = canvas(8.0, 11.0, 2, 1)
+    figure, axes = canvases(8.0, 11.0, 2, 1)
     angle = np.radians(design.drive.pressure_angle)
     for ax, gear, teeth, spot, name in zip(
         axes,
-        ("flexible_spline", "ring_gear"),
+        GEARS,
         (design.drive.teeth_fs, design.drive.teeth_rg),
         spots,
         ("external tooth (flexible spline), s = +1", "internal tooth (ring gear), s = −1"),

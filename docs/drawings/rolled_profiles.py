@@ -10,7 +10,7 @@ from _drafting import (
     SPLINE,
     arc,
     axis_line,
-    canvas,
+    canvases,
     label,
     leader,
     plane_with,
@@ -20,6 +20,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GEARS, GearName
 from swgpar.profiles import ToothProfile
 
 S_SHAPED = {"type": "s_shaped", "r_root": 0.25}
@@ -64,7 +65,7 @@ def path(ax: Axes, design: DriveDesign) -> None:
     ax.set_title("a tooth in its slot, on the path of racks", fontsize=10)
 
 
-def flank(ax: Axes, design: DriveDesign, gear: str, title: str) -> None:
+def flank(ax: Axes, design: DriveDesign, gear: GearName, title: str) -> None:
     """One flank with its circles and its segments."""
     profile, r_pitch = design.profile(gear), design.teeth(gear).r_pitch
     half = np.degrees(np.pi / profile.n_teeth)
@@ -94,7 +95,7 @@ def flank(ax: Axes, design: DriveDesign, gear: str, title: str) -> None:
 def s_shaped() -> Figure:
     """The path, and a flank of the flexible spline."""
     design = both(S_SHAPED)
-    figure, axes = canvas(11.0, 4.6, 1, 2, width_ratios=(1.6, 1.0))
+    figure, axes = canvases(11.0, 4.6, 1, 2, width_ratios=(1.6, 1.0))
     path(axes[0], design)
     flank(axes[1], design, "flexible_spline", "tooth of the flexible spline")
     profile = design.profile("flexible_spline")
@@ -119,10 +120,10 @@ def rolling(ax: Axes, r_pitch: float, rho: float, at: np.ndarray, centre: float)
 def cycloid() -> Figure:
     """Both gears with the circles whose points move on the flanks."""
     design = both(CYCLOID)
-    figure, axes = canvas(9.0, 5.4, 1, 2)
+    figure, axes = canvases(9.0, 5.4, 1, 2)
     for ax, gear, title in zip(
         axes,
-        ("flexible_spline", "ring_gear"),
+        GEARS,
         ("external tooth (flexible spline)", "internal tooth (ring gear)"),
         strict=True,
     ):

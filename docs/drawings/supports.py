@@ -11,6 +11,7 @@ from _drafting import (
     arc,
     axis_line,
     canvas,
+    canvases,
     dimension,
     label,
     plane_with,
@@ -94,7 +95,7 @@ def joint(ax: Axes, design: DriveDesign) -> None:
 
 def attachment() -> Figure:
     """Bolts, a clamped ring, and a joint."""
-    figure, axes = canvas(15.0, 5.4, 1, 3)
+    figure, axes = canvases(15.0, 5.4, 1, 3)
     bolted, clamped = with_cup(BOLTED), with_cup(CLAMPED)
     closed_end(axes[0], bolted, 'attachment = "bolted": rigid where grey, under bolts')
     circle, washer = bolted.cup.bolt_circle, bolted.cup.washer_diameter

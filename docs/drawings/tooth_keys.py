@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from _drafting import (
-    DRIVERS,
     INK,
     NOTE,
     RING,
@@ -12,17 +11,18 @@ from _drafting import (
     arc,
     axis_line,
     canvas,
+    canvases,
     dimension,
     label,
     leader,
     plane_with,
+    reference,
     run,
 )
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgpar import load_design
-from swgpar.profiles import ToothProfile
+from swgpar.profiles import Points, ToothProfile
 
 COLOURS = ("#2f7fd0", "#8c4fb0", "#2d9a57", "#c2a11a", "#d07a20")
 
@@ -63,7 +63,7 @@ def moving(ax: Axes, pressure_angle: float, title: str) -> None:
 
 def conjugate() -> Figure:
     """The envelope of the flank, and the boundary of the swept area where it is undercut."""
-    figure, axes = canvas(9.5, 5.2, 1, 2)
+    figure, axes = canvases(9.5, 5.2, 1, 2)
     moving(axes[0], 20.0, "envelope, pressure angle of the spline 20°")
     moving(axes[1], 8.0, "swept area, pressure angle 8°")
     return figure
@@ -71,8 +71,9 @@ def conjugate() -> Figure:
 
 def points() -> Figure:
     """Points of a flank, the curve through them, and its joints."""
-    design = load_design(DRIVERS / "teeth" / "from_points.toml", ["ring_gear.c_P=1.0"])
+    design = reference("teeth/from_points").with_values(["ring_gear.c_P=1.0"])
     profile, keys = design.profile("ring_gear"), design.ring_gear.profile
+    assert isinstance(keys, Points)
     figure, ax = canvas(6.5, 5.6)
     for begin, end, colour in zip(profile.breaks, profile.breaks[1:], COLOURS * 2):
         ax.plot(*profile.point(np.linspace(begin, end, 80)).T, color=colour, lw=2.4)

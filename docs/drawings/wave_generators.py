@@ -12,7 +12,7 @@ from _drafting import (
     angle_mark,
     arc,
     axis_line,
-    canvas,
+    canvases,
     dimension,
     label,
     leader,
@@ -25,6 +25,7 @@ from matplotlib.patches import Circle, Rectangle
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.bearing import ball_lines
+from swgpar.geometry.cams.rollers import RollerCam
 
 BEARING = {"balls": 20, "ball_diameter": 2.2, "race_thickness": 0.7, "first_ball": 6.0}
 """Sizes on a drive of 40 and 42 teeth, so few that the bearing shows."""
@@ -108,7 +109,7 @@ def along(ax: Axes) -> None:
 
 def bearing() -> Figure:
     """The bearing across and along the axis."""
-    figure, axes = canvas(11.0, 5.4, 1, 2)
+    figure, axes = canvases(11.0, 5.4, 1, 2)
     across(axes[0])
     along(axes[1])
     return figure
@@ -137,7 +138,9 @@ def offset(ax: Axes) -> None:
 def discs(ax: Axes) -> None:
     """Two discs beside each other along the axis."""
     design = small({"type": "two_roller", "r_2": 9.0})
-    cam, width, distance = design.cam(), 4.0, 6.0  # the plane model has no axial sizes
+    cam = design.cam()
+    assert isinstance(cam, RollerCam)
+    width, distance = 4.0, 6.0  # the plane model has no axial sizes
     for side in (1.0, -1.0):
         low, middle = side * cam.reach - cam.radius, 0.5 * side * distance
         corner = (middle - 0.5 * width, low)
@@ -157,7 +160,7 @@ def discs(ax: Axes) -> None:
 
 def sizes() -> Figure:
     """Sizes of cams, and two discs."""
-    figure, axes = canvas(11.0, 5.6, 1, 2)
+    figure, axes = canvases(11.0, 5.6, 1, 2)
     offset(axes[0])
     discs(axes[1])
     return figure
