@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         mesh,
         new,
         open_result,
+        rate,
         run,
     )
     from swgpar.design.drive_design import DriveDesign
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from swgpar.optimisation.result import OptimisationResult
     from swgpar.optimisation.run_optimisation import optimise
     from swgpar.presentation.drive_result import DriveResult
+    from swgpar.rating.sheet import RatingSheet
     from swgpar.studies.study import StudyResult, study
     from swgpar.systems.gear_train import TrainResult
 
@@ -50,6 +52,7 @@ _MODULES = {
     "load_mesh": "api",
     "run": "api",
     "open_result": "api",
+    "rate": "api",
     "study": "studies.study",
     "optimise": "optimisation.run_optimisation",
     "check": "api",
@@ -58,6 +61,7 @@ _MODULES = {
     "MeshRecipe": "meshing.recipe",
     "DriveMesh": "meshing.drive_mesh",
     "DriveResult": "presentation.drive_result",
+    "RatingSheet": "rating.sheet",
     "TrainResult": "systems.gear_train",
     "StudyResult": "studies.study",
     "OptimisationResult": "optimisation.result",
@@ -80,6 +84,7 @@ __all__ = [
     "OptimisationResult",
     "OutOfMemoryError",
     "OutputError",
+    "RatingSheet",
     "SwgparError",
     "StudyResult",
     "TimeLimitError",
@@ -93,6 +98,7 @@ __all__ = [
     "new",
     "open_result",
     "optimise",
+    "rate",
     "run",
     "study",
 ]

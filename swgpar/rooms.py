@@ -45,6 +45,7 @@ PURPOSE = {
     "studies",
     "studies": "many runs: cases, schedule, tables, report",
     "optimisation": "search for the best design: variables, objectives, constraints, report",
+    "rating": "rating sheet of a drive: the runs that it needs, verdicts, views",
     "api": "the Python interface",
     "cli": "the command line",
 }

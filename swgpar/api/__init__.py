@@ -7,6 +7,7 @@ waiting: `mpirun -n 2 python -m mpi4py script.py` ends all ranks then.
 """
 
 from swgpar.api.designs import check, mesh, new
+from swgpar.api.ratings import rate
 from swgpar.api.runs import export, load_design, load_mesh, open_result, run, save_report
 
 __all__ = [
@@ -17,6 +18,7 @@ __all__ = [
     "mesh",
     "new",
     "open_result",
+    "rate",
     "run",
     "save_report",
 ]

@@ -14,7 +14,7 @@ from swgpar.errors import InputError, OutOfMemoryError, SwgparError, shortened
 
 __all__ = ["main", "parser"]
 
-SOLVING = ("run", "study", "optimise")
+SOLVING = ("run", "rate", "study", "optimise")
 """Commands that compute on all ranks, with options of PETSc."""
 
 WITHOUT_PETSC = ("new", "check")

@@ -11,6 +11,7 @@ from typing import Any
 from mpi4py import MPI
 
 from swgpar import api, log, petsc, watch
+from swgpar.api.ratings import load_rated_design
 from swgpar.errors import InputError, StudyError, printable
 from swgpar.input.design import Design
 from swgpar.log import console
@@ -26,6 +27,17 @@ def _run(arguments: argparse.Namespace) -> None:
     result = api.run(design, arguments.mesh, arguments.out, progress=True, **given)
     if MPI.COMM_WORLD.rank == 0:
         system.print(result)
+    _end()
+
+
+def _rate(arguments: argparse.Namespace) -> None:
+    from swgpar.rating.terminal import print_sheet
+
+    path, overrides = arguments.design, arguments.overrides
+    design = on_all(MPI.COMM_WORLD, lambda: load_rated_design(path, overrides))
+    _begin(arguments, "runs")
+    sheet = api.rate(design, arguments.out, progress=True, **_given(api.rate, arguments))
+    _show(arguments.out, lambda: print_sheet(sheet))
     _end()
 
 
@@ -157,6 +169,6 @@ def _print(lines: Iterable[str]) -> None:
 
 COMMANDS: dict[str, Callable[[argparse.Namespace], None]] = {
     command.__name__.removeprefix("_"): command
-    for command in (_new, _run, _study, _optimise, _mesh, _check, _report, _view, _export)
+    for command in (_new, _run, _rate, _study, _optimise, _mesh, _check, _report, _view, _export)
 }
 """By name."""

@@ -30,6 +30,27 @@ RUN_EXAMPLES = """examples:
   mpirun -n 2 swgpar run drivers/cascade.toml --out results/cascade
 """
 
+RATE = """Rate a drive: one sheet with all answers beside requirements and limits, each with its error and a verdict.
+The design file has a section [rating] with torques, speeds and what is required. Answers that one run cannot give
+together come from several, which follow each other. Unknown options are passed to PETSc."""
+
+RATE_EXAMPLES = """examples:
+  mpirun -n 2 swgpar rate drive.toml --out results/rating
+  mpirun -n 2 swgpar rate drive.toml --out results/rating --restart
+  swgpar rate drive.toml --set rating.momentary_torque=60 --out results/momentary
+
+in the design file:
+  [rating]
+  rated_torque = 20.0           # N·m
+  repeated_peak_torque = 30.0
+  momentary_torque = 60.0
+  life = 7000.0                 # h, of the bearing
+  K1 = 8000.0                   # N·m/rad, at least
+  efficiency = 0.7
+
+--restart keeps finished runs, continues interrupted ones and tries failed ones again.
+"""
+
 MESH_EXAMPLES = """examples:
   swgpar mesh drivers/cup_45deg.toml --mesh coarse --out results/mesh --format vtu inp
   swgpar mesh drivers/plane_half_turn.toml --mesh my_recipe.toml --out results/mesh
@@ -152,10 +173,15 @@ def parser() -> _Parser:
     commands = top.add_subparsers(
         dest="command",
         required=True,
-        metavar="new | check | mesh | run | study | optimise | report | view | export",
+        metavar="new | check | mesh | run | rate | study | optimise | report | view | export",
     )
     _add_new(commands)
     _add_run(commands)
+    rate = _add_command(commands, "rate", RATE, RATE_EXAMPLES)
+    _add_design(rate)
+    text = "(default: forces, for a plane model plane_coarse)"
+    rate.add_argument("--mesh", help=f"{MESH_HELP} {text}")
+    _add_out(rate, "folder of the sheet and its runs", "continue the rating in --out", "a rating")
     study = _add_command(commands, "study", STUDY, STUDY_EXAMPLES)
     study.add_argument("study", help="study file (TOML)")
     _add_out(study, "folder of the study", "continue the study in --out", "a study")

@@ -318,10 +318,15 @@ class DriveDesign(DriveSections):
 
     @property
     def decisive_keys(self) -> dict[str, Any]:
-        """The keys that determine results, by section: without the output, the rotation, whose
-        angles are compared one by one, and how systems are solved."""
+        """The keys that determine results, by section: without the output, the rating, the
+        rotation, whose angles are compared one by one, and how systems are solved."""
         content = self.model_dump(
-            exclude={"output": True, "steps": {"rotation", "samples"}, "solver": SOLVER_CHOICES}
+            exclude={
+                "output": True,
+                "rating": True,
+                "steps": {"rotation", "samples"},
+                "solver": SOLVER_CHOICES,
+            }
         )
         if self.bearing is not None:
             content["cage_speed"] = self.cage_speed  # follows from steps.samples

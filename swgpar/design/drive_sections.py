@@ -11,6 +11,7 @@ from swgpar.design.frequency_section import Frequencies
 from swgpar.design.kinematics import Kinematics, make_kinematics
 from swgpar.design.output_bearing import OutputBearing
 from swgpar.design.program_sections import Ratcheting, Stiffness
+from swgpar.design.rating_section import RatingSection
 from swgpar.design.sections import (
     GEARS,
     ContactSection,
@@ -61,6 +62,7 @@ class DriveSections(Design):
     deviations: Deviations | None = None
     frequencies: Frequencies | None = None
     output_bearing: OutputBearing | None = None
+    rating: RatingSection | None = None
 
     @property
     def gears(self) -> tuple[GearName, ...]:

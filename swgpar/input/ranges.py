@@ -42,6 +42,9 @@ SMALLEST_AND_LARGEST = {
     "°C": (1e-6, 1e4),
     "1/K": (1e-9, 1e-2),
     "km/h": (1e-6, 1e5),
+    "h": (1e-6, 1e9),
+    "arc minutes": (1e-6, 1e6),
+    "arcsec": (1e-6, 1e6),
     "N·√s": (1e-12, 1e9),
 }
 """Unit -> smallest magnitude of a number that is not 0, and largest."""

@@ -111,7 +111,7 @@ class Problem:
         if any(amount > 0.0 for amount in self._violations(quantities).values()):
             return self._ended(values, "", quantities)
         mesh = str(self.mesh or "")
-        options = RunOptions(recipe=self.recipe, recipe_name=mesh, comm=comm)
+        options = RunOptions(recipe=self.recipe, recipe_name=mesh, plain=True, comm=comm)
         outcome = run_one(self.system, design, options)
         names = self.section.quantities
         quantities |= {

@@ -46,7 +46,7 @@ STALL = 0.3
 """Ratio of two residuals above which the iteration has stalled close to the round-off."""
 
 
-class Verdict(enum.Enum):
+class NewtonVerdict(enum.Enum):
     """How a run of Newton's iteration goes on or ends."""
 
     GO_ON = enum.auto()
@@ -70,7 +70,7 @@ class Decision:
     time_limit : s, once it has passed
     """
 
-    verdict: Verdict
+    verdict: NewtonVerdict
     near_solution: bool = False
     cycles: bool = False
     search_is_outdated: bool = False
@@ -107,30 +107,30 @@ class ConvergenceTest:
         """
         time_limit = passed(self.problem.partition.comm)
         if time_limit is not None:
-            return Decision(Verdict.OUT_OF_TIME, time_limit=time_limit)
+            return Decision(NewtonVerdict.OUT_OF_TIME, time_limit=time_limit)
         if last.collapsed or not np.isfinite(norm):
-            return Decision(Verdict.COLLAPSED)
+            return Decision(NewtonVerdict.COLLAPSED)
         ratio, softened, rtol = state.residual, state.phase is Phase.SOFTENED, self.settings.rtol
         tolerance = SOFT_TOLERANCE if softened else rtol
         near, goal = ratio < rtol**FREEZING_POWER and not softened, self.reference(last) * tolerance
-        verdict, outdated, cycles = Verdict.GO_ON, False, False
+        verdict, outdated, cycles = NewtonVerdict.GO_ON, False, False
         if ratio <= tolerance or self._is_round_off(state, iteration, norm):
-            verdict = Verdict.CONVERGED
+            verdict = NewtonVerdict.CONVERGED
         else:
             if iteration > 0 and not state.incomplete_pattern:
                 outdated = bounded and self._search_is_outdated(state)
             if iteration > 0 and (state.incomplete_pattern or outdated):
-                verdict = Verdict.INTERRUPTED
+                verdict = NewtonVerdict.INTERRUPTED
             elif self._is_slow(state):
-                verdict = Verdict.SLOW
+                verdict = NewtonVerdict.SLOW
             elif is_exhausted(state.residuals, self.settings.max_iterations):
-                verdict = Verdict.EXHAUSTED
+                verdict = NewtonVerdict.EXHAUSTED
             else:
                 patience = PATIENCE if ratio > SOFT_TOLERANCE else NEAR_PATIENCE
                 sticks = not is_decreasing(state.residuals, patience, MIN_DECREASE)
                 if sticks and state.breaker.solution is not None:
                     # a solution on frozen cells is known, and cells placed anew lead nowhere
-                    verdict = Verdict.EXHAUSTED
+                    verdict = NewtonVerdict.EXHAUSTED
                 else:
                     cycles = not descending and (self._set_returns(state) or sticks)
         return Decision(

@@ -23,7 +23,7 @@ from swgpar.log import logger
 from swgpar.petsc import PETSc, accepted_options, errors_of_callbacks
 from swgpar.solve.active_set_cycles import MAX_ITERATIONS_FACTOR, VisitedSets
 from swgpar.solve.bordered_system import BorderedSystem
-from swgpar.solve.convergence_test import ConvergenceTest, Decision, Verdict
+from swgpar.solve.convergence_test import ConvergenceTest, Decision, NewtonVerdict
 from swgpar.solve.discrete_problem import DiscreteProblem, ResidualInfo
 from swgpar.solve.line_search import LineSearch
 from swgpar.solve.linear_solver import MatrixKind, reason_names
@@ -59,13 +59,13 @@ MAX_FRICTION_ROUNDS, FRICTION_AGREEMENT = 20, 1e-3
 
 
 PETSC_REASONS = {
-    Verdict.GO_ON: None,
-    Verdict.CONVERGED: PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE,
-    Verdict.INTERRUPTED: PETSc.SNES.ConvergedReason.CONVERGED_ITS,
-    Verdict.SLOW: PETSc.SNES.ConvergedReason.CONVERGED_ITS,
-    Verdict.EXHAUSTED: PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT,
-    Verdict.COLLAPSED: PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN,
-    Verdict.OUT_OF_TIME: PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT,
+    NewtonVerdict.GO_ON: None,
+    NewtonVerdict.CONVERGED: PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE,
+    NewtonVerdict.INTERRUPTED: PETSc.SNES.ConvergedReason.CONVERGED_ITS,
+    NewtonVerdict.SLOW: PETSc.SNES.ConvergedReason.CONVERGED_ITS,
+    NewtonVerdict.EXHAUSTED: PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT,
+    NewtonVerdict.COLLAPSED: PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN,
+    NewtonVerdict.OUT_OF_TIME: PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT,
 }
 """SNES's reason for each verdict, None to go on."""
 
@@ -212,7 +212,7 @@ class NewtonSolver:
             self.system.set_goal(decision.goal)
         if decision.near_solution:
             self.problem.cells.freeze()
-        self.state.slow = decision.verdict is Verdict.SLOW
+        self.state.slow = decision.verdict is NewtonVerdict.SLOW
         if self.state.slow:
             logger.info("   contact spreads slowly in Newton iteration %d: softer for a while", its)
         if decision.cycles:

@@ -17,7 +17,7 @@ from swgpar.log import logger
 from swgpar.petsc import release_unused
 from swgpar.results.atomic import agreed, on_root, reason_of, to_json, write_file, write_from_root
 from swgpar.results.figure_set import save_figures
-from swgpar.results.folder import SUMMARY
+from swgpar.results.folder import SUMMARY, remove_results
 from swgpar.run_options import RunOptions
 from swgpar.studies.case import Outcome
 from swgpar.systems import System
@@ -39,8 +39,7 @@ def read_status(folder: Path) -> dict[str, Any]:
 def run_one(
     system: System[Any, Any], design: Design | None, options: RunOptions, refusal: str = ""
 ) -> Outcome:
-    """Run a design without shortcuts; collective. Failures are returned, and recorded in the folder
-    of the options.
+    """Run a design; collective. Failures are returned, and recorded in the folder of the options.
 
     Only an error that swgpar does not know is raised when several ranks share the run: one rank may
     have met it alone, and the others then wait for it.
@@ -49,7 +48,6 @@ def run_one(
     """
     record: dict[str, Any] = {"identity": ""}
     folder, comm = options.out, options.comm
-    options = replace(options, plain=True)
     try:
         if design is None:
             raise InputError(refusal)
@@ -88,6 +86,13 @@ def run_one(
     return outcome
 
 
+def remove_runs(folder: Path) -> None:
+    """Remove the results of all runs below a folder; call it on one rank."""
+    for status in [*folder.glob(f"**/{STATUS}")]:
+        remove_results(status.parent)
+        status.unlink()
+
+
 def _make(folder: Path, comm: MPI.Comm) -> None:
     """Whether the folder can be written is found out by all ranks afterwards."""
     if comm.rank == 0:
@@ -107,8 +112,8 @@ def _finished_before(
     if old.get("identity", record["identity"]) != record["identity"]:
         return Outcome(
             "failed",
-            f"{folder} holds results of another design: rename the case, or overwrite = true "
-            "(--overwrite)",
+            f"{folder} holds results of another design: give another folder, in a study another "
+            "name of the case, or overwrite = true (--overwrite)",
         )
 
     outcome = None

@@ -67,7 +67,7 @@ def do_runs(
 
 
 def note_ended(kind: str, ended: int, count: int) -> None:
-    """So many of the "cases" or "evaluations" have ended, for `watch`."""
+    """So many of the "cases", "evaluations" or "runs" have ended, for `watch`."""
     watch.saved(kind, ended, count)
     watch.doing(f"{ended} of {count} {kind} have ended")
 

@@ -15,13 +15,13 @@ from swgpar import log, watch
 from swgpar.errors import InputError, OutputError
 from swgpar.input.toml_file import require_source
 from swgpar.results.atomic import agreed, on_root, write_from_root
-from swgpar.results.folder import given_folder, remove_results
+from swgpar.results.folder import given_folder
 from swgpar.results.lock import releasing
 from swgpar.results.table import format_csv
 from swgpar.run_options import RunOptions
 from swgpar.studies.case import Job, Outcome
 from swgpar.studies.cases import expand
-from swgpar.studies.job import STATUS, read_status, run_one
+from swgpar.studies.job import read_status, remove_runs, run_one
 from swgpar.studies.many_runs import claim_folder, do_runs, note_ended
 from swgpar.studies.report import make_report
 from swgpar.studies.spec import Study, load_study, make_study
@@ -196,6 +196,7 @@ def study(
             None if folder is None else job.folder(folder),
             recipe=job.recipe,
             recipe_name=str(job.mesh or ""),
+            plain=True,
             restart=restart,
             overwrite=overwrite,
             comm=own,
@@ -225,9 +226,7 @@ def _claim(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
     cases = out / "cases"
 
     def remove() -> None:
-        for status in [*cases.glob(f"**/{STATUS}")]:
-            remove_results(status.parent)
-            status.unlink()
+        remove_runs(cases)
         for name in (TABLE, PUBLISHED, REPORT):
             (out / name).unlink(missing_ok=True)
 

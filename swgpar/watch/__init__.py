@@ -92,7 +92,7 @@ def rearm() -> None:
 def begin(kind: str, out: str, *, restarts: bool, terminal: bool) -> None:
     """Say from here on how much is saved when a signal ends the command; call it on rank 0 only.
 
-    kind : what is counted by `saved`: "increments", "cases" or "evaluations"
+    kind : what is counted by `saved`: "increments", "cases", "evaluations" or "runs"
     out : folder of the results;  restarts : whether --restart continues them
     terminal : whether a progress bar may be on the terminal; without one there are signs of life
     """

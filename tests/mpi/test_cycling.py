@@ -15,7 +15,7 @@ from swgpar.load.load_states import Stage
 from swgpar.log import PhaseTimes
 from swgpar.petsc import PETSc
 from swgpar.solve.active_set_cycles import VisitedSets, fingerprint, is_exhausted
-from swgpar.solve.convergence_test import ConvergenceTest, Verdict
+from swgpar.solve.convergence_test import ConvergenceTest, NewtonVerdict
 from swgpar.solve.discrete_problem import ResidualInfo
 from swgpar.solve.line_search import LineSearch
 from swgpar.solve.solve_state import NewtonSettings, SolveState
@@ -177,8 +177,8 @@ def test_contact_that_spreads_slowly(
     decision = test.decide(
         state, len(residuals), 1.0, ResidualInfo(1.0, False), descending=True, bounded=False
     )
-    assert (decision.verdict is Verdict.SLOW) == slow
-    assert slow or decision.verdict is Verdict.GO_ON
+    assert (decision.verdict is NewtonVerdict.SLOW) == slow
+    assert slow or decision.verdict is NewtonVerdict.GO_ON
 
 
 def test_the_round_off_of_a_distorted_state_is_no_equilibrium() -> None:
@@ -186,7 +186,7 @@ def test_the_round_off_of_a_distorted_state_is_no_equilibrium() -> None:
     problem = Mock(round_off=1e6, force_floor=1.0, active_sets=lambda state: [])
     problem.partition.comm = WORLD
     test = ConvergenceTest(problem, NewtonSettings(1e-9, 25, 0, 1.0))
-    for residual, verdict in ((700.0, Verdict.GO_ON), (1e-6, Verdict.CONVERGED)):
+    for residual, verdict in ((700.0, NewtonVerdict.GO_ON), (1e-6, NewtonVerdict.CONVERGED)):
         state = SolveState(Mock(stage=Stage.LOAD), [], 200, residuals=[residual])
         last = ResidualInfo(1.0, False)
         decision = test.decide(state, 0, residual, last, descending=True, bounded=False)

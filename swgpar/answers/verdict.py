@@ -1,0 +1,93 @@
+"""Verdicts: an answer beside its limit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+
+from swgpar.answers.answer import NO_LIMIT, Answer
+
+
+class Judgement(StrEnum):
+    """What a verdict says, from the best to the worst."""
+
+    PASSES = "passes"
+    NOT_JUDGED = "not judged"
+    WITHIN_ERROR = "within its error"
+    FAILS = "fails"
+
+
+class Sense(StrEnum):
+    """On which side of a limit values are good; the limit itself is."""
+
+    AT_MOST = "at most"
+    AT_LEAST = "at least"
+
+
+@dataclass(frozen=True)
+class Limit:
+    """value : in the unit of the answer;  source : where the limit comes from"""
+
+    value: float
+    sense: Sense
+    source: str
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """An answer beside its limit.
+
+    name : what is judged
+    answer : None where there is none, for the `reason`
+    limit : None without a requirement
+    reason : why nothing is judged, or why the answer is a bound; empty otherwise
+    is_lower_bound : of the number that counts. It cannot pass where the limit is the largest value,
+    nor fail where it is the least one
+    of_strength : whether it is about the strength of the drive
+    """
+
+    name: str
+    answer: Answer | None
+    limit: Limit | None
+    reason: str = ""
+    is_lower_bound: bool = False
+    of_strength: bool = False
+
+    @property
+    def judgement(self) -> Judgement:
+        """What it says. An answer without an estimate of its error is judged by its value."""
+        answer, limit = self.answer, self.limit
+        if limit is None or answer is None or answer.value is None or answer.no_error == NO_LIMIT:
+            return Judgement.NOT_JUDGED
+        beyond = answer.value - limit.value
+        if limit.sense == Sense.AT_LEAST:
+            beyond = -beyond
+        fails = beyond > 0.0
+        if self.is_lower_bound and fails == (limit.sense == Sense.AT_LEAST):
+            return Judgement.NOT_JUDGED
+        if answer.error is not None and abs(beyond) <= answer.error:
+            return Judgement.WITHIN_ERROR
+        return Judgement.FAILS if fails else Judgement.PASSES
+
+    @property
+    def why(self) -> str:
+        """Why nothing is judged; empty where something is."""
+        answer = self.answer
+        if self.judgement != Judgement.NOT_JUDGED:
+            return ""
+        if self.reason:
+            return self.reason
+        if answer is None or answer.value is None:
+            return answer.remark if answer is not None else "the run does not have it"
+        if answer.no_error == NO_LIMIT:
+            return answer.remark or "it grows with every finer mesh"
+        return "no requirement"
+
+
+def worst(verdicts: Iterable[Verdict]) -> Judgement:
+    """The worst judgement of the verdicts that have a limit or are about strength; `NOT_JUDGED`
+    without any."""
+    order = list(Judgement)
+    counted = [one.judgement for one in verdicts if one.limit is not None or one.of_strength]
+    return max(counted, key=order.index, default=Judgement.NOT_JUDGED)

@@ -1,0 +1,107 @@
+"""The rating sheet of a drive."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mpi4py import MPI
+
+from swgpar import log
+from swgpar.api.runs import DesignLike, MeshLike, load_mesh
+from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import InputError
+from swgpar.input.design import Design
+from swgpar.input.toml_file import Overrides, apply_overrides, read_toml, require_source
+from swgpar.rating.planned_runs import make_rated_drive
+from swgpar.results.atomic import on_all
+from swgpar.results.folder import given_folder
+from swgpar.run_options import RunOptions
+from swgpar.systems import system_of_table
+
+if TYPE_CHECKING:
+    from swgpar.rating.sheet import RatingSheet
+
+
+def load_rated_design(design: DesignLike, overrides: Overrides = ()) -> DriveDesign:
+    """Read and check a design with [rating], as `load_design` does. Sections that one run cannot
+    have together may stand beside each other.
+
+    Raises
+    ------
+    InputError
+        Also for a gear train, and where [rating] or a torque is missing.
+    """
+    if isinstance(design, Design):
+        table = design.model_dump(exclude_unset=True)
+    else:
+        require_source("design", design)
+        table = dict(design) if isinstance(design, Mapping) else read_toml(design)
+    if system_of_table(table).noun != "a drive":
+        raise InputError("rate is available for drives: a gear train has no rating")
+    return make_rated_drive(apply_overrides(table, overrides))
+
+
+def rate(
+    design: DesignLike,
+    out: str | Path,
+    *,
+    mesh: MeshLike | None = None,
+    restart: bool = False,
+    overwrite: bool = False,
+    progress: bool | None = None,
+    comm: MPI.Comm = MPI.COMM_WORLD,
+) -> RatingSheet:
+    """Rate a drive: all answers beside requirements and limits; collective.
+
+    The runs that are needed follow each other, each on all ranks. Loads of one torque share a run.
+
+    Parameters
+    ----------
+    design : design, path or mapping
+        Of a drive, with the section [rating].
+    out : path
+        Folder: rating.json, rating.csv, rating.html, and the results of the runs in runs/. The
+        sheet is written after every run.
+    mesh : recipe, name, path or mapping
+        As `load_mesh` takes it.
+    restart : bool
+        Keep what is finished in `out`, continue what was interrupted, try again what failed.
+    overwrite : bool
+        Replace a rating that `out` already holds.
+    progress : bool
+        Report every run on the terminal. Default: only on a terminal.
+
+    Returns
+    -------
+    RatingSheet
+        The same on every rank. A run that fails leaves its rows without a verdict.
+
+    Raises
+    ------
+    InputError
+        A design without [rating] or without a torque, a gear train.
+    OutputError
+        The folder cannot be written, or holds another rating.
+
+    Examples
+    --------
+    >>> sheet = swgpar.rate("drive.toml", "results/rating")
+    >>> sheet.headline, {one.name: one.judgement for one in sheet.verdicts}
+    """
+    from swgpar.rating.rate_drive import rate_drive  # what runs is imported where it is used
+
+    terminal = log.console.is_terminal if progress is None else progress
+    given = RunOptions(
+        given_folder(out), restart=restart, overwrite=overwrite, comm=comm, terminal=terminal
+    )
+
+    def checked() -> tuple[DriveDesign, RunOptions]:
+        if mesh is None:
+            return load_rated_design(design), given
+        name = str(mesh) if isinstance(mesh, (str, Path)) else ""
+        return load_rated_design(design), replace(given, recipe=load_mesh(mesh), recipe_name=name)
+
+    return rate_drive(*on_all(comm, checked))

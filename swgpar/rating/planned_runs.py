@@ -1,0 +1,260 @@
+"""The runs that a rating sheet needs: answers that one run cannot give together come from several.
+
+A run has one torque, or one load program. Losses, fatigue and transmission error need a period
+under one torque, natural frequencies the whole drive under it, stiffness and ratcheting a program.
+Loads of one torque share a run.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+
+from swgpar.analysis.shortcuts import SAMPLES
+from swgpar.checks.design_file import make_drive, with_points
+from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import InputError
+from swgpar.input.toml_file import validate
+
+
+class LoadCase(StrEnum):
+    """What a row of the sheet refers to."""
+
+    RATED = "rated torque"
+    REPEATED_PEAK = "repeated peak torque"
+    AVERAGE = "average torque"
+    LARGEST = "largest torque"
+    NO_LOAD = "no load"
+    DEVIATIONS = "deviations"
+    STIFFNESS = "stiffness"
+    RATCHETING = "ratcheting"
+    MODES = "natural frequencies"
+
+
+@dataclass(frozen=True)
+class PlannedRun:
+    """A run of the sheet.
+
+    cases : that it serves
+    design : None where it is refused, for the reason in `refusal`
+    torque : N·m, None of a run that has several
+    left_out : what the design asks for and the run does not have, and why
+    """
+
+    cases: tuple[LoadCase, ...]
+    design: DriveDesign | None
+    torque: float | None = None
+    refusal: str = ""
+    left_out: str = ""
+
+    @property
+    def name(self) -> str:
+        """Its name: the cases."""
+        return ", ".join(self.cases)
+
+    @property
+    def folder(self) -> str:
+        """Name of its folder."""
+        return self.cases[0].replace(" ", "_")
+
+
+@dataclass(frozen=True)
+class RatingPlan:
+    """runs : in their order;  missing : why there is none for a case"""
+
+    runs: tuple[PlannedRun, ...]
+    missing: dict[LoadCase, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class RatingLoads:
+    """Torques (N·m) and speed (1/min) of a rating, with their defaults.
+
+    momentary : None where it is not given;  largest : of all torques
+    """
+
+    rated: float
+    repeated_peak: float
+    average: float
+    momentary: float | None
+    average_speed: float
+
+    @property
+    def largest(self) -> float:
+        """The largest of all torques."""
+        return max(self.rated, self.repeated_peak, self.average, self.momentary or 0.0)
+
+
+NO_STRENGTHS = "no strengths are given: [fatigue]"
+NO_BEARING = "the wave generator has no bearing: [wave_generator.bearing]"
+NO_LOSSES = "no coefficients of losses are given: [losses]"
+
+APART = ("rating", "stiffness", "ratcheting", "fatigue", "losses", "deviations", "frequencies")
+"""Sections that a run has only where it is for them."""
+
+
+def rating_loads(design: DriveDesign) -> RatingLoads:
+    """The loads of a design with [rating]. Raises InputError where there is no torque."""
+    section = design.rating
+    if section is None:
+        raise InputError("rating is missing: swgpar rate needs the section [rating]")
+    rated = section.rated_torque or design.load.torque
+    if not rated:
+        raise InputError("rating.rated_torque is missing: give it, or load.torque, above 0 N·m")
+    return RatingLoads(
+        rated=rated,
+        repeated_peak=section.repeated_peak_torque or rated,
+        average=section.average_torque or rated,
+        momentary=section.momentary_torque,
+        average_speed=section.average_speed or design.load.input_speed,
+    )
+
+
+@dataclass(frozen=True)
+class _UnderTorque:
+    """What a run under one torque is for. period : whether it goes through one"""
+
+    cases: tuple[LoadCase, ...]
+    sections: tuple[str, ...] = ()
+    period: bool = False
+    windows: bool = False
+
+    def __add__(self, other: _UnderTorque) -> _UnderTorque:
+        return _UnderTorque(
+            self.cases + other.cases,
+            self.sections + other.sections,
+            self.period or other.period,
+            self.windows or other.windows,
+        )
+
+
+def make_rated_drive(table: dict[str, Any]) -> DriveDesign:
+    """A design with [rating] from the content of its file. Sections that one run cannot have
+    together may stand beside each other. Problems are InputErrors."""
+    design = validate(DriveDesign, with_points(table)).made_by(make_rated_drive)
+    loads = rating_loads(design)
+    make_drive(_content(design, loads, loads.rated, ()))
+    return design
+
+
+def plan_runs(design: DriveDesign) -> RatingPlan:
+    """The runs of the rating sheet of a design. Raises InputError without [rating] or a torque."""
+    loads, friction = rating_loads(design), design.contact.friction > 0.0
+    missing: dict[LoadCase, str] = {}
+    wanted: dict[float, _UnderTorque] = {}
+
+    def want(torque: float, run: _UnderTorque) -> None:
+        wanted[torque] = wanted[torque] + run if torque in wanted else run
+
+    given = tuple(name for name in ("losses", "deviations") if getattr(design, name) is not None)
+    apart = friction and "deviations" in given
+    beside = tuple(name for name in given if name != "deviations" or not friction)
+    want(loads.rated, _UnderTorque((LoadCase.RATED,), beside, period=True, windows=True))
+    if design.fatigue is None:
+        missing[LoadCase.REPEATED_PEAK] = NO_STRENGTHS
+    else:
+        peak = _UnderTorque((LoadCase.REPEATED_PEAK,), ("fatigue",), period=True, windows=True)
+        want(loads.repeated_peak, peak)
+    if design.bearing is None:
+        missing[LoadCase.AVERAGE] = NO_BEARING
+    else:
+        want(loads.average, _UnderTorque((LoadCase.AVERAGE,)))
+    want(loads.largest, _UnderTorque((LoadCase.LARGEST,), windows=True))
+    runs = [_under_torque(design, loads, torque, run) for torque, run in wanted.items()]
+    if "losses" in given:
+        idle = _UnderTorque((LoadCase.NO_LOAD,), ("losses",), period=True)
+        runs.append(_under_torque(design, loads, 0.0, idle))
+    else:
+        missing[LoadCase.NO_LOAD] = NO_LOSSES
+    if apart:
+        turns = _UnderTorque((LoadCase.DEVIATIONS,), ("deviations",), period=True)
+        runs.append(_under_torque(design, loads, loads.rated, turns, without_friction=True))
+    runs.append(_program(design, loads, LoadCase.STIFFNESS))
+    if loads.momentary is None:
+        missing[LoadCase.RATCHETING] = "rating.momentary_torque is not given"
+    else:
+        runs.append(_program(design, loads, LoadCase.RATCHETING))
+    if lacks := _without_modes(design):
+        missing[LoadCase.MODES] = lacks
+    else:
+        modes = _UnderTorque((LoadCase.MODES,), ("frequencies",))
+        runs.append(_under_torque(design, loads, loads.rated, modes, without_friction=friction))
+    return RatingPlan(tuple(runs), missing)
+
+
+def _without_modes(design: DriveDesign) -> str:
+    """Why there are no natural frequencies to compute; empty where there are."""
+    if design.frequencies is None:
+        return "the inertia of the output is not given: [frequencies]"
+    given = design.rating is not None and design.rating.largest_speed is not None
+    return "" if given else "rating.largest_speed is not given"
+
+
+def _content(
+    design: DriveDesign, loads: RatingLoads, torque: float, sections: tuple[str, ...]
+) -> dict[str, Any]:
+    """Content of a design file with one torque (N·m), some of the sections in `APART`, and no
+    rotation."""
+    table = design.model_dump(exclude_unset=True)
+    kept = {key: value for key, value in table.items() if key not in APART or key in sections}
+    load = {**table.get("load", {}), "torque": torque, "input_speed": loads.average_speed}
+    load.pop("program", None)
+    steps = {**table.get("steps", {}), "rotation": 0.0, "samples": 0}
+    output = {**table.get("output", {}), "fields": False, "figures": False}
+    return kept | {"load": load, "steps": steps, "output": output}
+
+
+def _under_torque(
+    design: DriveDesign,
+    loads: RatingLoads,
+    torque: float,
+    run: _UnderTorque,
+    *,
+    without_friction: bool = False,
+) -> PlannedRun:
+    """A run under one torque (N·m). Where a period is refused it has the loaded state alone."""
+    content, said = _content(design, loads, torque, run.sections), ""
+    if without_friction:
+        content["contact"] = {**content.get("contact", {}), "friction": 0.0}
+        said = "friction of the flanks, which it cannot have"
+    if not run.windows:
+        content["output"] = {**content["output"], "root_stress": False}
+    try:
+        made = make_drive(_with_period(design, content, run))
+        return PlannedRun(run.cases, made, torque, "", said)
+    except InputError as error:
+        if not run.period:
+            return PlannedRun(run.cases, None, torque, str(error))
+        state = {key: value for key, value in content.items() if key not in APART}
+        reason = str(error)
+    try:
+        return PlannedRun(run.cases, make_drive(state), torque, "", f"a period: {reason}")
+    except InputError as error:
+        return PlannedRun(run.cases, None, torque, str(error))
+
+
+def _with_period(design: DriveDesign, content: dict[str, Any], run: _UnderTorque) -> dict[str, Any]:
+    """The content with the angles of a period, where the run goes through one."""
+    if not run.period:
+        return content
+    periods = 2 if content.get("contact", {}).get("friction") else 1
+    samples = design.steps.samples or design.kinematics.apart(SAMPLES[design.drive.model])
+    rotation = float(np.degrees(design.kinematics.period_angle)) * periods
+    return content | {"steps": {**content["steps"], "rotation": rotation, "samples": samples}}
+
+
+def _program(design: DriveDesign, loads: RatingLoads, case: LoadCase) -> PlannedRun:
+    """The run of the section [stiffness] or [ratcheting]."""
+    name = str(case)
+    section = getattr(design, name)
+    keys = {} if section is None else section.model_dump(exclude_unset=True)
+    if case == LoadCase.STIFFNESS:
+        keys = {"torque": loads.rated, "rated_torque": loads.rated} | keys
+    content = _content(design, loads, loads.rated, ()) | {name: keys}
+    try:
+        return PlannedRun((case,), make_drive(content))
+    except InputError as error:
+        return PlannedRun((case,), None, refusal=str(error))

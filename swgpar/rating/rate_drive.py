@@ -1,0 +1,162 @@
+"""The rating of a drive: its runs one after another, and the sheet after each of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from mpi4py import MPI
+
+from swgpar import watch
+from swgpar.analysis.shortcuts import MESHES
+from swgpar.design.drive_design import DriveDesign
+from swgpar.drive_results.summary import DriveSummary
+from swgpar.errors import InputError
+from swgpar.meshing import load_recipe
+from swgpar.rating.page import rating_page
+from swgpar.rating.planned_runs import LoadCase, PlannedRun, RatingPlan, plan_runs
+from swgpar.rating.rows import RatingRow, rating_rows
+from swgpar.rating.sheet import RatedVerdict, RatingSheet, RunEntry
+from swgpar.results.atomic import on_all, to_json, write_from_root
+from swgpar.results.lock import releasing
+from swgpar.results.table import format_csv
+from swgpar.run_options import RunOptions
+from swgpar.studies.case import Outcome
+from swgpar.studies.job import remove_runs, run_one
+from swgpar.studies.many_runs import claim_folder, do_runs, note_ended, print_line
+from swgpar.systems.drive import DRIVE
+
+JSON, CSV, PAGE = "rating.json", "rating.csv", "rating.html"
+"""Names of the sheet in its folder."""
+
+RUNS = "runs"
+"""Folder of the runs."""
+
+WAITS = "the run waits"
+
+
+class _Book:
+    """What has become of the runs, and the sheet that follows.
+
+    plan : the runs;  rows : of the sheet;  folder : of its files
+    outcomes : of the runs that have ended, by their folders
+    """
+
+    def __init__(
+        self, design: DriveDesign, plan: RatingPlan, rows: list[RatingRow], folder: Path
+    ) -> None:
+        self.design, self.plan, self.rows, self.folder = design, plan, rows, folder
+        self.outcomes: dict[str, Outcome] = {}
+        self.summaries: dict[LoadCase, DriveSummary] = {}
+
+    def note(self, run: PlannedRun, outcome: Outcome, comm: MPI.Comm) -> None:
+        """A run has ended; every rank reads its summary."""
+        self.outcomes[run.folder] = outcome
+        if outcome.status == "finished":
+            result = DRIVE.open(self.folder / RUNS / run.folder, comm)
+            self.summaries |= dict.fromkeys(run.cases, result.summary)
+
+    def _missing(self, case: LoadCase) -> str:
+        """Why there is no answer for a case."""
+        if case in self.plan.missing:
+            return self.plan.missing[case]
+        run = next(run for run in self.plan.runs if case in run.cases)
+        if run.folder not in self.outcomes:
+            return WAITS
+        outcome = self.outcomes[run.folder]
+        if outcome.status == "failed":
+            return outcome.reason
+        return f"left out: {run.left_out}" if run.left_out else ""
+
+    def _entry(self, run: PlannedRun) -> RunEntry:
+        outcome = self.outcomes.get(run.folder)
+        status = "waits" if outcome is None else outcome.status
+        return RunEntry(
+            name=run.name,
+            torque=run.torque,
+            status="refused" if run.refusal else status,
+            folder=f"{RUNS}/{run.folder}",
+            reason=run.refusal or ("" if outcome is None else outcome.reason),
+            left_out=run.left_out,
+            wall_s=None if outcome is None else outcome.wall_s,
+        )
+
+    def sheet(self) -> RatingSheet:
+        """The sheet with what is known."""
+        drive = self.design.drive
+        return RatingSheet(
+            f"Rating of a strain wave gear {drive.teeth_fs}/{drive.teeth_rg}",
+            tuple(
+                RatedVerdict(
+                    row.verdict(self.summaries.get(row.case), self._missing(row.case)),
+                    str(row.case),
+                )
+                for row in self.rows
+            ),
+            tuple(map(self._entry, self.plan.runs)),
+            self.design.model_dump(),
+            self.folder.absolute(),
+        )
+
+
+@releasing
+def rate_drive(design: DriveDesign, options: RunOptions) -> RatingSheet:
+    """Rate a drive; collective. All ranks share every run. See `swgpar.api.rate`."""
+    folder, comm = options.out, options.comm
+    if folder is None:
+        raise InputError("out is missing: a rating keeps its runs in a folder")
+    plan, rows = on_all(comm, lambda: (plan_runs(design), rating_rows(design)))
+    if options.recipe is None:
+        name = MESHES[design.drive.model]
+        options = replace(options, recipe=load_recipe(name), recipe_name=name)
+    _claim(folder, options)
+    book, count = _Book(design, plan, rows, folder), len(plan.runs)
+    watch.saved("runs", 0, count)
+
+    def run(index: int, own: MPI.Comm, _: object) -> None:
+        planned = plan.runs[index]
+        watch.doing(f"run {index + 1} of {count}: {planned.name}")
+        given = replace(options, out=folder / RUNS / planned.folder, comm=own, terminal=False)
+        outcome = run_one(DRIVE, planned.design, given, planned.refusal)
+        book.note(planned, outcome, own)
+        _write(book.sheet(), own)
+        if own.rank == 0:
+            note_ended("runs", index + 1, count)
+            if options.terminal:
+                print_line(_words(index, count, planned, outcome))
+
+    do_runs(comm, "ranks", count, run, None)
+    return book.sheet()
+
+
+def _words(index: int, count: int, run: PlannedRun, outcome: Outcome) -> list[str]:
+    """Of a line on the terminal."""
+    words = [f"{index + 1}/{count}", run.name]
+    if outcome.status != "finished":
+        return [*words, f"{outcome.status}: {outcome.reason}"]
+    return [*words, f"{outcome.wall_s:.1f} s", "finished before" if outcome.kept else "finished"]
+
+
+def _claim(folder: Path, options: RunOptions) -> None:
+    def remove() -> None:
+        remove_runs(folder / RUNS)
+        for name in (JSON, CSV, PAGE):
+            (folder / name).unlink(missing_ok=True)
+
+    claim_folder(
+        options.comm,
+        folder,
+        "a rating",
+        [folder / RUNS],
+        remove,
+        restart=options.restart,
+        overwrite=options.overwrite,
+    )
+
+
+def _write(sheet: RatingSheet, comm: MPI.Comm) -> None:
+    """Write the files of the sheet; collective."""
+    page = rating_page(sheet) if comm.rank == 0 else b""
+    write_from_root(comm, sheet.folder / JSON, to_json(sheet.content))
+    write_from_root(comm, sheet.folder / CSV, format_csv(sheet.rows))
+    write_from_root(comm, sheet.folder / PAGE, page)

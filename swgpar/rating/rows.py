@@ -1,0 +1,239 @@
+"""The rows of a rating sheet: which answer of which run is judged by which limit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+
+from swgpar.answers.answer import Answer
+from swgpar.answers.verdict import Limit, Sense, Verdict
+from swgpar.checks.clearance import clearances
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.rating_section import RatingSection
+from swgpar.drive_results.report_checks import RESOLUTION
+from swgpar.drive_results.strength_checks import FIRST_YIELD
+from swgpar.drive_results.summary import DriveSummary
+from swgpar.rating.planned_runs import (
+    NO_BEARING,
+    NO_LOSSES,
+    NO_STRENGTHS,
+    LoadCase,
+    RatingLoads,
+    rating_loads,
+)
+from swgpar.rating.rated_answers import (
+    AT_TEETH,
+    BEHIND_TEETH,
+    largest_mises,
+    least_fatigue_safety,
+    resolution,
+    static_safety,
+)
+
+AnswerSource = Callable[[DriveSummary], Answer | None]
+"""Takes the answer of a row from the summary of its run."""
+
+IDEAL = "a lower bound, that of the ideal drive: [deviations] is not given"
+NO_FRICTION = "a lower bound: contact.friction = 0, and the loop has no area"
+NO_PEAK = "a lower bound: the torque has no peak up to ratcheting.limit"
+NO_WALL = 'drive.model = "plane" has no wall'
+
+
+@dataclass(frozen=True)
+class RatingRow:
+    """A row before its run.
+
+    name : what is judged;  case : of the run;  answer : takes it from the summary
+    limit : None without a requirement
+    reason : why there is no answer, or why it is a lower bound; empty otherwise
+    is_lower_bound : tells of a summary whether the answer is one
+    of_strength : whether it is about the strength of the drive
+    """
+
+    name: str
+    case: LoadCase
+    answer: AnswerSource
+    limit: Limit | None = None
+    reason: str = ""
+    is_lower_bound: Callable[[DriveSummary], bool] = lambda _: False
+    of_strength: bool = False
+
+    def verdict(self, summary: DriveSummary | None, missing: str) -> Verdict:
+        """The verdict by the summary of the row's run; None where there is none, which `missing`
+        says."""
+        answer = None if summary is None else self.answer(summary)
+        bound = summary is not None and answer is not None and self.is_lower_bound(summary)
+        reason = self.reason if answer is None or bound else ""
+        return Verdict(
+            self.name,
+            answer,
+            self.limit,
+            reason or (missing if answer is None else ""),
+            is_lower_bound=bound,
+            of_strength=self.of_strength,
+        )
+
+
+def _named(name: str) -> AnswerSource:
+    return lambda summary: summary.get(name)
+
+
+def _required(value: float | None, sense: Sense, key: str, factor: float = 1.0) -> Limit | None:
+    """The limit of a key of [rating]. factor : of the unit of the answer"""
+    return None if value is None else Limit(factor * value, sense, f"rating.{key}")
+
+
+def rating_rows(design: DriveDesign) -> list[RatingRow]:
+    """All rows of the sheet of a design with [rating], in their order."""
+    loads, section = rating_loads(design), design.rating
+    assert section is not None  # `rating_loads` has refused a design without it
+    return [
+        *_strength(design, section),
+        *_bearing(design, section),
+        *_bolts(design),
+        _ratcheting(section, loads),
+        *_stiffness(design, section),
+        *_motion(design, section),
+        *_computation(design),
+    ]
+
+
+def _strength(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
+    strengths = design.fatigue
+    safety = section.yield_safety
+    least = Limit(section.fatigue_safety, Sense.AT_LEAST, "rating.fatigue_safety")
+    of_yield = None
+    if strengths is not None:
+        source = "fatigue.yield_strength over rating.yield_safety"
+        of_yield = Limit(strengths.yield_strength / safety, Sense.AT_MOST, source)
+    for part, regions in (("teeth and rim", AT_TEETH), ("wall", BEHIND_TEETH)):
+        wall = NO_WALL if part == "wall" and not design.has_cup else ""
+        yield RatingRow(
+            f"yield of {part}",
+            LoadCase.LARGEST,
+            partial(largest_mises, regions=regions),
+            None if wall else of_yield,
+            wall or ("" if of_yield else NO_STRENGTHS),
+            of_strength=not wall,
+        )
+        yield RatingRow(
+            f"fatigue of {part}",
+            LoadCase.REPEATED_PEAK,
+            partial(least_fatigue_safety, regions=regions),
+            None if wall or strengths is None else least,
+            wall,
+            of_strength=not wall,
+        )
+    pressure, given = _named("contact.pressure"), section.flank_pressure
+    source = section.flank_pressure_source or "rating.flank_pressure"
+    yield RatingRow(
+        "pressure of the flanks",
+        LoadCase.RATED,
+        pressure,
+        None if given is None else Limit(given, Sense.AT_MOST, source),
+        of_strength=given is not None,
+    )
+    first = None
+    if strengths is not None:
+        source = f"{FIRST_YIELD:g} times fatigue.yield_strength over rating.yield_safety [Johnson]"
+        value = FIRST_YIELD * strengths.yield_strength / safety
+        first = Limit(value, Sense.AT_MOST, source)
+    yield RatingRow("yield below the flanks", LoadCase.LARGEST, pressure, first, of_strength=True)
+
+
+def _bearing(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
+    if design.bearing is None:
+        yield RatingRow("bearing", LoadCase.AVERAGE, lambda _: None, reason=NO_BEARING)
+        return
+    source = "rating.static_safety, against 4200 MPa of a ball on its race [ISO 76]"
+    limit = Limit(section.static_safety, Sense.AT_LEAST, source)
+    yield RatingRow(
+        "static safety of the bearing", LoadCase.LARGEST, static_safety, limit, of_strength=True
+    )
+    life = _required(section.life, Sense.AT_LEAST, "life")
+    yield RatingRow("life of the bearing", LoadCase.AVERAGE, _named("bearing.life_hours"), life)
+
+
+def _bolts(design: DriveDesign) -> Iterator[RatingRow]:
+    if not design.is_bolted:
+        return
+    limit = Limit(1.0, Sense.AT_LEAST, "VDI 2230")
+    for name in ("sliding", "gaping"):
+        answer = _named(f"bolts.{name}_safety")
+        yield RatingRow(f"{name} of bolts", LoadCase.LARGEST, answer, limit, of_strength=True)
+
+
+def _ratcheting(section: RatingSection, loads: RatingLoads) -> RatingRow:
+    limit, momentary = None, loads.momentary
+    if momentary is not None:
+        source = "rating.momentary_torque times rating.ratcheting_safety"
+        limit = Limit(momentary * section.ratcheting_safety, Sense.AT_LEAST, source)
+    return RatingRow(
+        "ratcheting",
+        LoadCase.RATCHETING,
+        _named("ratcheting.peak_torque_Nm"),
+        limit,
+        NO_PEAK if limit else "",
+        lambda summary: summary.ratcheting is not None and not summary.ratcheting.is_peak,
+        of_strength=limit is not None,
+    )
+
+
+def _stiffness(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
+    for name in ("K1", "K2", "K3"):
+        limit = _required(getattr(section, name), Sense.AT_LEAST, name)
+        yield RatingRow(f"stiffness {name}", LoadCase.STIFFNESS, _named(f"stiffness.{name}"), limit)
+    without_friction = design.contact.friction == 0.0
+    yield RatingRow(
+        "hysteresis",
+        LoadCase.STIFFNESS,
+        _named("stiffness.hysteresis"),
+        _required(section.hysteresis, Sense.AT_MOST, "hysteresis"),
+        NO_FRICTION if without_friction else "",
+        lambda _: without_friction,
+    )
+    limit = _required(section.lost_motion, Sense.AT_MOST, "lost_motion")
+    answer = _named("stiffness.lost_motion")
+    yield RatingRow("lost motion", LoadCase.STIFFNESS, answer, limit)
+
+
+def _motion(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
+    ideal = design.deviations is None
+    apart = design.contact.friction > 0.0 and not ideal
+    yield RatingRow(
+        "transmission error",
+        LoadCase.DEVIATIONS if apart else LoadCase.RATED,
+        _named("transmission_error.peak_to_peak"),
+        _required(section.transmission_error, Sense.AT_MOST, "transmission_error"),
+        IDEAL if ideal else "",
+        lambda _: ideal,
+    )
+    limit = _required(section.efficiency, Sense.AT_LEAST, "efficiency")
+    losses = "" if design.losses else NO_LOSSES
+    answer = _named("losses.efficiency")
+    yield RatingRow("efficiency", LoadCase.RATED, answer, limit, losses)
+    limit = _required(section.no_load_torque, Sense.AT_MOST, "no_load_torque", 1000.0)
+    answer = _named("losses.no_load_torque")
+    yield RatingRow("no-load torque", LoadCase.NO_LOAD, answer, limit, losses)
+    speed, limit = section.largest_speed, None
+    if speed is not None:
+        lobes = design.wave_generator.lobes
+        source = f"{lobes} lobes times rating.largest_speed"
+        limit = Limit(lobes * speed / 60.0, Sense.AT_LEAST, source)
+    yield RatingRow("lowest natural frequency", LoadCase.MODES, _named("frequency.1"), limit)
+
+
+def _computation(design: DriveDesign) -> Iterator[RatingRow]:
+    for clearance in clearances(design):
+        limit = Limit(clearance.allowed, Sense.AT_LEAST, "an overlap that loaded teeth take up")
+        where = "" if clearance.ring == "ring_gear" else f" in the {clearance.ring}"
+        yield RatingRow(
+            f"clearance of the rigid teeth{where.replace('_', ' ')}",
+            LoadCase.RATED,
+            _named(f"clearance.{clearance.ring}"),
+            limit,
+        )
+    limit = Limit(RESOLUTION, Sense.AT_MOST, "largest error of the stress at the teeth")
+    answer = "the error of the largest tension at the teeth has no estimate"
+    yield RatingRow("resolution", LoadCase.LARGEST, resolution, limit, answer)

@@ -1,0 +1,330 @@
+"""Verdicts change where the limit is crossed, for every kind of row of the rating sheet."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+
+import swgpar
+from support.paths import DESIGN
+from support.small_drive import PLANE
+from swgpar.answers.answer import NO_LIMIT, Answer
+from swgpar.answers.verdict import Judgement, Limit, Sense, Verdict, worst
+from swgpar.api.ratings import load_rated_design
+from swgpar.design.drive_design import DriveDesign
+from swgpar.drive_results.report_checks import RESOLUTION
+from swgpar.drive_results.strength_checks import FIRST_YIELD
+from swgpar.drive_results.summary import DriveSummary
+from swgpar.errors import InputError
+from swgpar.rating.planned_runs import LoadCase, plan_runs
+from swgpar.rating.rated_answers import STATIC_PRESSURE
+from swgpar.rating.rows import RatingRow, rating_rows
+
+PASSES, FAILS = Judgement.PASSES, Judgement.FAILS
+WITHIN, OPEN = Judgement.WITHIN_ERROR, Judgement.NOT_JUDGED
+
+RATING = {
+    "rated_torque": 1.0,
+    "repeated_peak_torque": 1.5,
+    "average_torque": 0.8,
+    "momentary_torque": 2.0,
+    "largest_speed": 3000.0,
+    "life": 7000.0,
+    "yield_safety": 1.25,
+    "fatigue_safety": 1.5,
+    "static_safety": 2.0,
+    "ratcheting_safety": 1.5,
+    "flank_pressure": 800.0,
+    "flank_pressure_source": "the maker",
+    "K1": 100.0,
+    "K2": 200.0,
+    "K3": 300.0,
+    "hysteresis": 1.0,
+    "lost_motion": 2.0,
+    "transmission_error": 60.0,
+    "efficiency": 0.7,
+    "no_load_torque": 0.05,
+}
+BEARING = {"race_thickness": 1.0, "balls": 12, "ball_diameter": 2.5}
+SECTIONS: dict[str, Any] = {
+    "material": {"name": "steel"},
+    "fatigue": {"yield_strength": 1000.0},
+    "losses": {},
+    "frequencies": {},
+    "deviations": {},
+}
+
+
+def rated(**changes: Any) -> DriveDesign:
+    """The small drive with a rating. changes : of sections; None takes one away"""
+    values = {**SECTIONS, "rating": RATING, **changes}
+    design = swgpar.load_design(DESIGN)
+    table = design.model_dump(exclude_unset=True)
+    table |= {name: value for name, value in values.items() if value is not None}
+    return load_rated_design(table)
+
+
+def with_bearing() -> dict[str, Any]:
+    micro = {"wg_crowning": 0.1, "fs_crowning": 0.04}
+    return {"wave_generator": {"face_width": 4.0, "bearing": BEARING}, "micro_geometry": micro}
+
+
+def row(name: str, design: DriveDesign) -> RatingRow:
+    (found,) = [one for one in rating_rows(design) if one.name == name]
+    return found
+
+
+class _Summary(dict[str, Answer]):
+    """A summary with these answers; attributes are evaluations, None by default."""
+
+    def __init__(self, answers: dict[str, Answer], **evaluations: Any) -> None:
+        super().__init__(answers)
+        self.evaluations = evaluations
+
+    def __getattr__(self, name: str) -> Any:
+        return self.evaluations.get(name)
+
+
+def summary(name: str, value: float, error: float | None = None, **more: Any) -> DriveSummary:
+    answer = Answer(name, value, "", name, error=error)
+    return cast(DriveSummary, _Summary({name: answer}, **more))
+
+
+def judged(name: str, design: DriveDesign, found: DriveSummary) -> Judgement:
+    return row(name, design).verdict(found, "").judgement
+
+
+@pytest.mark.parametrize(
+    ("sense", "value", "judgement"),
+    [
+        (Sense.AT_MOST, 8.9, PASSES),
+        (Sense.AT_MOST, 9.1, WITHIN),
+        (Sense.AT_MOST, 10.9, WITHIN),
+        (Sense.AT_MOST, 11.1, FAILS),
+        (Sense.AT_LEAST, 8.9, FAILS),
+        (Sense.AT_LEAST, 9.1, WITHIN),
+        (Sense.AT_LEAST, 10.9, WITHIN),
+        (Sense.AT_LEAST, 11.1, PASSES),
+    ],
+)
+def test_a_verdict_beyond_the_error(sense: Sense, value: float, judgement: Judgement) -> None:
+    limit = Limit(10.0, sense, "here")
+    assert Verdict("a", Answer("a", value, "", "a", error=1.0), limit).judgement == judgement
+
+
+@pytest.mark.parametrize("sense", Sense)
+def test_without_an_error_the_value_is_judged_and_the_limit_is_good(sense: Sense) -> None:
+    limit = Limit(10.0, sense, "here")
+    beyond = 1e-9 if sense == Sense.AT_MOST else -1e-9
+    for value, judgement in ((10.0, PASSES), (10.0 + beyond, FAILS), (10.0 - beyond, PASSES)):
+        assert Verdict("a", Answer("a", value, "", "a"), limit).judgement == judgement
+
+
+def test_what_is_not_judged_says_why() -> None:
+    limit = Limit(10.0, Sense.AT_MOST, "here")
+    known = Answer("a", 1.0, "", "a")
+    growing = Answer("a", 1.0, "", "a", no_error=NO_LIMIT, remark="on an edge")
+    lacking = Answer("a", None, "", "a", remark="no load")
+    for verdict, why in (
+        (Verdict("a", known, None), "no requirement"),
+        (Verdict("a", None, limit, "the run failed"), "the run failed"),
+        (Verdict("a", None, limit), "the run does not have it"),
+        (Verdict("a", growing, limit), "on an edge"),
+        (Verdict("a", lacking, limit), "no load"),
+    ):
+        assert verdict.judgement == OPEN
+        assert verdict.why == why
+    assert Verdict("a", known, limit).why == ""
+
+
+@pytest.mark.parametrize(
+    ("sense", "below", "above"), [(Sense.AT_MOST, OPEN, FAILS), (Sense.AT_LEAST, OPEN, PASSES)]
+)
+def test_a_lower_bound_says_only_what_it_can(
+    sense: Sense, below: Judgement, above: Judgement
+) -> None:
+    limit = Limit(10.0, sense, "here")
+    for value, judgement in ((9.0, below), (11.0, above)):
+        answer = Answer("a", value, "", "a")
+        verdict = Verdict("a", answer, limit, "a bound", is_lower_bound=True)
+        assert verdict.judgement == judgement
+        assert verdict.why == ("a bound" if judgement == OPEN else "")
+
+
+def test_the_headline_is_the_worst_of_what_is_required() -> None:
+    limit = Limit(10.0, Sense.AT_MOST, "here")
+
+    def one(value: float, error: float | None = None, **more: Any) -> Verdict:
+        return Verdict("a", Answer("a", value, "", "a", error=error), more.pop("at", limit), **more)
+
+    good, near, bad = one(1.0), one(9.9, 1.0), one(11.0)
+    free, unknown = one(1.0, at=None), one(1.0, at=None, of_strength=True)
+    assert worst([]) == OPEN
+    assert worst([good, free]) == PASSES
+    assert worst([good, unknown]) == OPEN
+    assert worst([good, unknown, near]) == WITHIN
+    assert worst([near, bad, good, unknown]) == FAILS
+
+
+CROSSED = {
+    "stiffness K1": ("stiffness.K1", 100.0, True),
+    "stiffness K2": ("stiffness.K2", 200.0, True),
+    "stiffness K3": ("stiffness.K3", 300.0, True),
+    "lost motion": ("stiffness.lost_motion", 2.0, False),
+    "transmission error": ("transmission_error.peak_to_peak", 60.0, False),
+    "efficiency": ("losses.efficiency", 0.7, True),
+    "no-load torque": ("losses.no_load_torque", 50.0, False),
+    "lowest natural frequency": ("frequency.1", 100.0, True),
+    "pressure of the flanks": ("contact.pressure", 800.0, False),
+    "yield below the flanks": ("contact.pressure", FIRST_YIELD * 800.0, False),
+    "yield of teeth and rim": ("largest.fs_vm in tooth root", 800.0, False),
+    "yield of wall": ("largest.fs_vm in cup wall", 800.0, False),
+    "clearance of the rigid teeth": ("clearance.ring_gear", -0.002, True),
+}
+"""Row -> answer, limit in the unit of the answer, and whether larger values are good."""
+
+
+@pytest.mark.parametrize("name", CROSSED)
+def test_a_row_changes_where_its_limit_is_crossed(name: str) -> None:
+    answer, limit, larger_is_good = CROSSED[name]
+    design, step = rated(), 0.01 * abs(limit)
+    below, above = (FAILS, PASSES) if larger_is_good else (PASSES, FAILS)
+    assert judged(name, design, summary(answer, limit - step)) == below
+    assert judged(name, design, summary(answer, limit + step)) == above
+    for side in (-step, step):
+        assert judged(name, design, summary(answer, limit + side, 2.0 * step)) == WITHIN
+
+
+@pytest.mark.parametrize("part", ["teeth and rim", "wall"])
+@pytest.mark.parametrize(
+    ("safety", "judgement"), [(1.49, FAILS), (1.51, PASSES)], ids=["below", "above"]
+)
+def test_fatigue_of_a_part(part: str, safety: float, judgement: Judgement) -> None:
+    own, other = ("tooth root", "cup wall") if part == "teeth and rim" else ("fillet", "tip")
+    region = SimpleNamespace(safety={"goodman": safety, "crossland": 1.7}, warning="")
+    safe = SimpleNamespace(safety={"goodman": 0.5, "crossland": 0.5}, warning="")
+    least = SimpleNamespace(safety=safety, region=own, place=own)
+    fatigue = SimpleNamespace(
+        regions={own: region, other: safe},
+        least={"goodman": least, "crossland": least},
+        goodman_error=None,
+    )
+    found = summary("none", 0.0, fatigue=fatigue)
+    assert judged(f"fatigue of {part}", rated(), found) == judgement
+    fatigue.goodman_error = 0.1
+    assert judged(f"fatigue of {part}", rated(), found) == WITHIN
+    region.warning = "no limit"
+    assert judged(f"fatigue of {part}", rated(), found) == OPEN
+
+
+def test_static_safety_and_life_of_the_bearing() -> None:
+    design = rated(**with_bearing())
+    most = STATIC_PRESSURE / 2.0 ** (1.0 / 3.0)
+    name = "static safety of the bearing"
+    for pressure, judgement in ((0.999 * most, PASSES), (1.001 * most, FAILS)):
+        assert judged(name, design, summary("bearing.pressure", pressure)) == judgement
+        near = summary("bearing.pressure", pressure, 0.002 * most)
+        assert judged(name, design, near) == WITHIN
+    for hours, judgement in ((6999.0, FAILS), (7001.0, PASSES)):
+        found = summary("bearing.life_hours", hours)
+        assert judged("life of the bearing", design, found) == judgement
+
+
+@pytest.mark.parametrize(
+    ("torque", "is_peak", "judgement"),
+    [(2.99, True, FAILS), (3.01, True, PASSES), (2.99, False, OPEN), (3.01, False, PASSES)],
+)
+def test_ratcheting(torque: float, is_peak: bool, judgement: Judgement) -> None:
+    more = {"ratcheting": SimpleNamespace(is_peak=is_peak)}
+    found = summary("ratcheting.peak_torque_Nm", torque, **more)
+    assert judged("ratcheting", rated(), found) == judgement
+
+
+@pytest.mark.parametrize(("width", "judgement"), [(0.99, PASSES), (1.01, FAILS)])
+def test_hysteresis_needs_friction_to_pass(width: float, judgement: Judgement) -> None:
+    found = summary("stiffness.hysteresis", width)
+    assert judged("hysteresis", rated(contact={"friction": 0.1}), found) == judgement
+    alone = OPEN if judgement == PASSES else judgement
+    assert judged("hysteresis", rated(), found) == alone
+
+
+def test_the_transmission_error_needs_deviations_to_pass() -> None:
+    design = rated(deviations=None)
+    found = summary("transmission_error.peak_to_peak", 59.0)
+    assert judged("transmission error", design, found) == OPEN
+    found = summary("transmission_error.peak_to_peak", 61.0)
+    assert judged("transmission error", design, found) == FAILS
+
+
+def test_resolution() -> None:
+    for share, judgement in ((0.99 * RESOLUTION, PASSES), (1.01 * RESOLUTION, FAILS)):
+        root = SimpleNamespace(total_error=100.0 * share, s1=100.0, place="")
+        found = summary("none", 0.0, root_stress=root)
+        assert judged("resolution", rated(), found) == judgement
+    root = SimpleNamespace(total_error=None, s1=100.0, place="")
+    assert judged("resolution", rated(), summary("none", 0.0, root_stress=root)) == OPEN
+
+
+def test_without_requirements_rows_stand_and_say_so() -> None:
+    design = rated(rating={"rated_torque": 1.0}, fatigue=None, losses=None, frequencies=None)
+    plan = plan_runs(design)
+    for one in rating_rows(design):
+        if one.name in ("clearance of the rigid teeth", "resolution"):
+            continue
+        verdict = one.verdict(summary("none", 0.0), plan.missing.get(one.case, ""))
+        assert verdict.judgement == OPEN
+        assert verdict.why
+    found = summary("stiffness.K1", 5.0)
+    assert row("stiffness K1", design).verdict(found, "").why == "no requirement"
+    assert plan.missing[LoadCase.RATCHETING] == "rating.momentary_torque is not given"
+
+
+def test_loads_of_one_torque_share_a_run() -> None:
+    names = [run.name for run in plan_runs(rated()).runs]
+    assert names == [
+        "rated torque",
+        "repeated peak torque",
+        "largest torque",
+        "no load",
+        "stiffness",
+        "ratcheting",
+        "natural frequencies",
+    ]
+    one_torque = {"rated_torque": 1.0, "largest_speed": 10.0}
+    plan = plan_runs(rated(rating=one_torque, **with_bearing()))
+    first, *others = plan.runs
+    assert first.name == "rated torque, repeated peak torque, average torque, largest torque"
+    assert first.design is not None and first.design.fatigue and first.design.losses
+    assert [run.name for run in others] == ["no load", "stiffness", "natural frequencies"]
+
+
+def test_with_friction_what_cannot_have_it_runs_without() -> None:
+    plan = plan_runs(rated(contact={"friction": 0.1}))
+    runs = {run.name: run for run in plan.runs}
+    for name in ("deviations", "natural frequencies"):
+        run = runs[name]
+        assert run.design is not None and run.design.contact.friction == 0.0
+        assert "friction" in run.left_out
+    design = runs["rated torque"].design
+    assert design is not None and design.contact.friction == 0.1 and design.deviations is None
+    assert design.steps.samples
+
+
+def test_a_load_from_one_side_has_no_period_and_the_sheet_says_it() -> None:
+    springs = {"radial_stiffness": 1e5, "axial_stiffness": 1e5, "tilting_stiffness": 1e4}
+    sideways = {**springs, "radial_force": 10.0}
+    plan = plan_runs(rated(output_bearing=sideways, deviations=None, frequencies=None))
+    first = plan.runs[0]
+    assert first.design is not None and first.design.losses is None
+    assert "radial force" in first.left_out
+
+
+def test_a_rating_is_refused_without_its_section_or_a_torque() -> None:
+    with pytest.raises(InputError, match="rating is missing"):
+        load_rated_design(DESIGN, PLANE)
+    with pytest.raises(InputError, match=r"rating\.rated_torque is missing"):
+        load_rated_design(DESIGN, {"rating": {}, "load.torque": 0.0})
+    with pytest.raises(InputError, match=r"rating\.efficiency = 1\.5 is out of range"):
+        load_rated_design(DESIGN, {"rating.efficiency": 1.5})
