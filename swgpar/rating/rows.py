@@ -36,7 +36,6 @@ AnswerSource = Callable[[DriveSummary], Answer | None]
 
 IDEAL = "a lower bound, that of the ideal drive: [deviations] is not given"
 NO_FRICTION = "a lower bound: contact.friction = 0, and the loop has no area"
-NO_PEAK = "a lower bound: the torque has no peak up to ratcheting.limit"
 NO_WALL = 'drive.model = "plane" has no wall'
 
 
@@ -46,8 +45,8 @@ class RatingRow:
 
     name : what is judged;  case : of the run;  answer : takes it from the summary
     limit : None without a requirement
-    reason : why there is no answer, or why it is a lower bound; empty otherwise
-    is_lower_bound : tells of a summary whether the answer is one
+    missing : why no run gives an answer; empty otherwise
+    lower_bound : says of a summary why the answer is a lower bound; empty where it is none
     of_strength : whether it is about the strength of the drive
     """
 
@@ -55,22 +54,21 @@ class RatingRow:
     case: LoadCase
     answer: AnswerSource
     limit: Limit | None = None
-    reason: str = ""
-    is_lower_bound: Callable[[DriveSummary], bool] = lambda _: False
+    missing: str = ""
+    lower_bound: Callable[[DriveSummary], str] = lambda _: ""
     of_strength: bool = False
 
-    def verdict(self, summary: DriveSummary | None, missing: str) -> Verdict:
-        """The verdict by the summary of the row's run; None where there is none, which `missing`
-        says."""
+    def verdict(self, summary: DriveSummary | None, without: str) -> Verdict:
+        """The verdict by the summary of the row's run. without : why there is no summary, or what
+        its run has left out"""
         answer = None if summary is None else self.answer(summary)
-        bound = summary is not None and answer is not None and self.is_lower_bound(summary)
-        reason = self.reason if answer is None or bound else ""
+        bound = "" if summary is None or answer is None else self.lower_bound(summary)
         return Verdict(
             self.name,
             answer,
             self.limit,
-            reason or (missing if answer is None else ""),
-            is_lower_bound=bound,
+            bound or ("" if answer else self.missing or without),
+            is_lower_bound=bool(bound),
             of_strength=self.of_strength,
         )
 
@@ -144,7 +142,7 @@ def _strength(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow
 
 def _bearing(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
     if design.bearing is None:
-        yield RatingRow("bearing", LoadCase.AVERAGE, lambda _: None, reason=NO_BEARING)
+        yield RatingRow("bearing", LoadCase.AVERAGE, lambda _: None, missing=NO_BEARING)
         return
     source = "rating.static_safety, against 4200 MPa of a ball on its race [ISO 76]"
     limit = Limit(section.static_safety, Sense.AT_LEAST, source)
@@ -164,6 +162,14 @@ def _bolts(design: DriveDesign) -> Iterator[RatingRow]:
         yield RatingRow(f"{name} of bolts", LoadCase.LARGEST, answer, limit, of_strength=True)
 
 
+def _without_peak(summary: DriveSummary) -> str:
+    """Why the ratcheting torque is a lower bound; empty behind a peak."""
+    found = summary.ratcheting
+    if found is None or found.is_peak:
+        return ""
+    return f"a lower bound: the torque has no peak up to the end of the run ({found.ended})"
+
+
 def _ratcheting(section: RatingSection, loads: RatingLoads) -> RatingRow:
     limit, momentary = None, loads.momentary
     if momentary is not None:
@@ -174,8 +180,7 @@ def _ratcheting(section: RatingSection, loads: RatingLoads) -> RatingRow:
         LoadCase.RATCHETING,
         _named("ratcheting.peak_torque_Nm"),
         limit,
-        NO_PEAK if limit else "",
-        lambda summary: summary.ratcheting is not None and not summary.ratcheting.is_peak,
+        lower_bound=_without_peak,
         of_strength=limit is not None,
     )
 
@@ -190,8 +195,7 @@ def _stiffness(design: DriveDesign, section: RatingSection) -> Iterator[RatingRo
         LoadCase.STIFFNESS,
         _named("stiffness.hysteresis"),
         _required(section.hysteresis, Sense.AT_MOST, "hysteresis"),
-        NO_FRICTION if without_friction else "",
-        lambda _: without_friction,
+        lower_bound=lambda _: NO_FRICTION if without_friction else "",
     )
     limit = _required(section.lost_motion, Sense.AT_MOST, "lost_motion")
     answer = _named("stiffness.lost_motion")
@@ -206,8 +210,7 @@ def _motion(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
         LoadCase.DEVIATIONS if apart else LoadCase.RATED,
         _named("transmission_error.peak_to_peak"),
         _required(section.transmission_error, Sense.AT_MOST, "transmission_error"),
-        IDEAL if ideal else "",
-        lambda _: ideal,
+        lower_bound=lambda _: IDEAL if ideal else "",
     )
     limit = _required(section.efficiency, Sense.AT_LEAST, "efficiency")
     losses = "" if design.losses else NO_LOSSES

@@ -237,7 +237,7 @@ def test_static_safety_and_life_of_the_bearing() -> None:
     [(2.99, True, FAILS), (3.01, True, PASSES), (2.99, False, OPEN), (3.01, False, PASSES)],
 )
 def test_ratcheting(torque: float, is_peak: bool, judgement: Judgement) -> None:
-    more = {"ratcheting": SimpleNamespace(is_peak=is_peak)}
+    more = {"ratcheting": SimpleNamespace(is_peak=is_peak, ended="limit reached")}
     found = summary("ratcheting.peak_torque_Nm", torque, **more)
     assert judged("ratcheting", rated(), found) == judgement
 
