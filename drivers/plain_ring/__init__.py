@@ -31,8 +31,8 @@ from swgpar.meshing.race_sector import annular_sector
 from swgpar.meshing.sector import SectorMesh
 from swgpar.model.drive_model import EDGE, PRESSURE_LIMIT
 from swgpar.solve.discrete_problem import DiscreteProblem
-from swgpar.solve.newton import SOFT_PENALTIES, NewtonSolver
-from swgpar.solve.solve_state import NewtonSettings
+from swgpar.solve.newton import NewtonSolver
+from swgpar.solve.solve_state import SOFT_PENALTIES, NewtonSettings
 
 REFERENCE_LENGTH = 1.0
 """Length (mm) that penalties and tolerances refer to; a ring has no module."""

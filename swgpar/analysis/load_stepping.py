@@ -19,8 +19,7 @@ from swgpar.log import logger
 from swgpar.model.drive_model import DriveModel
 from swgpar.model.torques import torques
 from swgpar.results.history import OUTPUT_COLUMNS
-from swgpar.solve.newton import SOFT_PENALTIES, SPREADING_PENALTIES
-from swgpar.solve.solve_state import SolveResult
+from swgpar.solve.solve_state import SOFT_PENALTIES, SPREADING_PENALTIES, SolveResult
 
 MAX_KNOWN_STATES = 40
 """States of the rotation that are kept to predict the next ones from."""

@@ -29,6 +29,7 @@ from swgpar.solve.line_search import LineSearch
 from swgpar.solve.linear_solver import MatrixKind, reason_names
 from swgpar.solve.linear_solvers import make_linear_solver
 from swgpar.solve.solve_state import (
+    SPREADING_PENALTIES,
     AcceptableState,
     CycleBreaker,
     IterationStatus,
@@ -37,13 +38,6 @@ from swgpar.solve.solve_state import (
     SolveResult,
     SolveState,
 )
-
-SOFT_PENALTIES = (1e-3, 3e-2, 0.3)
-"""Shares of the contacts' stiffness in the first rough runs, while contact is established."""
-
-SPREADING_PENALTIES = SOFT_PENALTIES[1:]
-"""The same where contact is there but spreads slowly: over stiff contacts by one face in an
-iteration, over soft ones by many."""
 
 MAX_FURTHER_SEARCHES = 3
 """Further contact searches of a solve, where flanks touch that the last search left out."""

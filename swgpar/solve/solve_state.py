@@ -12,6 +12,13 @@ from swgpar.load.load_states import LoadState
 from swgpar.petsc import PETSc
 from swgpar.solve.active_set_cycles import VisitedSets
 
+SOFT_PENALTIES = (1e-3, 3e-2, 0.3)
+"""Shares of the contacts' stiffness in the first rough runs, while contact is established."""
+
+SPREADING_PENALTIES = SOFT_PENALTIES[1:]
+"""The same where contact is there but spreads slowly: over stiff contacts by one face in an
+iteration, over soft ones by many."""
+
 
 class Phase(enum.Enum):
     """What one run of Newton's iteration is for."""
