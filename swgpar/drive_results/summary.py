@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import get_args, get_type_hints
 
 from swgpar.answers.answer import Answer, AnswerGroup, AnswerKind
 from swgpar.answers.table import AnswerTable
@@ -31,32 +32,6 @@ from swgpar.largest_stress.accuracy import Accuracy
 from swgpar.largest_stress.places import LargestStresses
 from swgpar.largest_stress.root_stress import RootStress
 
-ANSWER_GROUPS: dict[str, type[AnswerGroup]] = {
-    "stiffness": TorsionalStiffness,
-    "ratcheting": RatchetingTorque,
-    "program": ProgramStages,
-    "root_stress": RootStress,
-    "accuracy": Accuracy,
-    "contact": LargestContact,
-    "load_sharing": LoadSharing,
-    "rotation": Rotation,
-    "transmission_error": TransmissionError,
-    "slip": SlipError,
-    "fatigue": SafetyAndLife,
-    "losses": DriveLosses,
-    "bearing": BallLoads,
-    "output_bearing": OutputBearingLoads,
-    "bolts": BoltLoads,
-    "frequencies": NaturalFrequencies,
-    "housing": HousingStresses,
-    "stresses": LargestStresses,
-    "strains": LargestStrains,
-    "steps": StepValues,
-    "clearance": RigidClearance,
-    "numerics": Numerics,
-}
-"""Field of `DriveSummary` -> evaluation, in the order in which answers are shown."""
-
 
 @dataclass(frozen=True)
 class BodySizes:
@@ -74,7 +49,7 @@ class BodySizes:
     quality: Mapping[str, float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class DriveSummary(AnswerTable):
     """What a whole run gives: a mapping of answers by name, and what they are made of.
 
@@ -89,7 +64,8 @@ class DriveSummary(AnswerTable):
     ratio : speed ratio, input over output
     design : the whole design, defaults included
 
-    The other fields are the evaluations of `ANSWER_GROUPS`, None for what a run does not have.
+    The other fields are the evaluations, in the order in which answers are shown; None for what a
+    run does not have.
 
     Examples
     --------
@@ -110,29 +86,29 @@ class DriveSummary(AnswerTable):
     phases_s: Mapping[str, float]
     peak_memory_MB_per_rank: tuple[float, ...]
     ratio: float
-    rotation: Rotation
-    stresses: LargestStresses
-    steps: StepValues
-    numerics: Numerics
     design: DriveDesign
-    accuracy: Accuracy | None = None
-    root_stress: RootStress | None = None
-    contact: LargestContact | None = None
-    load_sharing: LoadSharing | None = None
-    transmission_error: TransmissionError | None = None
     stiffness: TorsionalStiffness | None = None
     ratcheting: RatchetingTorque | None = None
     program: ProgramStages | None = None
+    root_stress: RootStress | None = None
+    accuracy: Accuracy | None = None
+    contact: LargestContact | None = None
+    load_sharing: LoadSharing | None = None
+    rotation: Rotation
+    transmission_error: TransmissionError | None = None
+    slip: SlipError | None = None
     fatigue: SafetyAndLife | None = None
     losses: DriveLosses | None = None
     bearing: BallLoads | None = None
     output_bearing: OutputBearingLoads | None = None
-    clearance: RigidClearance | None = None
+    bolts: BoltLoads | None = None
     frequencies: NaturalFrequencies | None = None
     housing: HousingStresses | None = None
-    bolts: BoltLoads | None = None
-    slip: SlipError | None = None
+    stresses: LargestStresses
     strains: LargestStrains | None = None
+    steps: StepValues
+    clearance: RigidClearance | None = None
+    numerics: Numerics
 
     def groups(self) -> list[AnswerGroup]:
         """The evaluations that the run has, in the order of `ANSWER_GROUPS`."""
@@ -151,6 +127,15 @@ class DriveSummary(AnswerTable):
     def answers(self) -> Iterator[Answer]:
         for group in self.groups():
             yield from group.answers()
+
+
+ANSWER_GROUPS = {
+    name: group
+    for name, kind in get_type_hints(DriveSummary).items()
+    for group in (kind, *get_args(kind))
+    if isinstance(group, type) and issubclass(group, AnswerGroup)
+}
+"""Field of `DriveSummary` -> evaluation."""
 
 
 def known_answers(design: DriveDesign) -> dict[str, AnswerKind]:

@@ -172,7 +172,7 @@ assert "residual" not in swgpar.open_result(folder.replace("out", "old")).histor
 def test_own_answer(tmp_path: Path) -> None:
     """Both answers are in the summary, in its file, among the quantities and in the report; earlier
     results open."""
-    field, value, type_import, group, attribute, function_import, call = examples(
+    field, value, type_import, attribute, function_import, call = examples(
         HOWTO / "own_answer.md", "diff"
     )
     (evaluation,) = examples(HOWTO / "own_answer.md", "python")
@@ -180,7 +180,7 @@ def test_own_answer(tmp_path: Path) -> None:
     for difference in (field, value):
         patch(package / "evaluation" / "numerics.py", difference)
     (package / "evaluation" / "time_shares.py").write_text(evaluation, encoding="utf-8")
-    for difference in (type_import, group, attribute):
+    for difference in (type_import, attribute):
         patch(package / "drive_results" / "summary.py", difference)
     for difference in (function_import, call):
         patch(package / "analysis" / "evaluate_run.py", difference)
