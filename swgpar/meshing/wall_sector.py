@@ -20,7 +20,7 @@ from swgpar.meshing.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.quality import element_quality
 from swgpar.meshing.sector import SectorMesh
 from swgpar.meshing.spacing import polar
-from swgpar.meshing.sweep import grid_quads, symmetric_steps
+from swgpar.meshing.sweep import grid_quads, sweep_quads, symmetric_steps
 
 GROWTH = 1.35
 """Ratio of the lengths of successive elements along the section."""
@@ -255,7 +255,7 @@ def _swept(number: Ints) -> Ints:
     stations = number.reshape(len(number), -1)
     quads = grid_quads(np.arange(stations.shape[1]).reshape(number.shape[1:]))
     quads = np.roll(quads[:, ::-1], 1, axis=1)
-    return np.concatenate((stations[:-1, quads], stations[1:, quads]), axis=-1).reshape(-1, 8)
+    return sweep_quads(quads, stations)
 
 
 def _end_faces(number: Ints) -> Ints:

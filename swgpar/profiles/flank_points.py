@@ -15,7 +15,7 @@ from swgpar.errors import InputError
 from swgpar.geometry.arrays import Complex, Floats
 from swgpar.input.quantities import show
 from swgpar.profiles.keys import Points
-from swgpar.profiles.polyline import first_crossing, largest_distance
+from swgpar.profiles.polyline import clockwise_from_y, first_crossing, largest_distance
 
 FEWEST = 4
 """Points, at least."""
@@ -56,11 +56,6 @@ class _Gear:
 
 def _place(point: complex) -> str:
     return f"({point.real:.6g}, {point.imag:.6g}) mm"
-
-
-def clockwise_from_y(points: Complex) -> Floats:
-    """Polar angles (n,), rad, from +y and clockwise, of points x + i y (n,)."""
-    return -np.angle(-1j * points)
 
 
 @lru_cache(maxsize=32)

@@ -1,4 +1,4 @@
-"""Open chains of points in the plane: where they cross themselves, how far two are apart."""
+"""Chains of points in the plane: polar angles, crossings with themselves, distances of two."""
 
 from __future__ import annotations
 
@@ -14,6 +14,11 @@ PARALLEL = 1e-9
 
 MOST_CHORDS = 4096
 """Chords of a chain that are compared; of finer ones every second point, fourth point, ..."""
+
+
+def clockwise_from_y(points: Complex) -> Floats:
+    """Polar angles (n,), rad, from +y and clockwise, of points x + i y (n,)."""
+    return -np.angle(-1j * points)
 
 
 def first_crossing(points: Complex) -> complex | None:

@@ -18,11 +18,12 @@ import numpy as np
 import scipy
 
 from swgpar.errors import InputError
-from swgpar.geometry.arrays import Complex, Floats
+from swgpar.geometry.arrays import Floats
 from swgpar.geometry.bracketed_root import root_between
 from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints, points_of
 from swgpar.profiles.envelope import REACH, Contacts, Envelope
 from swgpar.profiles.fitted_curve import fitted
+from swgpar.profiles.polyline import clockwise_from_y
 
 POSITIONS, PLACES, RADII = 1281, 65, 401
 """Positions of the moving tooth, places on each of its segments, and radii, between which the
@@ -85,11 +86,6 @@ class Passing(Protocol):
         """Exact curve through places at radii (n,) mm, from the first to the last."""
 
 
-def _polar(points: Complex) -> Floats:
-    """Angles (n,) rad of points from the centre line of the tooth, +y, clockwise."""
-    return np.angle(1j * np.conj(points))
-
-
 @dataclass(frozen=True)
 class _SegmentEnvelope:
     """Envelope of the segment `index` of the moving flank."""
@@ -140,7 +136,7 @@ class _SegmentEnvelope:
                 np.where(found, psi, np.nan),
                 contacts.slope / (square * outwards),
                 -contacts.bend / (square * outwards),
-                _polar(contacts.point),
+                clockwise_from_y(contacts.point),
             )
 
     def curve(self, radii: Floats, places: Places) -> CurvedSegment:
@@ -187,7 +183,7 @@ class _EdgePath:
                 if not np.nanmax(np.abs(turn), initial=0.0) > 1e-14:
                     break
         psi = np.where(np.abs(turn) < 1e-9, psi, np.nan)
-        return Places(s, psi, np.zeros_like(s), 1.0 / rate, _polar(point))
+        return Places(s, psi, np.zeros_like(s), 1.0 / rate, clockwise_from_y(point))
 
     def curve(self, radii: Floats, places: Places) -> CurvedSegment:
         """See `Passing`."""
@@ -265,7 +261,7 @@ class SweptArea:
         psi = np.linspace(-reach, reach, POSITIONS)
         poses = self.envelope.pose(psi)
         points = self.envelope.path(s, poses.taken(np.arange(POSITIONS)[:, None]))[0]
-        radius, angle = np.abs(points), _polar(points)
+        radius, angle = np.abs(points), clockwise_from_y(points)
         sign = 1.0 if self.envelope.external else -1.0
         farthest = sign * (float((sign * radius).min()) + EDGE * self.module)
         if sign * (self.tip - farthest) <= 0.0:
