@@ -5,12 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.geometry.bearing import smallest_curvature_radius
+from swgpar.errors import InputError
+from swgpar.geometry.bearing import depth_of_hollows, smallest_curvature_radius
 from swgpar.geometry.cams import FourRoller, TwoRoller
 from swgpar.input.require import require, require_available
 
 SECTION = "wave_generator.bearing"
 RADIUS = "the cam's smallest radius of curvature"
+
+DEEPEST_HOLLOW = 0.01
+"""Depth of a hollow of the cam that its inner race may span, over half of the deflection: balls are
+off their places by that much there."""
 
 
 def check_bearing(design: DriveDesign) -> None:
@@ -22,14 +27,19 @@ def check_bearing(design: DriveDesign) -> None:
         f'wave_generator.type = "{design.wave_generator.type}"',
         "with cams whose curve an inner race can follow",
     )
-    lobes = f"wave_generator.lobes = {design.wave_generator.lobes}"
-    require_available(design.wave_generator.lobes == 2, SECTION, lobes, "with two")
     depth, ball = bearing.race_thickness, bearing.ball_diameter
     radius, half = smallest_curvature_radius(design.cam()), 0.5 * design.deflection
     allowed = f"above 0 to below {radius:.4g} mm ({RADIUS})"
     require(depth < radius, f"{SECTION}.race_thickness", depth, allowed)
     allowed = f"above 0 to below {radius - depth:.4g} mm ({RADIUS} less race_thickness)"
     require(ball < radius - depth, f"{SECTION}.ball_diameter", ball, allowed)
+    hollow, deepest = depth_of_hollows(design.cam(), depth + ball), DEEPEST_HOLLOW * half
+    if hollow > deepest:
+        raise InputError(
+            f"[{SECTION}] is not available with a cam that is hollow by {hollow:.3g} mm at the "
+            f"inner race, which is pressed on it and spans hollows: allowed up to {deepest:.3g} mm (a "
+            "hundredth of half the deflection)"
+        )
     most = int(np.pi / np.arcsin(ball / sizes.pitch_diameter))
     allowed = f"3 to {most} (balls of ball_diameter beside each other)"
     require(bearing.balls <= most, f"{SECTION}.balls", bearing.balls, allowed)

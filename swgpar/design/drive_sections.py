@@ -80,9 +80,16 @@ class DriveSections(Design):
     @property
     def kinematics(self) -> Kinematics:
         """Speeds and angles."""
-        lobes, alike = self.wave_generator.lobes, self.wave_generator.lobes_are_alike
+        lobes, alike = self.wave_generator.lobes, self.lobes_are_alike
         pancake, bolts = self.dynamic_spline is not None, self.cup.bolts if self.is_bolted else 0
         return make_kinematics(self.drive, lobes, alike, pancake, bolts)
+
+    @property
+    def lobes_are_alike(self) -> bool:
+        """Whether a rotation by one lobe leaves the wave generator as it is, and puts balls on
+        balls."""
+        bearing, wave = self.bearing, self.wave_generator
+        return wave.lobes_are_alike and (bearing is None or bearing.balls % wave.lobes == 0)
 
     @property
     def has_program(self) -> bool:
@@ -129,14 +136,11 @@ class DriveSections(Design):
         equals itself rotated by one of them and the design allows it, else 1."""
         lobes = self.wave_generator.lobes
         counts = [self.drive.teeth_fs, self.drive.teeth_rg]
-        if self.bearing is not None:
-            counts.append(self.bearing.balls)
         if self.is_bolted:
             counts.append(self.cup.bolts)
         # modes of a part of the drive are not all modes
         symmetric = all(count % lobes == 0 for count in counts) and self.frequencies is None
-        symmetric = symmetric and self.wave_generator.lobes_are_alike
-        symmetric = symmetric and not self.is_loaded_sideways
+        symmetric = symmetric and self.lobes_are_alike and not self.is_loaded_sideways
         return lobes if symmetric and self.solver.symmetry else 1
 
     @property

@@ -15,7 +15,7 @@ class Kinematics:
     """What the layout and the numbers of teeth make of the motion of a drive.
 
     teeth_fs, teeth_rg : numbers of teeth; a dynamic spline has those of the flexible spline
-    lobes, lobes_are_alike : of the wave generator
+    lobes, lobes_are_alike : of the wave generator, with its balls
     output_gear : the gear that is the output
     standing_gear : the gear that stands in the frame in which the drive is computed: the fixed one,
     or the driven ring gear

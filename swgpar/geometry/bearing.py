@@ -11,8 +11,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
-from swgpar.geometry.cams import Cam
+from swgpar.geometry.cams import Cam, OffsetCam
 
 BallLines = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
 """Gives centres (n, 2) mm, groove normals (n, 2) in the cam's frame and curvatures (n,) 1/mm of the
@@ -20,6 +21,9 @@ centres' curve at angles (n,) rad from the major axis."""
 
 MAX_STEPS = 50
 """Newton steps along a ray to the curve of the balls; a few suffice."""
+
+OUTLINE_POINTS = 2000
+"""Points of a cam at which its curvature and its hollows are looked at."""
 
 
 @dataclass(frozen=True)
@@ -89,5 +93,17 @@ def ball_lines(
 
 def smallest_curvature_radius(cam: Cam) -> float:
     """Smallest radius of curvature (mm) of a cam; inf for straight lines only."""
-    largest = float(cam.evaluate(cam.outline(2000))[2].max())
+    largest = float(cam.evaluate(cam.outline(OUTLINE_POINTS))[2].max())
     return 1.0 / largest if largest > 0.0 else np.inf
+
+
+def depth_of_hollows(cam: Cam, depth: float) -> float:
+    """Largest distance (mm) between a parallel curve of a cam and a ring pressed on it that spans
+    its hollows; 0 of a convex curve.
+
+    depth : mm, of the curve inside of the cam's
+    """
+    curve = OffsetCam(cam, -depth).outline(OUTLINE_POINTS)
+    hull = scipy.spatial.ConvexHull(curve)
+    normals, heights = hull.equations[:, :2], hull.equations[:, 2]
+    return max(0.0, -float((curve @ normals.T + heights).max(axis=1).min()))
