@@ -37,8 +37,8 @@ def check_bearing(design: DriveDesign) -> None:
     if hollow > deepest:
         raise InputError(
             f"[{SECTION}] is not available with a cam that is hollow by {hollow:.3g} mm at the "
-            f"inner race, which is pressed on it and spans hollows: allowed up to {deepest:.3g} mm (a "
-            "hundredth of half the deflection)"
+            "inner race, which is pressed on it and spans hollows: allowed up to "
+            f"{deepest:.3g} mm (a hundredth of half the deflection)"
         )
     most = int(np.pi / np.arcsin(ball / sizes.pitch_diameter))
     allowed = f"3 to {most} (balls of ball_diameter beside each other)"

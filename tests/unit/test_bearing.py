@@ -8,14 +8,15 @@ import pytest
 from support.bearing import BEARING
 from support.paths import DESIGN
 from support.small_drive import PLANE
+from support.three_lobes import MODELS
 from swgpar import load_design
 from swgpar.contact.point_contact import ball_spring, point_contact
 from swgpar.contact.smooth_curve import shape_functions, smooth_curve
 from swgpar.errors import InputError
 from swgpar.evaluation.bearing_life import BearingSeries, million_turns
 from swgpar.evaluation.bearing_loads import ball_passing_angle
-from swgpar.geometry.bearing import ball_lines
-from swgpar.geometry.cams import EllipticalCam
+from swgpar.geometry.bearing import ball_lines, depth_of_hollows
+from swgpar.geometry.cams import EllipticalCam, HarmonicCam
 from swgpar.materials import Isotropic, contact_modulus
 from swgpar.model.bearing_model import race_relief
 
@@ -211,10 +212,91 @@ def test_a_taper_raises_the_race_under_the_open_end() -> None:
     assert race_relief(design)(z) - crowned == pytest.approx([-0.03, 0.0, 0.03], abs=1e-15)
 
 
-def test_bearing_on_rollers() -> None:
-    rollers = 'wave_generator={type="four_roller", beta=30.0, r_4=3.0, face_width=4.0}'
-    with pytest.raises(InputError, match="four_roller"):
-        load_design(DESIGN, [*PLANE, rollers, *BEARING])
+SIDE = {"a_p": 0.0315, "C_p": 0.6, "r_c": 5.0}
+CAMS = {
+    "elliptical": {},
+    "harmonic": {},
+    "simplified": {"C": 0.97},
+    "arcs": {"beta": 45.0},
+    "parabolic": SIDE,
+    "asymmetric_parabolic": {"right": SIDE, "left": {**SIDE, "r_c": 6.0}},
+    "polar": {"radius": "a - (a - b) * sin(0.5 * n * theta)**2"},
+    "points": {"coordinates": "polar"},
+    "four_roller": {"beta": 10.0, "r_4": 2.5},
+    "two_roller": {"r_2": 6.0},
+}
+FOLLOWED = "with cams whose curve an inner race can follow"
+REFUSED = {
+    2: {"four_roller": FOLLOWED, "two_roller": FOLLOWED},
+    3: dict.fromkeys(
+        ("elliptical", "simplified", "arcs", "parabolic", "asymmetric_parabolic")
+        + ("four_roller", "two_roller"),
+        'allowed with "harmonic", "polar" or "points"',
+    ),
+}
+"""Words of refusals by lobes and types of cams; those that are not named take a bearing."""
+
+
+@pytest.mark.parametrize("lobes", [2, 3])
+@pytest.mark.parametrize("kind", CAMS)
+def test_every_cam_with_a_bearing(kind: str, lobes: int) -> None:
+    """A bearing works on all cams that are no rollers, with the lobes that they may have."""
+    design = load_design(DESIGN, PLANE if lobes == 2 else MODELS["plane"])
+    keys = dict(CAMS[kind])
+    if kind == "polar":
+        keys["parameters"] = {"n": lobes}
+    if kind == "points":
+        wave = 0.5 * lobes * design.drive.module
+        angles = np.linspace(0.0, 180.0 / lobes, 19)
+        radii = design.inner_radius + wave * np.cos(lobes * np.radians(angles))
+        keys["points"] = np.column_stack([angles, radii]).tolist()
+    bearing = {"balls": 12, "ball_diameter": 2.0, "race_thickness": 0.5}
+    wave_generator = {"type": kind, "lobes": lobes, "face_width": 4.0, "bearing": bearing, **keys}
+    words = REFUSED[lobes].get(kind)
+    if words:
+        with pytest.raises(InputError, match=words):
+            design.with_values({"wave_generator": wave_generator})
+        return
+    found = design.with_values({"wave_generator": wave_generator})
+    assert found.copies == lobes
+    centre, _, _ = found.grown_ball_lines()(np.zeros(1))
+    assert centre[0, 1] == pytest.approx(found.major_semi_axis - 1.5, abs=1e-3)
+
+
+@pytest.mark.parametrize("depth", [0.0, 2.0])
+def test_hollows_of_a_cam(depth: float) -> None:
+    """A straight line that touches two lobes leaves the place between them by the support of the
+    curve in that direction less its radius."""
+    for b, hollow in ((25.5, False), (22.0, True)):
+        cam = HarmonicCam(30.0, b, 3)
+        curve = cam.outline(20000)
+        curve = curve - depth * cam.evaluate(curve)[1]
+        expected = float(-curve[:, 1].min() - (b - depth))  # midway between two lobes is at -y
+        assert (expected > 0.1) == hollow
+        assert depth_of_hollows(cam, depth) == pytest.approx(expected, abs=1e-4)
+
+
+def test_a_hollow_cam_is_refused() -> None:
+    """The inner race cannot lie in a hollow between two lobes. A rigid cam may have one."""
+    words = "hollow by 0.* mm at the inner race, which is pressed on it and spans hollows"
+    curve = "0.5 * (a + b) + 0.5 * (a - b) * (0.8 * cos(3 * theta) + 0.2 * cos(9 * theta))"
+    bearing = {"balls": 12, "ball_diameter": 2.0, "race_thickness": 0.5}
+    keys = {"type": "polar", "lobes": 3, "face_width": 4.0, "radius": curve}
+    design = load_design(DESIGN, MODELS["plane"]).with_values({"wave_generator": keys})
+    with pytest.raises(InputError, match=words):
+        design.with_values({"wave_generator.bearing": bearing})
+
+
+def test_balls_that_differ_from_lobe_to_lobe() -> None:
+    """Where lobes do not divide the balls, all of the drive is modelled, and all angles of a period
+    show different states."""
+    sampled = ("steps.samples=4", "steps.rotation=9.0", "drive.teeth_fs=41", "drive.teeth_rg=43")
+    for balls, repeats in ((20, 2), (19, 1)):
+        given = (*PLANE, *BEARING, *sampled, f"wave_generator.bearing.balls={balls}")
+        assert load_design(DESIGN, given).kinematics.repeats == repeats
+    for balls, copies in ((20, 1), (21, 3)):
+        given = (*MODELS["plane"], *BEARING, f"wave_generator.bearing.balls={balls}")
+        assert load_design(DESIGN, given).copies == copies
 
 
 def test_cage_speed() -> None:
