@@ -59,7 +59,7 @@ DRAWINGS: dict[str, tuple[str, ...]] = {
     "ring_gear": ("housing",),
     "dynamic_spline": ("drive_pancake",),
     "wave_generator": ("cams", "cam_sizes", "bearing"),
-    "cup": ("drive_section", "cup_shapes", "cup_attachment"),
+    "cup": ("drive_section", "cup_shapes", "end_contours", "cup_attachment"),
     "micro_geometry": ("crowning", "slope"),
     "material": ("material",),
     "load": ("drive_front",),

@@ -110,7 +110,7 @@ class BentSpline:
             beyond = radius > wall.outer.points[-1, 1] + margin
         else:
             beyond = radius < wall.inner.points[-1, 1] - margin
-        return beyond & (z > wall.back + wall.length)
+        return beyond & ((z > wall.back + wall.length) | wall.is_on_plate(radius, z))
 
     def _closed_end(self, theta: np.ndarray, radius: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Displacement (n, 3) mm of the closed end or flange, a plate that bends with the wall."""

@@ -9,7 +9,7 @@ from swgpar.checks.inertia import negligible_speeds
 from swgpar.checks.strain_checks import deflection_strain
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.cams import Cam, OffsetCam, PolarCam, pin_travel, taut_length
-from swgpar.geometry.cup_wall import thicknesses
+from swgpar.geometry.paired_lines import thicknesses
 from swgpar.profiles import Points
 from swgpar.profiles.from_points import fitted_flank
 from swgpar.profiles.rigid_teeth import RigidMesh
@@ -129,6 +129,9 @@ def _cup(design: DriveDesign) -> dict[str, float]:
         sizes["thinnest place of the wall (mm)"] = thinnest
     if of_cup.end_thickness != of_cup.thickness:
         sizes[f"thickness of the {end} (mm)"] = of_cup.end_thickness
+    thinnest = min(thicknesses(of_cup.wall.plate_points))
+    if thinnest != of_cup.end_thickness:
+        sizes[f"thinnest place of the {end} (mm)"] = thinnest
     if cup.attachment == "clamped":
         sizes["attached area, one side (mm2)"] = np.pi * abs(cup.edge**2 - cup.clamping_radius**2)
     if cup.attachment == "bolted":

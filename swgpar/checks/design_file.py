@@ -20,8 +20,12 @@ GEAR_SECTIONS: tuple[GearName, ...] = (*GEARS, "dynamic_spline")
 AT_TEETH = 1e-6
 """mm behind the teeth up to which a point of a file is the beginning of the wall there."""
 
-WALL_FILES = ("inner_file", "outer_file", "inner_layer", "outer_layer")
-"""Keys of [cup] that `contour` takes the place of."""
+FILES = (
+    ("contour", "inner", "outer"),
+    ("end_contour", "end_far", "end_near"),
+)
+"""Lists of points in [cup] that files may take the place of: key, and beginnings of the keys of
+both files and their layers."""
 
 
 def make_drive(table: dict[str, Any]) -> DriveDesign:
@@ -49,22 +53,34 @@ def with_points(table: dict[str, Any]) -> dict[str, Any]:
 
 
 def _read_wall(section: Any) -> Any:
-    """A section [cup] with the contour of its files; one without them as it is."""
+    """A section [cup] with the contours of its files; one without them as it is."""
     if not isinstance(section, dict):
         return section
-    files = [section.get(f"{side}_file") for side in ("inner", "outer")]
-    layers = [section.get(f"{side}_layer") for side in ("inner", "outer")]
-    texts = all(isinstance(each, str | None) for each in (*files, *layers))
-    if not texts or files == [None, None]:
+    for key, *sides in FILES:
+        section = _read_contour(section, key, sides)
+    return section
+
+
+def _read_contour(section: dict[str, Any], key: str, sides: list[str]) -> dict[str, Any]:
+    """A section [cup] with the points of both files in place of their names."""
+    names = [f"{side}_{what}" for what in ("file", "layer") for side in sides]
+    values = [section.get(name) for name in names]
+    files, layers = values[:2], values[2:]
+    if not all(isinstance(each, str | None) for each in values) or files == [None, None]:
         return section
-    if None in files or section.get("contour"):
+    if None in files or section.get(key):
         raise InputError(
-            "cup.inner_file and cup.outer_file belong together: allowed are both without "
-            "cup.contour, or neither"
+            f"cup.{names[0]} and cup.{names[1]} belong together: allowed are both without "
+            f"cup.{key}, or neither"
         )
     lines = [read_corners(str(file), layer) for file, layer in zip(files, layers, strict=True)]
-    inner, outer = _paired(*lines)
-    contour = [
+    points = _wall_points(*lines) if key == "contour" else _end_points(section, *lines)
+    return {**{name: value for name, value in section.items() if name not in names}, key: points}
+
+
+def _wall_points(inner: list[Corner], outer: list[Corner]) -> list[dict[str, float]]:
+    """Points of the wall behind the back of the teeth."""
+    return [
         {
             "distance": one.x,
             "radius": one.y,
@@ -73,10 +89,32 @@ def _read_wall(section: Any) -> Any:
             "rounding": one.rounding,
             "outer_rounding": other.rounding,
         }
-        for one, other in zip(inner, outer, strict=True)
+        for one, other in _paired(
+            *([one for one in line if one.x > AT_TEETH] for line in (inner, outer))
+        )
     ]
-    kept = {key: value for key, value in section.items() if key not in WALL_FILES}
-    return {**kept, "contour": contour}
+
+
+def _end_points(
+    section: dict[str, Any], far: list[Corner], near: list[Corner]
+) -> list[dict[str, float]]:
+    """Points of closed end or flange, from its fillet on."""
+    lines = [
+        sorted((Corner(one.y, one.x, one.rounding) for one in line), key=lambda one: one.x)
+        for line in (far, near)
+    ]
+    points = [
+        {
+            "radius": one.x,
+            "distance": one.y,
+            "near_radius": other.x,
+            "near_distance": other.y,
+            "rounding": one.rounding,
+            "near_rounding": other.rounding,
+        }
+        for one, other in _paired(*lines)
+    ]
+    return points if section.get("shape") == "hat" else points[::-1]
 
 
 def _read_points(section: Any, name: str, divided: bool) -> Any:
@@ -96,15 +134,15 @@ def _read_points(section: Any, name: str, divided: bool) -> Any:
     return {**kept, "points": points}
 
 
-def _paired(inner: list[Corner], outer: list[Corner]) -> tuple[list[Corner], list[Corner]]:
-    """Corners of both surfaces behind the teeth that belong together: in their order where they are
-    as many, else at the same distance, where a surface without a corner gets a point."""
-    behind = [[one for one in line if one.x > AT_TEETH] for line in (inner, outer)]
-    if len(behind[0]) != len(behind[1]):
-        places = sorted(one.x for line in behind for one in line)
+def _paired(one: list[Corner], other: list[Corner]) -> list[tuple[Corner, Corner]]:
+    """Corners of two lines that belong together: in their order where they are as many, else at the
+    same place, where a line without a corner gets a point."""
+    lines = [one, other]
+    if len(one) != len(other):
+        places = sorted(corner.x for line in lines for corner in line)
         places = [x for k, x in enumerate(places) if k == 0 or x - places[k - 1] > AT_TEETH]
-        behind = [[_corner_at(line, x) for x in places] for line in (inner, outer)]
-    return behind[0], behind[1]
+        lines = [[_corner_at(line, x) for x in places] for line in lines]
+    return list(zip(*lines, strict=True))
 
 
 def _corner_at(line: list[Corner], x: float) -> Corner:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.geometry.cup_wall import thicknesses
+from swgpar.geometry.paired_lines import thicknesses
 from swgpar.input.require import require
 
 LARGEST_STRAIN = 0.1

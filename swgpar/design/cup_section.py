@@ -39,6 +39,41 @@ class ContourPoint(Section):
     )
 
 
+class EndContourPoint(Section):
+    """One table [[cup.end_contour]]: a corner of closed end or flange on its far face, and that on
+    the near one, towards the teeth. Between corners both faces are straight."""
+
+    radius: float = quantity(unit="mm", text="from the axis", gt=0.0)
+    thickness: float | None = quantity(
+        None,
+        unit="mm",
+        text="thickness of closed end or flange there, along the axis; needed without "
+        "near_distance",
+        gt=0.0,
+    )
+    distance: float | None = quantity(
+        None,
+        unit="mm",
+        text="from the back of the teeth to the far face; default cup.length",
+        gt=0.0,
+    )
+    near_radius: float | None = quantity(
+        None, unit="mm", text="radius of the corner on the near face; default radius", gt=0.0
+    )
+    near_distance: float | None = quantity(
+        None,
+        unit="mm",
+        text="from the back of the teeth to the near face, in place of thickness",
+        gt=0.0,
+    )
+    rounding: float = quantity(
+        0.0, unit="mm", text="radius that rounds the corners at this point", ge=0.0
+    )
+    near_rounding: float | None = quantity(
+        None, unit="mm", text="that of the corner on the near face; default rounding", ge=0.0
+    )
+
+
 class Cup(Section):
     """Section [cup]: the wall of the flexible spline behind its teeth."""
 
@@ -46,7 +81,10 @@ class Cup(Section):
         "cup", text="the wall ends in a closed end with a bore, or in a flange outwards (silk hat)"
     )
     length: float = quantity(
-        unit="mm", text="from the back of the teeth to the far face of closed end or flange", gt=0.0
+        unit="mm",
+        text="from the back of the teeth to the far face of closed end or flange, beside the "
+        "fillet",
+        gt=0.0,
     )
     thickness_coef: float = quantity(
         0.8,
@@ -74,7 +112,29 @@ class Cup(Section):
         None, text="layer of a DXF file for the outer surface; without it the model space"
     )
     end_thickness: float | None = quantity(
-        None, unit="mm", text="thickness of closed end or flange; default that of the wall", gt=0.0
+        None,
+        unit="mm",
+        text="thickness of closed end or flange beside the fillet; default that of the wall",
+        gt=0.0,
+    )
+    end_contour: list[EndContourPoint] = quantity(
+        [],
+        text="points of a closed end or flange that is not flat, from the fillet on; behind the "
+        "last one it is",
+    )
+    end_far_file: str | None = quantity(
+        None,
+        text="CSV or DXF file of the far face in place of end_contour: distance from the back of "
+        "the teeth and radius",
+    )
+    end_near_file: str | None = quantity(
+        None, text="file of the near face, which belongs to end_far_file"
+    )
+    end_far_layer: str | None = quantity(
+        None, text="layer of a DXF file for the far face; without it the model space"
+    )
+    end_near_layer: str | None = quantity(
+        None, text="layer of a DXF file for the near face; without it the model space"
     )
     fillet_radius: float = quantity(
         unit="mm",

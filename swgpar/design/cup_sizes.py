@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from swgpar.design.cup_section import Cup
-from swgpar.geometry.cup_wall import SAME, CupWall, WallPoint, end_reach, rounded_lines
+from swgpar.geometry.cup_wall import CupWall, EndPoint, end_reach
+from swgpar.geometry.paired_lines import WallPoint, ended, rounded_lines
 from swgpar.meshing.drive_geometry import CupGeometry
 
 
@@ -38,17 +39,27 @@ class CupSizes:
             along = p.outer_distance or p.distance
             rounding = p.rounding if p.outer_rounding is None else p.outer_rounding
             points.append(WallPoint(p.distance, radius, along, outer, p.rounding, rounding))
-        last = points[-1]
-        if last.distance >= length - SAME:
-            return [*points[:-1], last._replace(distance=length, outer_distance=length)]
-        return [*points, WallPoint(length, last.radius, length, last.outer_radius, 0.0, 0.0)]
+        return ended(points, length)
 
     @property
     def end_thickness(self) -> float:
-        """Thickness of the closed end or flange, mm."""
+        """Thickness of closed end or flange beside the fillet, mm."""
         cup = self.section
         last = cup.contour[-1].thickness if cup.contour else self.thickness
         return cup.end_thickness or last or self.thickness
+
+    @property
+    def end_points(self) -> tuple[EndPoint, ...]:
+        """Corners of closed end or flange that are given."""
+        points, length = [], self.section.length
+        for p in self.section.end_contour:
+            far = length - (p.distance or length)
+            near = length - p.near_distance if p.near_distance else far + p.thickness
+            rounding = p.rounding if p.near_rounding is None else p.near_rounding
+            points.append(
+                EndPoint(p.radius, far, p.near_radius or p.radius, near, p.rounding, rounding)
+            )
+        return tuple(points)
 
     @property
     def wall_length(self) -> float:
@@ -76,6 +87,7 @@ class CupSizes:
             end_thickness=self.end_thickness,
             edge=cup.edge,
             outwards=cup.shape == "hat",
+            end_contour=self.end_points,
         )
 
     @property

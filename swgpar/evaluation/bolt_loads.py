@@ -88,7 +88,8 @@ def bolt_rows(model: DriveModel, state: LoadState, increment: int, step: int) ->
         copies=model.copies,
         comm=model.comm,
     )
-    tilting = tilting_moment(loads, 0.5 * design.cup_sizes.end_thickness)
+    thickness = design.cup_sizes.wall.thickness_at(0.5 * cup.bolt_circle)
+    tilting = tilting_moment(loads, 0.5 * thickness)
     wave_generator = float(np.degrees(state.angle))
     rows = []
     for bolt, load in enumerate(loads):

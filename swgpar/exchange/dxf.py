@@ -12,6 +12,7 @@ import numpy as np
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.exchange.outlines import Edge, gear_outline
+from swgpar.geometry.arrays import Floats
 from swgpar.geometry.cams import cam_outlines
 
 
@@ -43,16 +44,36 @@ def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
 
 
 def _write_wall(design: DriveDesign, folder: Path) -> list[Path]:
-    """Write wall.dxf with both surfaces of a cup's wall, on the layers inner and outer: distance
-    from the back of the teeth, and radius."""
+    """Write wall.dxf with both surfaces of a cup's wall, on the layers inner and outer, and both
+    faces of closed end or flange, on end_far and end_near: distance from the back of the teeth, and
+    radius."""
     if not design.has_cup:
         return []
-    document = new_document()
-    for layer in ("inner", "outer"):
+    document, wall = new_document(), design.cup_sizes.wall
+
+    def on_sheet(point: Floats) -> Floats:
+        """Distance and radius of a way and a height."""
+        radius, z = wall.off_plate(*point)
+        return np.array([z - wall.back, radius])
+
+    lines = {"inner": wall.inner, "outer": wall.outer}
+    faces = {"end_far": wall.plate.inner, "end_near": wall.plate.outer}
+    edges = {
+        layer: [Edge(np.array([start, end]), centre) for start, end, centre in line.pieces()]
+        for layer, line in lines.items()
+    } | {
+        layer: [
+            Edge(
+                np.array([on_sheet(start), on_sheet(end)]),
+                None if centre is None else on_sheet(centre),
+            )
+            for start, end, centre in line.pieces()
+        ]
+        for layer, line in faces.items()
+    }
+    for layer, of_layer in edges.items():
         document.layers.add(layer)
-        pieces = getattr(design.cup_sizes.wall, layer).pieces()
-        edges = [Edge(np.array([start, end]), centre) for start, end, centre in pieces]
-        draw(document.modelspace(), edges, layer)
+        draw(document.modelspace(), of_layer, layer)
     path = folder / "wall.dxf"
     document.saveas(path)
     return [path]

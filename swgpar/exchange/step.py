@@ -24,6 +24,7 @@ from swgpar.design.sections import GearName
 from swgpar.exchange.outlines import Edge, gear_outline
 from swgpar.geometry.arrays import Floats
 from swgpar.geometry.cams import cam_outlines
+from swgpar.geometry.cup_wall import CupWall
 from swgpar.geometry.disc_surface import TwoDiscSurface
 from swgpar.meshing.gmsh_session import gmsh_model
 
@@ -194,7 +195,11 @@ def _wall_section(design: DriveDesign) -> list[Edge]:
         for turn in wall.turns
     )
     path += outer
-    path += [((wall.edge, z), None) for z in wall.faces[::-1]]
+    faces = (wall.plate.inner, wall.plate.outer)  # the far one, and that towards the teeth
+    of_outer, of_inner = faces[::-1] if wall.outwards else faces
+    path += [_from_plate(wall, end, middle) for _, end, middle in of_outer.pieces()]
+    path.append(_from_plate(wall, of_inner.points[-1], None))
+    path += [_from_plate(wall, start, middle) for start, _, middle in of_inner.pieces()[::-1]]
     # the inner line is followed back to the wall
     ends = [(float(wall.inner.points[-1, 1]), center[1]), *(end for end, _ in inner)]
     path.append((ends[-1], None))
@@ -210,6 +215,16 @@ def _wall_section(design: DriveDesign) -> list[Edge]:
             edges.append(Edge(np.array([place, end]), middle and np.array(middle)))
             place = end
     return edges
+
+
+def _from_plate(wall: CupWall, end: Floats, middle: Floats | None) -> OutlineStep:
+    """A way and a height on closed end or flange as r and z, also those of a center."""
+
+    def placed(point: Floats) -> tuple[float, float]:
+        r, z = wall.off_plate(*point).tolist()
+        return r, z
+
+    return placed(end), middle if middle is None else placed(middle)
 
 
 def _from_back(back: float, end: Floats, middle: Floats | None) -> OutlineStep:

@@ -7,128 +7,40 @@ bore or outwards as a flange. All lines are straight pieces, arcs and quarters o
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from swgpar.geometry.arrays import Floats
-
-SAME = 1e-7
-"""mm, length up to which pieces are left out."""
+from swgpar.geometry.paired_lines import (
+    SAME,
+    PairedLines,
+    WallPoint,
+    ended,
+    rounded_lines,
+    thicknesses,
+)
 
 SHARP = 0.25
 """Radius over the thickness up to which a corner outside has a station of its own."""
 
-BISECTIONS = 52
-"""Halvings of the wall's length: to round-off."""
-
-STRAIGHT = 1e-9
-"""rad, by which a line turns at most at a point where it counts as straight."""
+INSIDE = 1e-6
+"""Share of its thickness by which a point may lie outside of closed end or flange."""
 
 
-class WallPoint(NamedTuple):
-    """Corners of both surfaces: distances from the back of the teeth, radii, and the radii that
-    round them; mm."""
+class EndPoint(NamedTuple):
+    """Corners of both faces of closed end or flange: radii, heights over the plane of the far face
+    beside the fillet towards the teeth, and the radii that round them; mm."""
 
-    distance: float
     radius: float
-    outer_distance: float
-    outer_radius: float
+    height: float
+    near_radius: float
+    near_height: float
     rounding: float
-    outer_rounding: float
-
-    @property
-    def across(self) -> Floats:
-        """Way (2,) mm from the corner inside to that outside: along the axis, and out from it."""
-        return np.array(
-            [self.outer_distance - self.distance, self.outer_radius - self.radius], dtype=float
-        )
-
-
-class Arc(NamedTuple):
-    """A rounded corner. start, end, center : (2,) distance and radius, mm"""
-
-    start: Floats
-    end: Floats
-    center: Floats
-
-
-class RoundedLine:
-    """Radius over the distance from the back of the teeth: a polygon with rounded corners.
-
-    points : (n, 2) distance, which increases, and radius, mm;  rounding : (n,) mm, 0 at both ends
-    """
-
-    def __init__(self, points: Floats, rounding: Floats) -> None:
-        self.points, self.rounding = points, rounding
-        sides = np.diff(points, axis=0)
-        self._along = sides / np.linalg.norm(sides, axis=1)[:, None]
-
-    def turning(self) -> Floats:
-        """Angles (n - 2,) rad by which the line turns at inner points, positive outwards."""
-        a, b = self._along[:-1].T, self._along[1:].T
-        angle = np.arctan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])
-        return np.where(np.abs(angle) < STRAIGHT, 0.0, angle)
-
-    def largest_rounding(self) -> Floats:
-        """Radii (n - 2,) mm of arcs that take half of the shorter side; inf where straight."""
-        half = 0.5 * np.linalg.norm(np.diff(self.points, axis=0), axis=1)
-        with np.errstate(divide="ignore"):
-            return np.minimum(half[:-1], half[1:]) / np.tan(0.5 * np.abs(self.turning()))
-
-    def _arc(self, k: int) -> Arc | None:
-        """The arc at point k, None where the line is straight or not rounded."""
-        radius, turning = self.rounding[k], self.turning()[k - 1]
-        if radius == 0.0 or turning == 0.0:
-            return None
-        before, after = self._along[k - 1 : k + 1]
-        reach = radius * np.tan(0.5 * abs(turning))
-        start = self.points[k] - reach * before
-        normal = np.sign(turning) * np.array([-before[1], before[0]])
-        return Arc(start, self.points[k] + reach * after, start + radius * normal)
-
-    def arcs(self) -> list[Arc]:
-        """The rounded corners."""
-        corners = (self._arc(k) for k in range(1, len(self.points) - 1))
-        return [arc for arc in corners if arc is not None]
-
-    def pieces(self) -> list[tuple[Floats, Floats, Floats | None]]:
-        """Start, end and centre (2,) of arcs and, without a centre, straight pieces in order."""
-        pieces: list[tuple[Floats, Floats, Floats | None]] = []
-        at = self.points[0]
-        for k, turning in enumerate(self.turning(), 1):
-            arc = self._arc(k)
-            if turning != 0.0:
-                pieces.append((at, self.points[k] if arc is None else arc.start, None))
-                at = self.points[k] if arc is None else arc.end
-            if arc is not None:
-                pieces.append((arc.start, arc.end, arc.center))
-        pieces.append((at, self.points[-1], None))
-        return [piece for piece in pieces if piece[1][0] - piece[0][0] > SAME]
-
-    def corners(self) -> Floats:
-        """Distances (n,) mm of the points at which the line turns."""
-        return self.points[1:-1, 0][self.turning() != 0.0]
-
-    @property
-    def straight(self) -> float:
-        """Distance (mm) as far as which the line keeps its first radius."""
-        if self.points[1, 1] != self.points[0, 1]:
-            return 0.0
-        arcs = [arc.start[0] for arc in self.arcs()]
-        return float(min([*arcs, *self.corners(), self.points[-1, 0]]))
-
-    def radius(self, distance: Floats) -> Floats:
-        """Radii (n,) mm at distances (n,) mm."""
-        r = np.interp(distance, *self.points.T)
-        for start, end, center in self.arcs():
-            on = (distance > start[0]) & (distance < end[0])
-            side = np.sign(start[1] - center[1])
-            arm = np.hypot(*(start - center))
-            r[on] = center[1] + side * np.sqrt(arm**2 - (distance[on] - center[0]) ** 2)
-        return r
+    near_rounding: float
 
 
 @dataclass(frozen=True)
@@ -166,21 +78,20 @@ class Turn:
 
 
 @dataclass(frozen=True)
-class CupWall:
-    """The section of the wall.
+class CupWall(PairedLines):
+    """The section of the wall. Its lines run from the back of the teeth to the fillet.
 
-    inner, outer : lines over the distance from the back of the teeth, as far as the fillet, with
-        as many points; places of the wall are counted by the distance on the inner line
-    back, end : mm, z of the back of the teeth and of the far face of the closed end or flange
+    back, end : mm, z of the back of the teeth, and of the far face of closed end or flange beside
+    the fillet
     fillet : mm, radius between wall and end on the outer side (closed end) or inner side (flange)
     inside : mm, radius of the fillet in the corner on the other side; None: a quarter of an ellipse
     around the centre of `fillet`
-    end_thickness : mm, of the closed end or flange;  edge : mm, radius of its bore or rim
+    end_thickness : mm, of closed end or flange beside the fillet
+    edge : mm, radius of its bore or rim
     outwards : whether the wall ends in a flange
+    end_contour : corners of closed end or flange between fillet and edge; none where it is flat
     """
 
-    inner: RoundedLine
-    outer: RoundedLine
     back: float
     end: float
     fillet: float
@@ -188,52 +99,7 @@ class CupWall:
     end_thickness: float
     edge: float
     outwards: bool
-
-    @property
-    def length(self) -> float:
-        """Length (mm) of the wall as far as the fillet."""
-        return float(self.inner.points[-1, 0])
-
-    @property
-    def thickness(self) -> float:
-        """Thickness (mm) of the wall where the fillet begins."""
-        return float(self.outer.points[-1, 1] - self.inner.points[-1, 1])
-
-    def outer_distance(self, s: Floats) -> Floats:
-        """Distances (n,) mm on the outer line of places s (n,) mm of the wall: points of both lines
-        belong together, and shares of the way between them."""
-        return np.interp(s, self.inner.points[:, 0], self.outer.points[:, 0])
-
-    def places(self, r: Floats, s: Floats) -> Floats:
-        """Places (n,) mm of the wall for points at radii r and distances s (n,) mm in it."""
-        if np.array_equal(self.inner.points[:, 0], self.outer.points[:, 0]):
-            return np.clip(s, 0.0, self.length)
-        low, high = np.zeros_like(s), np.full_like(s, self.length)
-        for _ in range(BISECTIONS):
-            place = 0.5 * (low + high)
-            outer = self.outer_distance(place)
-            inside, outside = self.inner.radius(place), self.outer.radius(outer)
-            # which side of the line between both surfaces the point is on
-            beyond = (s - place) * (outside - inside) - (r - inside) * (outer - place) > 0.0
-            low, high = np.where(beyond, place, low), np.where(beyond, high, place)
-        return 0.5 * (low + high)
-
-    @property
-    def _arcs(self) -> tuple[Floats, Floats]:
-        """Places (n,) mm of the points and lengths (n,) mm along the middle of the wall."""
-        middle = 0.5 * (self.inner.points + self.outer.points)
-        steps = np.linalg.norm(np.diff(middle, axis=0), axis=1)
-        return self.inner.points[:, 0], np.append(0.0, np.cumsum(steps))
-
-    def along(self, s: Floats) -> Floats:
-        """Lengths (n,) mm along the middle of the wall as far as places s (n,) mm."""
-        return np.interp(s, *self._arcs)
-
-    def at_length(self, length: Floats) -> Floats:
-        """Places (n,) mm at lengths (n,) mm along the middle of the wall."""
-        if not (self.inner.corners().size or self.outer.corners().size):
-            return length
-        return np.interp(length, *self._arcs[::-1])
+    end_contour: tuple[EndPoint, ...] = ()
 
     @property
     def center(self) -> tuple[float, float]:
@@ -280,30 +146,84 @@ class CupWall:
 
     @property
     def faces(self) -> tuple[float, float]:
-        """z (mm) of the closed end or flange on the inner and on the outer line."""
+        """z (mm) of closed end or flange on the inner and on the outer line, beside the fillet."""
         near = self.end - self.end_thickness
         return (self.end, near) if self.outwards else (near, self.end)
 
-    def stations(self, usual: Floats, first: float) -> Floats:
-        """Places (n,) mm of stations, among them the corners and the ends of their arcs.
+    @property
+    def _side(self) -> float:
+        """Way of closed end or flange along r."""
+        return 1.0 if self.outwards else -1.0
 
-        usual : (m,) mm, from 0 to `length`;  first : mm, as far as which they stay
-        """
-        places = self.inner.points[:, 0], self.outer.points[:, 0]
-        corners = np.union1d(self.inner.corners(), np.interp(self.outer.corners(), *places[::-1]))
-        inner, outer = (
-            np.array([point[0] for arc in line.arcs() for point in (arc.start, arc.end)])
-            for line in (self.inner, self.outer)
-        )
-        ends = np.append(inner, np.interp(outer, *places[::-1]))
-        keep = np.concatenate([usual[usual <= first], usual[-1:], corners])
-        stations = usual
-        # all of them: between two that are close the wall may change its thickness
-        for at in corners:
-            stations = with_station(stations, at, keep, room=0.0)
-        for at in ends:
-            stations = with_station(stations, at, keep)
-        return stations
+    def on_plate(self, radius: Floats, z: Floats) -> tuple[Floats, Floats]:
+        """Way (mm) from the fillet towards the edge, and height (mm) above the plane of the far
+        face, towards the teeth, of points of closed end or flange."""
+        return self._side * (radius - self.center[0]), self.end - z
+
+    def off_plate(self, way: Floats, height: Floats) -> Floats:
+        """Points (n, 2) r and z, mm, at ways and heights (n,) mm; see `on_plate`."""
+        return np.stack((self.center[0] + self._side * way, self.end - height), axis=-1)
+
+    @cached_property
+    def plate_points(self) -> list[WallPoint]:
+        """Corners of closed end or flange from the fillet to its edge, by ways and heights."""
+        begin, side = self.center[0], self._side
+        width = abs(self.edge - begin)
+        points = [WallPoint(0.0, 0.0, 0.0, self.end_thickness, 0.0, 0.0)]
+        for k, p in enumerate(self.end_contour):
+            way, beside = side * (p.radius - begin), side * (p.near_radius - begin)
+            if k or abs(way) > SAME:  # the first one is known
+                rounding = p.rounding, p.near_rounding
+                points.append(WallPoint(way, p.height, beside, p.near_height, *rounding))
+        return ended(points, width)
+
+    @cached_property
+    def plate(self) -> PairedLines:
+        """Closed end or flange: heights of the far face (inner line) and of that towards the teeth
+        over the way from the fillet."""
+        return PairedLines(*rounded_lines(self.plate_points))
+
+    @cached_property
+    def plate_scale(self) -> tuple[Floats, Floats]:
+        """Ways (n,) mm of the corners of closed end or flange, and lengths (n,) mm as far as there
+        along its middle in proportion to the length over which bending decays, which goes with the
+        root of the thickness; where that is `end_thickness` they are true lengths."""
+        points = self.plate.inner.points, self.plate.outer.points
+        middle = 0.5 * (points[0] + points[1])
+        thickness = np.array(thicknesses(self.plate_points))
+        mean = 0.5 * (thickness[:-1] + thickness[1:])
+        steps = np.linalg.norm(np.diff(middle, axis=0), axis=1) * np.sqrt(self.end_thickness / mean)
+        return points[0][:, 0], np.append(0.0, np.cumsum(steps))
+
+    def faces_at(self, radius: float) -> tuple[float, float]:
+        """z (mm) of the near and of the far face of closed end or flange at a radius, mm; beside it
+        those at its ends."""
+        near, far = self._heights_at(radius)
+        return self.end - near, self.end - far
+
+    def thickness_at(self, radius: float) -> float:
+        """Thickness (mm) of closed end or flange along the axis at a radius, mm."""
+        near, far = self._heights_at(radius)
+        return near - far
+
+    def _heights_at(self, radius: float) -> tuple[float, float]:
+        """Heights (mm) of the near and of the far face of closed end or flange at a radius, mm."""
+        way, _ = self.on_plate(np.array([radius]), np.zeros(1))
+        at = np.clip(way, 0.0, self.plate.length)
+        near, far = (line.radius(at)[0] for line in (self.plate.outer, self.plate.inner))
+        return float(near), float(far)
+
+    @property
+    def farthest(self) -> float:
+        """Largest z (mm) of closed end or flange."""
+        return self.end - min(point.radius for point in self.plate_points)
+
+    def is_on_plate(self, radius: Floats, z: Floats) -> NDArray[np.bool_]:
+        """Whether points (n,), mm, of the section belong to closed end or flange."""
+        way, height = self.on_plate(radius, z)
+        _, depth = self.plate.parameters(height, way)
+        within = np.abs(depth - 0.5) <= 0.5 + INSIDE
+        return (way >= 0.0) & ((z > self.center[1]) | within)
 
 
 def decay_length(radius: float, thickness: float) -> float:
@@ -314,49 +234,3 @@ def decay_length(radius: float, thickness: float) -> float:
 def end_reach(fillet: float, inside: float | None, end_thickness: float) -> float:
     """Distance (mm) from the far face of closed end or flange at which the turn begins."""
     return fillet if inside is None else max(fillet, end_thickness + inside)
-
-
-def with_station(stations: Floats, at: float, keep: Floats, room: float = 0.25) -> Floats:
-    """The stations (n,) with one at `at`, unless a kept one is close; another close one moves.
-
-    keep : (m,) stations that do not move;  room : share of the distance to the next one within
-    which a station is close to a kept one
-    """
-    near = int(np.abs(stations - at).argmin())
-    gap = np.diff(stations)[min(near, len(stations) - 2)]
-    fixed = bool(np.isclose(stations[near], keep, rtol=0.0, atol=1e-9).any())
-    if abs(stations[near] - at) >= (max(room * gap, 1e-9) if fixed else 0.5 * gap):
-        return np.insert(stations, int(np.searchsorted(stations, at)), at)
-    moved = stations.copy()
-    if not fixed:
-        moved[near] = at
-    return moved
-
-
-def thicknesses(points: Sequence[WallPoint]) -> list[float]:
-    """Thicknesses (mm) of the wall at points: across the axis where both corners are at the same
-    distance, else across the thinner of the pieces beside it."""
-    found = []
-    for k, point in enumerate(points):
-        along, across = point.across
-        if along == 0.0:
-            found.append(float(across))
-            continue
-        beside = (*points[:k][-1:], *points[k + 1 : k + 2])
-        sides = [
-            np.array([other.distance - point.distance, other.radius - point.radius])
-            for other in beside
-        ]
-        found.append(
-            min(abs(float(x * across - y * along)) / float(np.hypot(x, y)) for x, y in sides)
-        )
-    return found
-
-
-def rounded_lines(points: Sequence[WallPoint]) -> tuple[RoundedLine, RoundedLine]:
-    """Inner and outer line through points."""
-    s, r, outer_s, outer_r, rounding, outer_rounding = np.array(points).T
-    return (
-        RoundedLine(np.column_stack([s, r]), rounding),
-        RoundedLine(np.column_stack([outer_s, outer_r]), outer_rounding),
-    )

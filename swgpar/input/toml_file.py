@@ -17,7 +17,7 @@ from swgpar.input.refusals import sentence
 
 SectionType = TypeVar("SectionType", bound=Section)
 
-FILE_KEYS = ("file", "inner_file", "outer_file")
+FILE_KEYS = ("file", "inner_file", "outer_file", "end_far_file", "end_near_file")
 """Keys whose values are paths relative to the folder of the file that has them."""
 
 

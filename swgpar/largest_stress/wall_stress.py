@@ -316,20 +316,22 @@ def _on_slices(
 def _is_held(spot: Spot, middle: Spot, ring: WallRing) -> bool:
     """Whether a slice around `middle` resolves another stress too."""
     return spot.sector == middle.sector and bool(
-        np.linalg.norm(spot.section - middle.section) <= HELD * _thickness(ring.problem.model)
+        np.linalg.norm(spot.section - middle.section)
+        <= HELD * _thickness(ring.problem.model, middle)
     )
 
 
-def _thickness(model: DriveModel) -> float:
-    """Thickness (mm) of the wall at its fillet, or of closed end or flange if that is more."""
+def _thickness(model: DriveModel, spot: Spot) -> float:
+    """Thickness (mm) of the wall at its fillet, or of closed end or flange at a spot if that is
+    more; beside the fillet where the spot is not there."""
     wall = model.geometry.cup.wall
-    return max(wall.thickness, wall.end_thickness)
+    return max(wall.thickness, wall.thickness_at(float(spot.section[0])))
 
 
 def _read(ring: WallRing, counts: WallCounts, middle: Spot) -> dict[str, Spot]:
     """Largest stresses in the middle of a slice around a stress of a ring; collective."""
     model = ring.problem.model
-    thickness, pitch = _thickness(model), 2.0 * np.pi / ring.grid.mesh.n_sectors
+    thickness, pitch = _thickness(model, middle), 2.0 * np.pi / ring.grid.mesh.n_sectors
     beside = int(np.ceil(MARGIN * thickness / (pitch * middle.section[0])))
     count = min(max(1 + 2 * beside, FEWEST), MOST)
     mesh, distance = _slice_mesh(ring, counts, middle, REACH * thickness)

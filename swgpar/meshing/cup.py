@@ -103,28 +103,27 @@ def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
     The sizes of the cup are those of a checked design (`swgpar.checks.cup_checks`).
     """
     wall, back_fillet = cup.wall, cup.back_fillet
-    r_center, _ = wall.center
     length = float(wall.along(np.array([wall.length]))[0])
     elements = int(np.clip(np.ceil(length / (SHORTEST * wall.thickness)), 1, recipe.cylinder))
     recipe = recipe.model_copy(update={"cylinder": elements})
     decay = decay_length(float(wall.inner.points[0, 1]), wall.thickness)
     usual = wall.at_length(cylinder_stations(length, recipe, decay, back_fillet, layers))
-    s = wall.stations(usual, back_fillet * (1.0 + 1e-9))
+    s = wall.stations(usual, usual[usual <= back_fillet * (1.0 + 1e-9)])
     angle = wall.turn_angles(recipe.fillet)[1:]
     share = symmetric_steps(recipe.closed_end, recipe.end_ratio)
     if cup.clamping_radius is not None:  # a clamped ring is not bent: one element
-        free = (cup.clamping_radius - r_center) / (wall.edge - r_center)
+        free = cup.plate_length_at(np.array(cup.clamping_radius)) / cup.plate_length
         share = np.append(share * free, 1.0) if free > 0.0 else np.array([0.0, 1.0])
     elif cup.has_washers:
         share = _shares_with_washers(cup, recipe)
-    return section_lines(cup, s, angle, r_center + (wall.edge - r_center) * share[1:])
+    ways = cup.plate_stations(cup.plate_length * share)[1:]
+    return section_lines(cup, s, angle, ways)
 
 
 def _shares_with_washers(cup: CupGeometry, recipe: CupRecipe) -> Floats:
     """Stations (n,) on closed end or flange, 0 at the fillet and 1 at its edge, with those at both
     edges of the washers."""
-    begin, edge = cup.wall.center[0], cup.wall.edge
-    inner, outer = sorted((np.array(cup.attached_ring) - begin) / (edge - begin))
+    inner, outer = sorted(cup.plate_length_at(np.array(cup.attached_ring)) / cup.plate_length)
     found = [0.0]
     for end, least in ((inner, 1), (outer, ACROSS_WASHERS), (1.0, 1)):
         length = end - found[-1]
@@ -135,17 +134,21 @@ def _shares_with_washers(cup: CupGeometry, recipe: CupRecipe) -> Floats:
     return np.array(found)
 
 
-def section_lines(cup: CupGeometry, s: Floats, angle: Floats, r: Floats) -> Meridian:
+def section_lines(cup: CupGeometry, s: Floats, angle: Floats, ways: Floats) -> Meridian:
     """Stations of the wall's section.
 
     s : (n,) mm, places from the back of the teeth to the fillet
     angle : (m,) rad along the fillet, above 0
-    r : (k,) mm, radii on closed end or flange, without that of the fillet
+    ways : (k,) mm, from the fillet along closed end or flange, above 0
     """
     wall, back_fillet = cup.wall, cup.back_fillet
     side = -1.0 if wall.outwards else 1.0
-    lines = []
-    for line, turn, face in zip((wall.inner, wall.outer), wall.turns, wall.faces, strict=True):
+    plate, lines = wall.plate, []
+    beside = plate.outer_distance(ways)
+    far = wall.off_plate(ways, plate.inner.radius(ways))
+    near = wall.off_plate(beside, plate.outer.radius(beside))
+    faces = (far, near) if wall.outwards else (near, far)
+    for line, turn, face in zip((wall.inner, wall.outer), wall.turns, faces, strict=True):
         distance = s if line is wall.inner else wall.outer_distance(s)
         radius = line.radius(distance)
         cylinder = np.stack((radius, wall.back + distance), axis=-1)
@@ -155,11 +158,7 @@ def section_lines(cup: CupGeometry, s: Floats, angle: Floats, r: Floats) -> Meri
             cylinder[on] = np.stack((radius[on] + up, wall.back + along), axis=-1)
         arms = np.stack((side * np.cos(angle), np.sin(angle)), axis=-1)
         arms *= turn.distance(angle)[:, None]
-        lines.append(
-            np.concatenate(
-                (cylinder, wall.center + arms, np.stack((r, np.full_like(r, face)), axis=-1))
-            )
-        )
+        lines.append(np.concatenate((cylinder, wall.center + arms, face)))
     return Meridian(lines[0], lines[1], len(s) - 1, len(s) - 1 + len(angle))
 
 

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
+import numpy as np
+
+from swgpar.geometry.arrays import Floats
 from swgpar.geometry.cup_wall import CupWall, decay_length
 from swgpar.profiles import ToothProfile
 
@@ -50,6 +54,45 @@ class CupGeometry:
     def has_washers(self) -> bool:
         """Whether closed end or flange is bolted."""
         return self.attached_ring is not None and self.clamping_radius is None
+
+    @property
+    def plate_length(self) -> float:
+        """Length (mm) of closed end or flange from the fillet to the edge, see `CupWall`."""
+        return float(self.wall.plate_scale[1][-1])
+
+    def plate_length_at(self, radius: Floats) -> Floats:
+        """Lengths (n,) mm from the fillet to radii (n,) mm of closed end or flange."""
+        way, _ = self.wall.on_plate(radius, np.zeros_like(radius))
+        lengths: Floats = np.interp(way, *self.wall.plate_scale)
+        return lengths
+
+    def plate_stations(self, usual: Floats) -> Floats:
+        """Ways (n,) mm from the fillet of stations on closed end or flange, among them its corners.
+        The edges of what is attached stay.
+
+        usual : (m,) mm, lengths from 0 to `plate_length`
+        """
+        plate = self.wall.plate
+        if not any(np.ptp(line.points[:, 1]) for line in (plate.inner, plate.outer)):
+            return usual  # flat: to the last bit those without a contour
+        ways = np.interp(usual, *self.wall.plate_scale[::-1])
+        return plate.stations(ways, np.append(ways[:1], self.ring_ways))
+
+    @property
+    def ring_ways(self) -> Floats:
+        """Ways (n,) mm from the fillet to the edges of what is attached, but for those at the edge
+        of closed end or flange."""
+        ring = np.array(self.attached_ring or ())
+        ways, _ = self.wall.on_plate(ring, np.zeros_like(ring))
+        return ways[ways < self.wall.plate.length]
+
+    @cached_property
+    def beside_ring(self) -> tuple[float, float] | None:
+        """Thicknesses (mm) of closed end or flange at both edges of what is attached."""
+        if self.attached_ring is None:
+            return None
+        low, high = self.attached_ring
+        return self.wall.thickness_at(low), self.wall.thickness_at(high)
 
     @property
     def continues_root(self) -> bool:

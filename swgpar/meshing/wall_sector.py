@@ -9,12 +9,15 @@ towards both surfaces.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import CubicSpline
 
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.cup_wall import CupWall, decay_length
+from swgpar.geometry.paired_lines import thicknesses
 from swgpar.meshing.cup import Meridian, section_lines
 from swgpar.meshing.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.quality import element_quality
@@ -36,6 +39,15 @@ AROUND = 100
 """Fewest elements around the whole wall. Twice as many change the stress in the fillet of a silk
 hat by 0.15 % (docs/verification/largest_stress.md)."""
 
+
+CLOSE = 0.25
+"""Share of an element within which stations on closed end or flange become one."""
+
+SAMPLES = 101
+"""Places between two fixed stations at which the length of the elements is known."""
+
+ROUND_OFF = 1e-9
+"""Elements along an arc that are none."""
 
 PER_WASHER = 3
 """Fewest elements around on the width of a washer."""
@@ -76,22 +88,58 @@ def graded_line(length: float, first: float, last: float, longest: float) -> Flo
     return np.array([*ends[0], *ends[1][::-1]])
 
 
-def flat_radii(cup: CupGeometry, counts: WallCounts, first: float) -> Floats:
-    """Radii (n,) mm of the stations on closed end or flange, without that of the fillet.
+def plate_ways(cup: CupGeometry, counts: WallCounts, first: float) -> Floats:
+    """Ways (n,) mm from the fillet of the stations on closed end or flange, without that at 0.
 
     first : mm, length of the element at the fillet and at the edges of what is attached
     """
     wall, (begin, _) = cup.wall, cup.wall.center
-    width, longest = abs(wall.edge - begin), counts.limit(begin, wall.end_thickness)
+    thinnest = min(thicknesses(wall.plate_points))
+    width, longest = cup.plate_length, counts.limit(begin, thinnest)
     if cup.has_washers:
-        along = _with_washers(cup, first, longest)
-        return begin + np.sign(wall.edge - begin) * along[along > 0.0]
-    free = width if cup.clamping_radius is None else abs(cup.clamping_radius - begin)
-    last = 0.5 * wall.end_thickness if cup.clamping_radius is None else first
+        return refined(cup, _with_washers(cup, first, longest), counts)[1:]
+    free = width
+    if cup.clamping_radius is not None:
+        free = float(cup.plate_length_at(np.array(cup.clamping_radius)))
+    last = 0.5 * wall.plate.thickness if cup.clamping_radius is None else first
     along = graded_line(free, first, last, longest) if free > first else np.array([0.0, free])
     if free < width:
         along = np.append(along, free + graded_line(width - free, first, longest, longest)[1:])
-    return begin + np.sign(wall.edge - begin) * along[along > 0.0]
+    return refined(cup, along, counts)[1:]
+
+
+def refined(cup: CupGeometry, usual: Floats, counts: WallCounts) -> Floats:
+    """Ways (n,) mm from the fillet of stations on closed end or flange. Arcs of its contour have as
+    many elements, for their angle, as the fillet; the others grow away from them.
+
+    usual : (m,) mm, lengths from 0 to `plate_length`, of stations without a contour
+    """
+    plate, usual = cup.wall.plate, cup.plate_stations(usual)
+    corners, arcs = plate.corners(), plate.arcs()
+    if not corners.size:
+        return usual
+    begin, end, angle = arcs.T
+    step = (end - begin) / np.ceil(counts.fillet * angle / (0.5 * np.pi) - ROUND_OFF)
+    marks = np.unique(np.concatenate([usual[[0, -1]], corners, cup.ring_ways]))
+    for at, near in zip(arcs[:, :2].ravel(), np.repeat(step, 2), strict=True):
+        if np.abs(marks - at).min() > CLOSE * near:
+            marks = np.sort(np.append(marks, at))
+    stations = [marks[0]]
+    for low, high in pairwise(marks):
+        way = np.linspace(low, high, SAMPLES)
+        beyond = np.maximum(np.maximum(begin - way[:, None], way[:, None] - end), 0.0)
+        size = np.column_stack([_spacing(usual, way), step + (GROWTH - 1.0) * beyond]).min(axis=1)
+        number = cumulative_trapezoid(1.0 / size, way, initial=0.0)
+        count = max(1, int(np.ceil(number[-1] - CLOSE)))
+        stations += np.interp(np.arange(1, count + 1) * number[-1] / count, number, way).tolist()
+    return np.array(stations)
+
+
+def _spacing(stations: Floats, at: Floats) -> Floats:
+    """Lengths (n,) mm of the elements between stations in which places (n,) mm are."""
+    k = np.clip(np.searchsorted(stations, at, side="right") - 1, 0, len(stations) - 2)
+    lengths: Floats = np.diff(stations)[k]
+    return lengths
 
 
 def _with_washers(cup: CupGeometry, first: float, longest: float) -> Floats:
@@ -99,15 +147,14 @@ def _with_washers(cup: CupGeometry, first: float, longest: float) -> Floats:
 
     first : mm, length of elements at fillet and washers;  longest : mm, of any
     """
-    wall, (begin, _) = cup.wall, cup.wall.center
-    near, far = sorted(abs(np.array(cup.attached_ring) - begin))
-    width = abs(wall.edge - begin)
+    wall, width = cup.wall, cup.plate_length
+    near, far = sorted(cup.plate_length_at(np.array(cup.attached_ring)))
     across = 0.5 * (far - near)
     along = np.zeros(1)
     for end, last, limit in (
         (near, first, longest),
         (far, first, min(longest, across)),
-        (width, 0.5 * wall.end_thickness, longest),
+        (width, 0.5 * wall.plate.thickness, longest),
     ):
         length = end - along[-1]
         if length > 0.1 * first:  # washers may begin at the fillet, or end at the edge
@@ -139,7 +186,10 @@ def graded_section(geometry: DriveGeometry, counts: WallCounts, start: float) ->
     usual[0] = start
     angle = wall.turn_angles(counts.fillet)[1:]
     return section_lines(
-        geometry.cup, wall.stations(usual, start), angle, flat_radii(geometry.cup, counts, arc)
+        geometry.cup,
+        wall.stations(usual, usual[usual <= start]),
+        angle,
+        plate_ways(geometry.cup, counts, arc),
     )
 
 
@@ -150,23 +200,17 @@ def section_parameters(cup: CupGeometry, points: Floats) -> tuple[Floats, Floats
     r, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
     r_center, z_center = wall.center
     x, y = np.abs(r - r_center), np.maximum(z - z_center, 0.0)
-    s = wall.places(r, z - wall.back)
-    beside = wall.outer_distance(s)
-    inner, ahead = wall.inner.radius(s), beside - s
-    up = wall.outer.radius(beside) - inner
-    on_line = np.clip(z - wall.back, 0.0, wall.length) - s
-    depth = (on_line * ahead + (r - inner) * up) / (ahead**2 + up**2)
-    along = s.copy()
-    near, far = wall.faces
-    beyond = (r >= r_center) == wall.outwards
-    flat = beyond & (z > z_center)
-    depth[flat] = (z[flat] - near) / (far - near)
-    turn = (z > z_center) & ~beyond
+    along, depth = wall.parameters(r, z - wall.back)
+    flat = wall.is_on_plate(r, z)
+    way, height = wall.on_plate(r[flat], z[flat])
+    way, of_far = wall.plate.parameters(height, way)
+    depth[flat] = of_far if wall.outwards else 1.0 - of_far
+    along[flat] = wall.length + 0.5 * np.pi * wall.arm + way
+    turn = (z > z_center) & ~flat
     angle = np.arctan2(y[turn], x[turn])
     begin, end = (line.distance(angle) for line in wall.turns)
     depth[turn] = (np.hypot(x[turn], y[turn]) - begin) / (end - begin)
     along[turn] = wall.length + wall.arm * angle
-    along[flat] = wall.length + 0.5 * np.pi * wall.arm + x[flat]
     return along, depth
 
 

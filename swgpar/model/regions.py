@@ -152,25 +152,27 @@ def _region_of_the_cup(
 ) -> str:
     """Region of a node of the wall, closed end or flange. near : mm"""
     wall = cup.wall
-    on_end = BESIDE * wall.end_thickness
-    if _is_attached(cup, radius, on_end) and z > min(wall.faces) - near:
+    r_center, z_center = wall.center
+    beyond = radius - r_center if wall.outwards else r_center - radius
+    on_plate = z > min(wall.faces) - near or (
+        beyond > 0.0 and bool(wall.is_on_plate(np.array([radius]), np.array([z]))[0])
+    )
+    if on_plate and _is_attached(cup, radius):
         return ATTACHED
     if node in mesh.node_sets["bore"]:
         return "rim of the flange" if wall.outwards else "bore"
-    r_center, z_center = wall.center
-    beyond = radius - r_center if wall.outwards else r_center - radius
-    if beyond > on_end and z > min(wall.faces) - near:
+    if on_plate and beyond > BESIDE * wall.end_thickness:
         return "flange" if wall.outwards else "closed end"
     return FILLET if z > z_center - BESIDE * wall.thickness else CUP_WALL
 
 
-def _is_attached(cup: CupGeometry, radius: float, beside: float) -> bool:
+def _is_attached(cup: CupGeometry, radius: float) -> bool:
     """Whether points at a radius (mm) of closed end or flange are clamped, or lie under bolts or
-    between them, or within `beside` (mm) of that ring."""
-    if cup.attached_ring is None:
+    between them, or beside that ring."""
+    if cup.attached_ring is None or cup.beside_ring is None:
         return False
-    low, high = cup.attached_ring
-    return low - beside <= radius <= high + beside
+    (low, high), (inside, outside) = cup.attached_ring, cup.beside_ring
+    return low - BESIDE * inside <= radius <= high + BESIDE * outside
 
 
 def warning_of(geometry: DriveGeometry, region: str, point: np.ndarray) -> str:

@@ -159,10 +159,10 @@ def draw_cup_section(
     """
     limit, wall, bodies = _limit(grids), geometry.cup.wall, deformed(grids, 1.0)
     half = 0.5 * geometry.face_width
-    length, outer = half + wall.end, geometry.largest_radius
+    length, outer = half + wall.farthest, geometry.largest_radius
     low = max(min(wall.edge, geometry.inner_radius) - 0.05 * outer, 0.0)
     height = min(8.0, max(3.0, 9.0 * (outer - low) / (2.0 * length)))
-    box = (-1.6 * half, half + 1.05 * (wall.end - wall.back), low, 1.01 * outer)
+    box = (-1.6 * half, half + 1.05 * (wall.farthest - wall.back), low, 1.01 * outer)
     figure, panels = _figure(2, (9.5, 1.4 + height))
     for axes, name, turn in zip(panels, ("major axis", "minor axis"), (0.0, np.pi / lobes)):
         angle = wg_angle + turn

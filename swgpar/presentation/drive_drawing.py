@@ -17,7 +17,7 @@ import numpy as np
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS, GearName
 from swgpar.geometry.cams import cam_outlines
-from swgpar.geometry.cup_wall import thicknesses
+from swgpar.geometry.paired_lines import thicknesses
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.recipe import CupRecipe
@@ -238,11 +238,13 @@ def _meridian(design: DriveDesign) -> Sheet:
         design.geometry.gears["ring_gear"].outer_radius,
     )
     back = 0.5 * width
-    end, length = back + cup.length, width + cup.length
+    end, length = back + cup.length, width + wall.farthest - back
     top = max(outer, wall.edge)
     scale = min((SIZE - 150.0) / length, 420.0 / top)
     sheet = Sheet(scale, 60.0 + scale * back, 55.0 + scale * top, 100.0 + scale * top)
-    recipe = CupRecipe(cylinder=48 if cup.contour else 1, fillet=24, closed_end=1)
+    recipe = CupRecipe(
+        cylinder=48 if cup.contour else 1, fillet=24, closed_end=48 if cup.end_contour else 1
+    )
     lines = meridian(design.geometry.cup, recipe)
     tip, bore = spline.r_tip_circle, design.inner_radius
     tooth = [[tip, back], [tip, -back], [bore, -back]]
@@ -256,11 +258,17 @@ def _meridian(design: DriveDesign) -> Sheet:
         sheet.outline([np.array([[-reach, r1], [reach, r1], [reach, r2], [-reach, r2]])], name)
     body = np.concatenate([lines.inner, lines.outer[::-1], tooth])
     sheet.outline([body[:, ::-1]], "flexible_spline")
-    sheet.axis((-0.6 * width, 0.0), (end + 0.1 * length, 0.0))
+    sheet.axis((-0.6 * width, 0.0), (wall.farthest + 0.1 * length, 0.0))
     sheet.across(-back, back, outer, 22.0, f"{width:g}")
     sheet.across(back, end, lines.outer[0, 0], 44.0, f"{cup.length:g}")
     edge = "flange" if wall.outwards else "bore"
-    sheet.upright(0.0, wall.edge, end, sheet.at(end, 0.0)[0] + 14.0, f"{edge} r {wall.edge:g}")
+    sheet.upright(
+        0.0,
+        wall.edge,
+        wall.faces_at(wall.edge)[1],
+        sheet.at(back + length - width, 0.0)[0] + 14.0,
+        f"{edge} r {wall.edge:g}",
+    )
     sheet.upright(0.0, bore, -back, 40.0, f"r {bore:.4g}", "start")
     if cup.attachment != "edge":
         _draw_attachment(sheet, design)
@@ -285,15 +293,16 @@ def _thicknesses(design: DriveDesign) -> str:
     sizes = design.cup_sizes
     along = thicknesses(sizes.points)
     wall = " / ".join(f"{thickness:.3g}" for thickness, _ in groupby(along))
-    if sizes.end_thickness == along[-1]:
+    end = " / ".join(f"{of:.3g}" for of, _ in groupby(thicknesses(sizes.wall.plate_points)))
+    if sizes.end_thickness == along[-1] and not sizes.section.end_contour:
         return wall
-    return f"{wall}, {'flange' if sizes.wall.outwards else 'end'} {sizes.end_thickness:.3g}"
+    return f"{wall}, {'flange' if sizes.wall.outwards else 'end'} {end}"
 
 
 def _draw_attachment(sheet: Sheet, design: DriveDesign) -> None:
     """Radius of the clamped ring, or the axis of a bolt with its circle."""
     cup, wall = design.cup, design.cup_sizes.wall
-    near, far = min(wall.faces), max(wall.faces)
+    near, far = wall.faces_at(cup.clamping_radius or 0.5 * cup.bolt_circle)
     x = sheet.at(near, 0.0)[0] - 14.0
     if cup.attachment == "clamped":
         text = f"clamped r {cup.clamping_radius:g}"

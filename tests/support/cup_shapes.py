@@ -25,6 +25,42 @@ CONTOUR: Changes = {
 }
 HAT: Changes = {"shape": "hat", "inner_radius": None, "flange_radius": 26.0, "end_thickness": 0.8}
 SHORT: Changes = {"length": 6.0}
+DIAPHRAGM: Changes = {
+    "end_thickness": 0.8,
+    "end_contour": [
+        {"radius": 16.0, "thickness": 0.4, "rounding": 3.0},
+        {"radius": 12.0, "thickness": 0.4, "rounding": 1.0},
+        {"radius": 10.0, "thickness": 1.6, "rounding": 1.0},
+    ],
+}
+"""A closed end that is thin between its fillet and a hub."""
+BOSS: Changes = {
+    "end_thickness": 0.5,
+    "end_contour": [
+        {"radius": 11.0, "thickness": 0.5},
+        {"radius": 8.0, "thickness": 3.9, "distance": 12.7, "rounding": 1.0},
+    ],
+}
+"""A hub that is thicker on both sides and reaches into the cup."""
+DISHED: Changes = {
+    "end_thickness": 0.5,
+    "end_contour": [
+        {"radius": 12.0, "distance": 12.0, "near_radius": 12.337, "near_distance": 11.5},
+        {"radius": 11.0, "distance": 9.5, "near_radius": 11.337, "near_distance": 9.0},
+    ],
+}
+"""A closed end with a steep cone between two rings."""
+RING: Changes = {
+    "shape": "hat",
+    "inner_radius": None,
+    "flange_radius": 26.0,
+    "end_thickness": 0.5,
+    "end_contour": [
+        {"radius": 21.5, "thickness": 0.5, "rounding": 0.6},
+        {"radius": 22.0, "thickness": 1.0, "rounding": 0.6},
+    ],
+}
+"""A flange with a step to the ring of its bolts."""
 
 ATTACHED = {
     "clamped": ("cup.attachment=clamped", "cup.clamping_radius=10"),
@@ -65,6 +101,10 @@ SHAPES: dict[str, Changes] = {
     "hat, contour": HAT | CONTOUR,
     "thick end": {"fillet_radius": 0.0, "inside_radius": 0.6, "end_thickness": 2.0},
     "rounded end": {"fillet_radius": 0.7, "inside_radius": 0.4, "end_thickness": 1.0},
+    "diaphragm": DIAPHRAGM,
+    "boss": BOSS,
+    "dished": DISHED,
+    "ring": RING,
     "sharp hat": HAT | {"fillet_radius": 0.0, "inside_radius": 0.5, "end_thickness": 1.2},
 }
 
@@ -103,27 +143,29 @@ def wall_volume(design: DriveDesign, n: int = 20001) -> float:
         return revolved(np.concatenate(_lines_with_two_radii(design, share, angle)))
     lines = []
     for line, thickness in ((wall.inner, 0.0), (wall.outer, wall.thickness)):
+        near = wall.outwards == bool(thickness)
         s = share * (cup.length - cup.fillet_radius)
         if wall.outwards:
             a, b = (
                 cup.fillet_radius - thickness,
                 cup.fillet_radius - (wall.end_thickness if thickness else 0.0),
             )
-            side, face = -1.0, cup.length - (wall.end_thickness if thickness else 0.0)
+            side = -1.0
         else:
             off = 0.0 if thickness else 1.0
             a, b = (
                 cup.fillet_radius - off * wall.thickness,
                 cup.fillet_radius - off * wall.end_thickness,
             )
-            side, face = 1.0, cup.length - off * wall.end_thickness
+            side = 1.0
         center = line.points[-1, 1] - side * a, cup.length - cup.fillet_radius
         fillet = np.column_stack(
             [center[0] + side * a * np.cos(angle), center[1] + b * np.sin(angle)]
         )
-        lines.append(
-            np.concatenate([np.column_stack([line.radius(s), s]), fillet, [[cup.edge, face]]])
-        )
+        plate = wall.plate.outer if near else wall.plate.inner
+        way = share * plate.points[-1, 0]
+        end = wall.off_plate(way, plate.radius(way)) - [0.0, wall.back]
+        lines.append(np.concatenate([np.column_stack([line.radius(s), s]), fillet, end]))
     return revolved(np.concatenate([lines[0], lines[1][::-1]]))
 
 
