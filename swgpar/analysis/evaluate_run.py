@@ -122,7 +122,7 @@ def evaluate_run(
                 sequence.kinematics,
                 design.ratcheting,
                 record.torque_points,
-                1e-3 * design.negligible_torque,
+                design.negligible_torque_Nm,
                 ended_early=ended_early,
             )
             if design.ratcheting

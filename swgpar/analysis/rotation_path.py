@@ -54,7 +54,7 @@ class RotationPath:
         self.tolerance, self.drop = tolerance, drop
         self._step = PART_OF_PITCH
         # N·m; below it torques are round-off of the forces that bend the spline
-        self._floor = 1e-3 * stepper.design.negligible_torque
+        self._floor = stepper.design.negligible_torque_Nm
 
     def follow(self, target: LoadState) -> None:
         """Go to `target`, or to where the torque has fallen; the stepper's iterations are those of
@@ -99,7 +99,7 @@ class RotationPath:
 
     def has_ended(self) -> bool:
         """Whether the torque has fallen from its peak by the drop."""
-        return self.drop is not None and has_fallen(self.drop, self.points)
+        return self.drop is not None and has_fallen(self.drop, self.points, self._floor)
 
     def _is_resolved(self, point: TorquePoint, step: float) -> bool:
         """Whether the steps so far, one of so many pitches to `point` the last, show the torque."""

@@ -262,7 +262,7 @@ class DriveRun:
             )
             for state in states[len(record.rows) :]:
                 fallen = design.ratcheting is not None and has_fallen(
-                    design.ratcheting.drop, record.torque_points
+                    design.ratcheting.drop, record.torque_points, design.negligible_torque_Nm
                 )
                 if fallen or self.ended_early:
                     break

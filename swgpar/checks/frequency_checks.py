@@ -21,7 +21,7 @@ def check_frequencies(design: DriveDesign) -> None:
     require(friction == 0.0, "contact.friction", friction, f"only 0 with {FREQUENCIES}")
     condensed = design.solver.condensed_sectors
     require(not condensed, "solver.condensed_sectors", condensed, f"only false with {FREQUENCIES}")
-    least = 1e-3 * design.negligible_torque
+    least = design.negligible_torque_Nm
     allowed = f"above {least:.3g} N·m with {FREQUENCIES}: without a load the teeth have play"
     require(design.load.torque > least, "load.torque", design.load.torque, allowed)
     for body, material in design.materials.items():

@@ -124,6 +124,11 @@ class DriveDesign(DriveSections):
         return negligible_torque(self.modulus_of("flexible_spline"), self.deflection, *sizes)
 
     @property
+    def negligible_torque_Nm(self) -> float:
+        """The same in N·m."""
+        return 1e-3 * self.negligible_torque
+
+    @property
     def speeds(self) -> tuple[float, float]:
         """Speeds (rad/s) of flexible spline and wave generator in space at `load.input_speed`."""
         spline, wave = self.kinematics.speeds_in_space

@@ -137,13 +137,16 @@ def peak(points: Sequence[TorquePoint]) -> int:
     return int(np.argmax([point.torque_Nm for point in points]))
 
 
-def has_fallen(drop: float, points: Sequence[TorquePoint]) -> bool:
-    """Whether the torque of the last point has fallen clearly below its peak. drop : share of the
-    peak"""
+def has_fallen(drop: float, points: Sequence[TorquePoint], least: float) -> bool:
+    """Whether the torque of the last point has fallen clearly below its peak.
+
+    drop : share of the peak
+    least : N·m, up to which a torque is none: in the backlash it rises and falls by round-off
+    """
     if not points:
         return False
     top = points[peak(points)].torque_Nm
-    return top > 0.0 and points[-1].torque_Nm < (1.0 - drop) * top
+    return top > least and points[-1].torque_Nm < (1.0 - drop) * top
 
 
 def what_gave_way(kinematics: Kinematics, points: Sequence[TorquePoint]) -> str:
@@ -168,10 +171,10 @@ def evaluate_ratcheting(
 ) -> RatchetingTorque:
     """The largest torque from the states of a run with [ratcheting].
 
-    least : N·m, below which a torque is none
+    least : N·m, up to which a torque is none
     ended_early : whether no equilibrium was found behind the last state
     """
-    top, fallen = peak(points), has_fallen(section.drop, points)
+    top, fallen = peak(points), has_fallen(section.drop, points, least)
     largest = points[top].torque_Nm
     error = overshoot([p.rotation_deg for p in points], [p.torque_Nm for p in points])
     error = max(error, section.tolerance * largest)

@@ -202,7 +202,7 @@ def stiffness_program(design: DriveDesign) -> StiffnessProgram:
         section,
         torque,
         section.rated_torque or torque,
-        1e-3 * design.negligible_torque,
+        design.negligible_torque_Nm,
         tuple(period * k / section.positions for k in range(section.positions)),
         uses_mirror=not section.loop and design.is_mirror_symmetric,
     )

@@ -260,7 +260,7 @@ def test_what_gives_way_is_where_the_rotation_goes(teeth: float, gave_way: str) 
     moved = [0.0, 0.5, 0.5, 0.5 + teeth, 0.5 + 2.0 * teeth]
     points = points_of([1.0, 2.5, 3.0, 2.9, 1.0], moved)
     drop = design.ratcheting.drop
-    assert not has_fallen(drop, points[:4]) and has_fallen(drop, points)
+    assert not has_fallen(drop, points[:4], 1e-9) and has_fallen(drop, points, 1e-9)
     found = evaluate_ratcheting(
         design.kinematics, design.ratcheting, points, 1e-9, ended_early=False
     )
@@ -285,6 +285,7 @@ def test_a_torque_that_has_not_fallen_has_no_peak(torques: list[float]) -> None:
     )
     assert not found.is_peak and found.gave_way == NOTHING and found.peak_error_Nm is None
     assert found.ended == "no equilibrium found"
+    assert not has_fallen(design.ratcheting.drop, points, 1e-9)
     (answer,) = (one for one in found.answers() if one.name == "ratcheting.peak_torque_Nm")
     assert answer.no_error == NO_ESTIMATE and "no peak" in answer.remark
 
