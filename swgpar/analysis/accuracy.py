@@ -22,22 +22,30 @@ drive by 0.7 %, its input torque by 0.2 %. The summary of a run has the change b
 angles."""
 
 
-def require_refinable(design: DriveDesign, accuracy: float) -> None:
-    """Refuse an accuracy for designs whose mesh is not chosen by one."""
+def not_refinable(design: DriveDesign) -> tuple[str, str] | None:
+    """What keeps the mesh from being chosen by an accuracy, and what is allowed; None without."""
     for given, what, allowed in (
         (design.has_program, "a load program", "a mesh recipe"),
         (design.bearing is not None, "wave_generator.bearing", "without it"),
-        (
-            design.is_loaded_sideways,
-            SIDEWAYS,
-            "without them",
-        ),
+        (design.is_loaded_sideways, SIDEWAYS, "without them"),
         (design.dynamic_spline is not None, 'drive.model = "pancake"', '"cup"'),
     ):
         if given:
-            raise InputError(
-                f"--accuracy {accuracy:g} is not available with {what}: allowed {allowed}"
-            )
+            return what, allowed
+    return None
+
+
+def require_refinable(design: DriveDesign, accuracy: float) -> None:
+    """Refuse an accuracy for designs whose mesh is not chosen by one."""
+    if (found := not_refinable(design)) is not None:
+        what, allowed = found
+        raise InputError(f"--accuracy {accuracy:g} is not available with {what}: allowed {allowed}")
+
+
+def require_accuracy(accuracy: float) -> None:
+    """Refuse an accuracy that is out of range."""
+    fits = LOWEST <= accuracy <= HIGHEST
+    require(fits, "--accuracy", accuracy, f"{LOWEST:g} to {HIGHEST:g}")
 
 
 def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
@@ -46,8 +54,7 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
 
     Raises InputError where the accuracy is out of range.
     """
-    fits = LOWEST <= accuracy <= HIGHEST
-    require(fits, "--accuracy", accuracy, f"{LOWEST:g} to {HIGHEST:g}")
+    require_accuracy(accuracy)
     whole_period = design.steps.rotation >= 0.999999 * design.periods * np.degrees(
         design.kinematics.period_angle
     )

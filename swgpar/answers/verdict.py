@@ -76,13 +76,11 @@ class Verdict:
         answer = self.answer
         if self.judgement != Judgement.NOT_JUDGED:
             return ""
-        if self.reason:
-            return self.reason
+        if self.reason or self.limit is None:
+            return self.reason or "no requirement"
         if answer is None or answer.value is None:
             return answer.remark if answer is not None else "the run does not have it"
-        if answer.no_error == NO_LIMIT:
-            return answer.remark or "it grows with every finer mesh"
-        return "no requirement"
+        return answer.remark or "it grows with every finer mesh"
 
 
 def worst(verdicts: Iterable[Verdict]) -> Judgement:

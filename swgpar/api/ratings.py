@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from mpi4py import MPI
 
 from swgpar import log
+from swgpar.analysis.accuracy import require_accuracy
 from swgpar.api.runs import DesignLike, MeshLike, load_mesh
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
@@ -49,6 +50,7 @@ def rate(
     out: str | Path,
     *,
     mesh: MeshLike | None = None,
+    accuracy: float | None = None,
     restart: bool = False,
     overwrite: bool = False,
     progress: bool | None = None,
@@ -67,6 +69,10 @@ def rate(
         sheet is written after every run.
     mesh : recipe, name, path or mapping
         As `load_mesh` takes it.
+    accuracy : float
+        Relative, of the largest tensile stress at the teeth (0.001 to 0.2): meshes of the runs
+        whose stresses the sheet has are refined for it, as `run` does. With a bearing, and in load
+        programs, the mesh is that of the recipe.
     restart : bool
         Keep what is finished in `out`, continue what was interrupted, try again what failed.
     overwrite : bool
@@ -82,7 +88,7 @@ def rate(
     Raises
     ------
     InputError
-        A design without [rating] or without a torque, a gear train.
+        A design without [rating] or without a torque, a gear train, an accuracy out of range.
     OutputError
         The folder cannot be written, or holds another rating.
 
@@ -95,10 +101,17 @@ def rate(
 
     terminal = log.console.is_terminal if progress is None else progress
     given = RunOptions(
-        given_folder(out), restart=restart, overwrite=overwrite, comm=comm, terminal=terminal
+        given_folder(out),
+        accuracy=accuracy,
+        restart=restart,
+        overwrite=overwrite,
+        comm=comm,
+        terminal=terminal,
     )
 
     def checked() -> tuple[DriveDesign, RunOptions]:
+        if accuracy is not None:
+            require_accuracy(accuracy)
         if mesh is None:
             return load_rated_design(design), given
         name = str(mesh) if isinstance(mesh, (str, Path)) else ""

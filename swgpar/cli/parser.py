@@ -37,6 +37,7 @@ together come from several, which follow each other. Unknown options are passed 
 RATE_EXAMPLES = """examples:
   mpirun -n 2 swgpar rate drive.toml --out results/rating
   mpirun -n 2 swgpar rate drive.toml --out results/rating --restart
+  mpirun -n 2 swgpar rate drive.toml --accuracy 0.02 --out results/accurate
   swgpar rate drive.toml --set rating.momentary_torque=60 --out results/momentary
 
 in the design file:
@@ -131,6 +132,10 @@ ACCURACY = """refine the mesh and the windows until the estimated error of the l
 under load is at most A (0.02: 2 %%; 0.001 to 0.2). Without other values in the design, one period is computed in 2
 (from 0.04), 4, 8 or 16 angles. The mesh has at most 1,500,000 elements in the plane, 700,000 in space"""
 
+RATE_ACCURACY = """refine the meshes of the runs whose stresses the sheet has, until the estimated error of the
+largest tensile stress at the teeth is at most A (0.02: 2 %%; 0.001 to 0.2). With a bearing, and in load programs, the
+mesh is that of the recipe"""
+
 PLAIN = """compute all that the design asks for: without this, a drive without friction leaves out the assembly step by
 step and further periods, where the design does not set their keys"""
 
@@ -181,6 +186,7 @@ def parser() -> _Parser:
     _add_design(rate)
     text = "(default: forces, for a plane model plane_coarse)"
     rate.add_argument("--mesh", help=f"{MESH_HELP} {text}")
+    rate.add_argument("--accuracy", type=float, metavar="A", help=RATE_ACCURACY)
     _add_out(rate, "folder of the sheet and its runs", "continue the rating in --out", "a rating")
     study = _add_command(commands, "study", STUDY, STUDY_EXAMPLES)
     study.add_argument("study", help="study file (TOML)")

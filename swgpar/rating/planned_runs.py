@@ -42,6 +42,7 @@ class PlannedRun:
     design : None where it is refused, for the reason in `refusal`
     torque : N·m, None of a run that has several
     left_out : what the design asks for and the run does not have, and why
+    windows : whether stresses and pressures of the sheet are from it, which an accuracy is for
     """
 
     cases: tuple[LoadCase, ...]
@@ -49,6 +50,7 @@ class PlannedRun:
     torque: float | None = None
     refusal: str = ""
     left_out: str = ""
+    windows: bool = False
 
     @property
     def name(self) -> str:
@@ -152,7 +154,9 @@ def plan_runs(design: DriveDesign) -> RatingPlan:
     given = tuple(name for name in ("losses", "deviations") if getattr(design, name) is not None)
     apart = friction and "deviations" in given
     beside = tuple(name for name in given if name != "deviations" or not friction)
-    want(loads.rated, _UnderTorque((LoadCase.RATED,), beside, period=True, windows=True))
+    # without a limit for it the pressure of the flanks is not worth windows
+    judged = design.rating is not None and design.rating.flank_pressure is not None
+    want(loads.rated, _UnderTorque((LoadCase.RATED,), beside, period=True, windows=judged))
     if design.fatigue is None:
         missing[LoadCase.REPEATED_PEAK] = NO_STRENGTHS
     else:
@@ -173,15 +177,15 @@ def plan_runs(design: DriveDesign) -> RatingPlan:
         turns = _UnderTorque((LoadCase.DEVIATIONS,), ("deviations",), period=True)
         runs.append(_under_torque(design, loads, loads.rated, turns, without_friction=True))
     runs.append(_program(design, loads, LoadCase.STIFFNESS))
-    if loads.momentary is None:
-        missing[LoadCase.RATCHETING] = "rating.momentary_torque is not given"
-    else:
-        runs.append(_program(design, loads, LoadCase.RATCHETING))
     if lacks := _without_modes(design):
         missing[LoadCase.MODES] = lacks
     else:
         modes = _UnderTorque((LoadCase.MODES,), ("frequencies",))
         runs.append(_under_torque(design, loads, loads.rated, modes, without_friction=friction))
+    if loads.momentary is None:
+        missing[LoadCase.RATCHETING] = "rating.momentary_torque is not given"
+    else:  # the longest one
+        runs.append(_program(design, loads, LoadCase.RATCHETING))
     return RatingPlan(tuple(runs), missing)
 
 
@@ -224,14 +228,15 @@ def _under_torque(
         content["output"] = {**content["output"], "root_stress": False}
     try:
         made = make_drive(_with_period(design, content, run))
-        return PlannedRun(run.cases, made, torque, "", said)
+        return PlannedRun(run.cases, made, torque, "", said, run.windows)
     except InputError as error:
         if not run.period:
             return PlannedRun(run.cases, None, torque, str(error))
         state = {key: value for key, value in content.items() if key not in APART}
         reason = str(error)
     try:
-        return PlannedRun(run.cases, make_drive(state), torque, "", f"a period: {reason}")
+        made = make_drive(state)
+        return PlannedRun(run.cases, made, torque, "", f"a period: {reason}", run.windows)
     except InputError as error:
         return PlannedRun(run.cases, None, torque, str(error))
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 from swgpar import watch
+from swgpar.analysis.accuracy import not_refinable
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.summary import DriveSummary
@@ -105,7 +106,7 @@ def rate_drive(design: DriveDesign, options: RunOptions) -> RatingSheet:
     folder, comm = options.out, options.comm
     if folder is None:
         raise InputError("out is missing: a rating keeps its runs in a folder")
-    plan, rows = on_all(comm, lambda: (plan_runs(design), rating_rows(design)))
+    plan, rows = on_all(comm, lambda: (plan_runs(design), rating_rows(design, options.accuracy)))
     if options.recipe is None:
         name = MESHES[design.drive.model]
         options = replace(options, recipe=load_recipe(name), recipe_name=name)
@@ -116,7 +117,13 @@ def rate_drive(design: DriveDesign, options: RunOptions) -> RatingSheet:
     def run(index: int, own: MPI.Comm, _: object) -> None:
         planned = plan.runs[index]
         watch.doing(f"run {index + 1} of {count}: {planned.name}")
-        given = replace(options, out=folder / RUNS / planned.folder, comm=own, terminal=False)
+        given = replace(
+            options,
+            out=folder / RUNS / planned.folder,
+            accuracy=accuracy_of(planned, options.accuracy),
+            comm=own,
+            terminal=False,
+        )
         outcome = run_one(DRIVE, planned.design, given, planned.refusal)
         book.note(planned, outcome, own)
         _write(book.sheet(), own)
@@ -127,6 +134,13 @@ def rate_drive(design: DriveDesign, options: RunOptions) -> RatingSheet:
 
     do_runs(comm, "ranks", count, run, None)
     return book.sheet()
+
+
+def accuracy_of(run: PlannedRun, accuracy: float | None) -> float | None:
+    """The accuracy of a run; None where its mesh is not chosen by one."""
+    if accuracy is None or run.design is None or not run.windows:
+        return None
+    return accuracy if not_refinable(run.design) is None else None
 
 
 def _words(index: int, count: int, run: PlannedRun, outcome: Outcome) -> list[str]:

@@ -82,8 +82,11 @@ def _required(value: float | None, sense: Sense, key: str, factor: float = 1.0) 
     return None if value is None else Limit(factor * value, sense, f"rating.{key}")
 
 
-def rating_rows(design: DriveDesign) -> list[RatingRow]:
-    """All rows of the sheet of a design with [rating], in their order."""
+def rating_rows(design: DriveDesign, accuracy: float | None = None) -> list[RatingRow]:
+    """All rows of the sheet of a design with [rating], in their order.
+
+    accuracy : relative, of the largest tension at the teeth; None is that of a report
+    """
     loads, section = rating_loads(design), design.rating
     assert section is not None  # `rating_loads` has refused a design without it
     return [
@@ -93,7 +96,7 @@ def rating_rows(design: DriveDesign) -> list[RatingRow]:
         _ratcheting(section, loads),
         *_stiffness(design, section),
         *_motion(design, section),
-        *_computation(design),
+        *_computation(design, accuracy or RESOLUTION),
     ]
 
 
@@ -227,7 +230,7 @@ def _motion(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
     yield RatingRow("lowest natural frequency", LoadCase.MODES, _named("frequency.1"), limit)
 
 
-def _computation(design: DriveDesign) -> Iterator[RatingRow]:
+def _computation(design: DriveDesign, accuracy: float) -> Iterator[RatingRow]:
     for clearance in clearances(design):
         limit = Limit(clearance.allowed, Sense.AT_LEAST, "an overlap that loaded teeth take up")
         where = "" if clearance.ring == "ring_gear" else f" in the {clearance.ring}"
@@ -237,6 +240,6 @@ def _computation(design: DriveDesign) -> Iterator[RatingRow]:
             _named(f"clearance.{clearance.ring}"),
             limit,
         )
-    limit = Limit(RESOLUTION, Sense.AT_MOST, "largest error of the stress at the teeth")
+    limit = Limit(accuracy, Sense.AT_MOST, "largest error of the stress at the teeth")
     answer = "the error of the largest tension at the teeth has no estimate"
     yield RatingRow("resolution", LoadCase.LARGEST, resolution, limit, answer)

@@ -52,6 +52,8 @@ def run_one(
         if design is None:
             raise InputError(refusal)
         record = system.identity(design, options.recipe)
+        if options.accuracy is not None:
+            record["accuracy"] = options.accuracy
         if folder is not None:
             old = on_root(comm, lambda: read_status(folder))
             same = old.get("identity", record["identity"]) == record["identity"]

@@ -19,6 +19,7 @@ from swgpar.drive_results.strength_checks import FIRST_YIELD
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.errors import InputError
 from swgpar.rating.planned_runs import LoadCase, plan_runs
+from swgpar.rating.rate_drive import accuracy_of
 from swgpar.rating.rated_answers import STATIC_PRESSURE
 from swgpar.rating.rows import RatingRow, rating_rows
 
@@ -263,6 +264,10 @@ def test_resolution() -> None:
         root = SimpleNamespace(total_error=100.0 * share, s1=100.0, place="")
         found = summary("none", 0.0, root_stress=root)
         assert judged("resolution", rated(), found) == judgement
+    (last,) = [one for one in rating_rows(rated(), 0.02) if one.name == "resolution"]
+    root = SimpleNamespace(total_error=2.1, s1=100.0, place="")
+    verdict = last.verdict(summary("none", 0.0, root_stress=root), "")
+    assert verdict.judgement == FAILS
     root = SimpleNamespace(total_error=None, s1=100.0, place="")
     assert judged("resolution", rated(), summary("none", 0.0, root_stress=root)) == OPEN
 
@@ -289,8 +294,8 @@ def test_loads_of_one_torque_share_a_run() -> None:
         "largest torque",
         "no load",
         "stiffness",
-        "ratcheting",
         "natural frequencies",
+        "ratcheting",
     ]
     one_torque = {"rated_torque": 1.0, "largest_speed": 10.0}
     plan = plan_runs(rated(rating=one_torque, **with_bearing()))
@@ -319,6 +324,19 @@ def test_a_load_from_one_side_has_no_period_and_the_sheet_says_it() -> None:
     first = plan.runs[0]
     assert first.design is not None and first.design.losses is None
     assert "radial force" in first.left_out
+
+
+def test_an_accuracy_is_for_runs_with_stresses() -> None:
+    runs = {run.name: run for run in plan_runs(rated()).runs}
+    refined = {name for name, run in runs.items() if accuracy_of(run, 0.02)}
+    assert refined == {"rated torque", "repeated peak torque", "largest torque"}
+    assert accuracy_of(plan_runs(rated(**with_bearing())).runs[0], 0.02) is None
+    assert all(accuracy_of(run, None) is None for run in runs.values())
+    unlimited = {key: value for key, value in RATING.items() if "pressure" not in key}
+    first = plan_runs(rated(rating=unlimited)).runs[0]
+    assert first.design is not None and not first.design.output.root_stress
+    with pytest.raises(InputError, match="--accuracy = 0.5 is out of range"):
+        swgpar.rate(rated(), "results", accuracy=0.5)
 
 
 def test_a_rating_is_refused_without_its_section_or_a_torque() -> None:

@@ -1,0 +1,68 @@
+"""Views of a rating sheet: terminal, page and files say the same."""
+
+from __future__ import annotations
+
+import io
+import json
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from support.html_text import Page
+from swgpar.answers.answer import Answer
+from swgpar.answers.verdict import Limit, Sense, Verdict
+from swgpar.rating import terminal
+from swgpar.rating.page import rating_page
+from swgpar.rating.sheet import RatedVerdict, RatingSheet, RunEntry
+from swgpar.results.atomic import to_json
+
+STRESS = Answer("largest.fs_vm", 514.8512, "MPa", "stress", error=4.1, place="tooth root")
+HYSTERESIS = Answer("stiffness.hysteresis", 4.06684, "arc minutes", "width", error=0.0076)
+LIMIT = Limit(1050.0, Sense.AT_MOST, "the maker <b>of</b> it")
+
+
+@pytest.fixture
+def sheet(tmp_path: Path) -> RatingSheet:
+    verdicts = (
+        Verdict("yield of teeth and rim", STRESS, LIMIT, of_strength=True),
+        Verdict("hysteresis", HYSTERESIS, None),
+        Verdict("life of the bearing", None, LIMIT, "the run <i>failed</i>"),
+    )
+    rated = tuple(RatedVerdict(one, "rated torque") for one in verdicts)
+    run = RunEntry("rated torque", 0.8, "failed", "runs/rated_torque", reason="it failed")
+    return RatingSheet("Rating", rated, (run,), {"drive": {"module": 0.5}}, tmp_path)
+
+
+@pytest.mark.parametrize("width", [60, 80])
+def test_the_terminal_shows_numbers_whole(
+    sheet: RatingSheet, width: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = io.StringIO()
+    monkeypatch.setattr(terminal, "console", Console(file=text, width=width, soft_wrap=False))
+    terminal.print_sheet(sheet)
+    shown = text.getvalue()
+    assert all(len(line) <= width for line in shown.splitlines())
+    for whole in ("514.85 MPa", "±\u00a04.1", "at most 1050", "4.0668 arc minutes"):
+        assert whole in shown
+    assert "The drive is not judged" in shown
+
+
+def test_the_page_says_what_the_table_says(sheet: RatingSheet) -> None:
+    page = rating_page(sheet).decode()
+    tags = Page(page)
+    assert not tags.open and not tags.links
+    assert "<b>of</b>" not in page and "<i>failed</i>" not in page
+    assert "the maker &lt;b&gt;of&lt;/b&gt; it" in page
+    for words in ("514.85 MPa", "at most 1050", "passes", "not judged", "no requirement"):
+        assert words in page
+
+
+def test_rows_and_runs_are_in_the_file(sheet: RatingSheet) -> None:
+    content = json.loads(to_json(sheet.content))
+    assert content["headline"] == "not judged"
+    first, second, third = content["rows"]
+    assert (first["verdict"], first["value"], first["limit"]) == ("passes", 514.8512, 1050.0)
+    assert (second["verdict"], second["reason"]) == ("not judged", "no requirement")
+    assert (third["value"], third["reason"]) == (None, "the run <i>failed</i>")
+    assert content["runs"][0]["status"] == "failed"
