@@ -83,11 +83,12 @@ which grows by 11 µm of radius."""
 @dataclass(frozen=True)
 class Case:
     """overrides : of the design;  tooth : elements of both gears;  wall : elements of the cup's
-    wall"""
+    wall;  width : elements along the face width"""
 
     overrides: tuple[str, ...]
     tooth: dict[str, int]
     wall: dict[str, int] = field(default_factory=dict)
+    width: int = 2
 
 
 CASES = {
@@ -106,6 +107,9 @@ CASES = {
     "cup, flank 2, bolted": Case(BOLTED, {"flank": 2}, {"closed_end": 4}),
     "cup, flank 2, bolted, on a bearing": Case(
         (*BOLTED, *CARRIED, *TILTED), {"flank": 2}, {"closed_end": 4}
+    ),
+    "cup, flank 2, bolted, on a bearing, width 6": Case(
+        (*BOLTED, *CARRIED, *TILTED), {"flank": 2}, {"closed_end": 4}, 6
     ),
     "cup, flank 2, finer wall": Case(
         (), {"flank": 2}, {"cylinder": 4, "fillet": 2, "closed_end": 4}
@@ -148,6 +152,7 @@ def recipe_of(case: Case) -> MeshRecipe:
     """The smallest recipe with the elements of the case."""
     recipe = load_recipe(RECIPE)
     parts = {"flexible_spline": case.tooth, "ring_gear": case.tooth, "cup": case.wall}
+    parts["face_width"] = {"elements": case.width}
     return recipe.model_copy(
         update={k: getattr(recipe, k).model_copy(update=v) for k, v in parts.items()}
     )
