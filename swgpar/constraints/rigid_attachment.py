@@ -101,10 +101,9 @@ class RigidAttachment(NodeMeans):
     ) -> None:
         layout, mesh = body.layout, body.layout.mesh
         angles = layout.sector_angle(layout.first_tooth + body.sectors[body.owned])
-        step = 2.0 * np.pi / mesh.n_sectors
         around = [
             area_shares(mesh, surface, angle, inside, width)
-            for angle in (*(angles[:1] - step), *angles)
+            for angle in (*(angles[:1] - mesh.pitch), *angles)
         ]
         areas = np.array(around[1:]).reshape(len(angles), len(mesh.coords))
         for row, before in zip(areas, around[:-1], strict=False):

@@ -42,9 +42,8 @@ class WaveInertia:
         masses[mesh.ccw_nodes] = 0.0
         self._nodes = np.flatnonzero(masses)
         self.masses = masses[self._nodes]
-        step = 2.0 * np.pi / mesh.n_sectors
-        self._first = lobes / (2.0 * np.sin(lobes * step))
-        self._second = (0.5 * lobes / np.sin(0.5 * lobes * step)) ** 2
+        self._first = lobes / (2.0 * np.sin(lobes * mesh.pitch))
+        self._second = (0.5 * lobes / np.sin(0.5 * lobes * mesh.pitch)) ** 2
         self._angle = layout.sector_angle(layout.first_tooth + body.sectors)[:, None]
 
     def is_active(self, state: LoadState) -> bool:

@@ -121,7 +121,7 @@ class BallContact:
         self.conn, self.sixths = body.local[sector, nodes], body.sixths[sector, nodes]
         self.coords = body.positions()[sector, nodes]
         layout, local = body.layout, body.layout.mesh.coords[groove[:, 0]]
-        pitch, at = 2.0 * np.pi / layout.mesh.n_sectors, np.arctan2(-local[:, 0], local[:, 1])
+        pitch, at = layout.mesh.pitch, np.arctan2(-local[:, 0], local[:, 1])
         origin = layout.sector_angle(layout.first_tooth + body.sectors[0]) if n_sectors else 0.0
         self.angle = origin + (column // n) * pitch + np.where(column % n, at[column % n], at[0])
         self.own_range = n * body.owned.start, n * body.owned.stop

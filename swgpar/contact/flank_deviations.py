@@ -132,7 +132,7 @@ def flank_deviations(
             # the facing flank lies in the slot beside the tooth; what moves the ring gear towards
             # it adds height
             normal = profile.normal(s.ravel()) * (MIRROR if side < 0 else np.ones(2))
-            slot = ring_angle + side * np.pi / ring.mesh.n_sectors
+            slot = ring_angle + 0.5 * side * ring.mesh.pitch
             away = rotated(np.broadcast_to(of_ring.tilt, (len(slot), 2)), -slot)
             leans.append(
                 -((z.ravel() + axial_travel) * (away @ normal.T)).reshape(len(ring_teeth), *s.shape)

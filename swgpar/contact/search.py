@@ -68,10 +68,9 @@ def facing_flanks(
     table = np.concatenate(
         partition.comm.allgather(np.column_stack([angle + lean, tip_radius]).reshape(-1, 2))
     )
-    pitch = 2.0 * np.pi / ring.mesh.n_sectors
     pairs = []
     for k in np.flatnonzero(table[:, 1] > ring.mesh.profile.r_tip_circle - margin):
-        slot = int(np.rint((table[k, 0] - ring_rotation) / pitch))
+        slot = int(np.rint((table[k, 0] - ring_rotation) / ring.mesh.pitch))
         for side, tooth in ((1, slot - 1), (-1, slot)):
             index, sixths = ring.sector_of_tooth(np.array(tooth))
             if index >= 0:

@@ -62,7 +62,7 @@ def housing_values(model: DriveModel, stresses: Mapping[str, float]) -> dict[str
     radius = float(np.hypot(*mesh.coords[nodes[0], :2]))
     forces = body.part_forces(model.problem.displacement(), 1)[:, nodes, :2]
     pressing = np.sum(forces * before / radius, axis=(1, 2))
-    area = 2.0 * np.pi * radius / mesh.n_sectors * model.design.drive.face_width
+    area = mesh.pitch * radius * model.design.drive.face_width
     return {
         **{f"{name.removeprefix('housing_')}_MPa": value for name, value in stresses.items()},
         "bulge_um": MICROMETRES * largest(model.comm, float(moved.max(initial=-np.inf))),

@@ -34,7 +34,7 @@ class Flange:
         self.model, self.first_node, self.first_element = model, first_node, first_element
         cup, mesh = model.design.cup, model.spline
         areas = np.zeros(len(model.points))
-        angles = mesh.phase + 2.0 * np.pi / mesh.n_sectors * np.arange(mesh.n_sectors)
+        angles = mesh.sector_angle(np.arange(mesh.n_sectors))
         numbers = model.numbers(mesh, np.arange(len(mesh.coords), dtype=np.int32))
         for angle, sector in zip(angles, numbers, strict=True):
             shares = area_shares(mesh, "end", angle, cup.is_attached, cup.attached_width)

@@ -112,7 +112,7 @@ class BodyLayout:
 
     def sector_angle(self, tooth: np.ndarray) -> np.ndarray:
         """Angle (rad) of the sectors of teeth about z, counter-clockwise from +y; any shape."""
-        return self.mesh.phase + np.asarray(tooth) * (2.0 * np.pi / self.mesh.n_sectors)
+        return self.mesh.sector_angle(tooth)
 
     def sector_of_tooth(self, tooth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Index in the chain of any tooth (-1 where it is not modelled) and its flag (uint8)."""

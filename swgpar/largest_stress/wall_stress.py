@@ -331,7 +331,7 @@ def _thickness(model: DriveModel, spot: Spot) -> float:
 def _read(ring: WallRing, counts: WallCounts, middle: Spot) -> dict[str, Spot]:
     """Largest stresses in the middle of a slice around a stress of a ring; collective."""
     model = ring.problem.model
-    thickness, pitch = _thickness(model, middle), 2.0 * np.pi / ring.grid.mesh.n_sectors
+    thickness, pitch = _thickness(model, middle), ring.grid.mesh.pitch
     beside = int(np.ceil(MARGIN * thickness / (pitch * middle.section[0])))
     count = min(max(1 + 2 * beside, FEWEST), MOST)
     mesh, distance = _slice_mesh(ring, counts, middle, REACH * thickness)

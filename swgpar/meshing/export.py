@@ -43,7 +43,7 @@ def sector_numbers(mesh: SectorMesh) -> Ints:
 def whole_body(mesh: SectorMesh) -> tuple[Floats, Ints]:
     """Nodes (n, 3), mm, and elements (m, 8 or 4) of all sectors; numbers of `sector_numbers`."""
     numbers = sector_numbers(mesh)
-    angle = mesh.phase + 2.0 * np.pi / mesh.n_sectors * np.arange(mesh.n_sectors)[:, None]
+    angle = mesh.sector_angle(np.arange(mesh.n_sectors))[:, None]
     x, y, z = mesh.coords.T
     coords = np.empty((int(numbers.max()) + 1, 3))
     coords[numbers, 0] = x * np.cos(angle) - y * np.sin(angle)

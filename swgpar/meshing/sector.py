@@ -29,7 +29,7 @@ class FlankGrid:
 
 @dataclass(frozen=True)
 class SectorMesh:
-    """The tooth sector centred on +y; copy k is rotated by ``phase + 2 pi k / n_sectors`` about z.
+    """The tooth sector centred on +y; copy k is rotated by `sector_angle` of k about z.
 
     body : ``flexible_spline``, ``ring_gear``, ``dynamic_spline`` or ``outer_race``, or ``ring`` for
         a plain one
@@ -70,6 +70,15 @@ class SectorMesh:
     tooth: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int32))
     housing: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int32))
     lower_nodes: Ints | None = None
+
+    @property
+    def pitch(self) -> float:
+        """Angle (rad) of the sector."""
+        return 2.0 * np.pi / self.n_sectors
+
+    def sector_angle(self, sector: Ints) -> Floats:
+        """Angles (rad) of sectors about z, counter-clockwise from +y; any shape."""
+        return self.phase + np.asarray(sector) * self.pitch
 
     @property
     def plane(self) -> bool:

@@ -65,7 +65,7 @@ def build_ball_contact(design: DriveDesign, elements: Elements) -> BallContact:
     share = np.array(
         [np.interp(0.0, z, unit) for unit in np.eye(len(z))]
     )  # shape functions in the mid-plane
-    sector = 2.0 * np.pi * design.bearing_sizes.outer_groove / race.layout.mesh.n_sectors
+    sector = race.layout.mesh.pitch * design.bearing_sizes.outer_groove
     return BallContact(
         race,
         build_balls(design),
