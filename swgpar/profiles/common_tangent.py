@@ -18,7 +18,7 @@ from swgpar.errors import InputError
 from swgpar.profiles.flank import ToothProfile
 from swgpar.profiles.keys import CommonTangent
 from swgpar.profiles.pitch_point import PitchPointFrame
-from swgpar.profiles.quadruple_arc import closing_angle
+from swgpar.profiles.quadruple_arc import root_arcs
 
 
 def common_tangent(
@@ -45,31 +45,10 @@ def common_tangent(
     beta = float(np.arctan2(up, across) + np.arccos((r_a + r_d) / apart))
     top, bottom = o_a + r_a * n(beta), o_d - r_d * n(beta)
     length = float(np.sqrt(apart**2 - (r_a + r_d) ** 2))
-    reach = float(np.hypot(*o_a))
-    cosine = (frame.r_tip_circle**2 - reach**2 - r_a**2) / (2.0 * reach * r_a)
-    if abs(cosine) > 1.0:
-        raise InputError(f"{name}.r_addendum = {r_a:g}: its arc does not reach the addendum circle")
-    beta_t = float(np.arctan2(s * o_a[1], o_a[0])) - s * float(np.arccos(cosine))
-
-    def root_center(angle: float) -> np.ndarray:
-        return o_d - (r_d - r_r) * n(beta + angle)
-
-    a_d = closing_angle(
-        lambda angle: float(np.hypot(*root_center(angle))) - s * r_r,
-        frame.r_root_circle,
-        f"{name}.r_root = {r_r:g} with r_dedendum = {r_d:g} does not meet the dedendum circle",
-    )
-    o_r = root_center(a_d)
+    beta_t = frame.tip_inclination(o_a, r_a, f"{name}.r_addendum")
     pieces = [
         ("addendum", o_a + r_a * n(beta_t), beta_t, 1.0 / r_a, r_a * (beta_t - beta)),
         ("straight", top, beta, 0.0, length),
-        ("dedendum", bottom, beta, -1.0 / r_d, r_d * a_d),
-        (
-            "root",
-            o_r - r_r * n(beta + a_d),
-            beta + a_d,
-            -1.0 / r_r,
-            r_r * (frame.inclination(o_r) - beta - a_d),
-        ),
+        *root_arcs(frame, bottom, beta, r_d, r_r, name),
     ]
     return frame.profile(pieces, name)

@@ -39,8 +39,7 @@ def conjugate(
     other elsewhere with an overlap, and for radii that do not fit.
     """
     envelope = Envelope(given, motion, 0.5 * keys.backlash / teeth.r_pitch)
-    tip = teeth.r_pitch + teeth.sign * teeth.addendum
-    root = teeth.r_pitch - teeth.sign * teeth.dedendum
+    tip, root = teeth.r_tip_circle, teeth.r_root_circle
 
     def finished(segments: list[FlankSegment]) -> tuple[ToothProfile, NearestPlace]:
         curve = ToothProfile(tuple(segments), teeth.external, tip, root, teeth.n_teeth)

@@ -53,16 +53,7 @@ def double_arc(
         beyond = along - s * np.sqrt(along**2 - float(top @ top) + frame.r_tip_circle**2)
         edge = top - beyond * frame.towards_tip
         return frame.profile([("straight", edge, star, 0.0, length - beyond), root], name)
-    # |O_a + r_a n(beta)| = r_A (eqs 3.36, 3.39), with O_a at the inclination beta_a and the
-    # distance |O_a|
-    reach = float(np.hypot(*o_a))
-    cosine = (frame.r_tip_circle**2 - reach**2 - r_addendum**2) / (2.0 * reach * r_addendum)
-    if abs(cosine) > 1.0:
-        raise InputError(
-            f"{name}.r_addendum = {r_addendum:g}: its arc does not reach the addendum circle"
-        )
-    beta_a = float(np.arctan2(s * o_a[1], o_a[0]))
-    beta_t = beta_a - s * float(np.arccos(cosine))
+    beta_t = frame.tip_inclination(o_a, r_addendum, f"{name}.r_addendum")
     tip = o_a + r_addendum * n(beta_t)
     pieces = [
         ("addendum", tip, beta_t, 1.0 / r_addendum, r_addendum * (beta_t - star)),

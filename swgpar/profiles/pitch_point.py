@@ -24,16 +24,6 @@ class PitchPointFrame(Teeth):
     c_P: float
 
     @property
-    def r_tip_circle(self) -> float:
-        """Addendum radius, mm (eq. 3.16)."""
-        return self.r_pitch + self.sign * self.addendum
-
-    @property
-    def r_root_circle(self) -> float:
-        """Dedendum radius, mm (eq. 3.17)."""
-        return self.r_pitch - self.sign * self.dedendum
-
-    @property
     def half_thickness(self) -> float:
         """Angle between the tooth's centre line and the pitch point, rad (eq. 3.22)."""
         return 0.5 * self.c_P * np.pi / self.n_teeth
@@ -61,6 +51,20 @@ class PitchPointFrame(Teeth):
         """Inclination, rad, of the normal common to arcs about `center` (2,) and about the axis."""
         x, y = self.sign * center / np.hypot(*center)
         return float(np.arctan2(self.sign * y, x))
+
+    def tip_inclination(self, center: np.ndarray, radius: float, key: str) -> float:
+        """Inclination, rad, at which a convex arc of `radius`, mm, about `center` (2,), mm, meets
+        the addendum circle.
+
+        Raises InputError, which names the key of the radius, where it does not.
+        """
+        # |center + radius n(beta)| = r_A (eqs 3.36, 3.39)
+        reach = float(np.hypot(*center))
+        cosine = (self.r_tip_circle**2 - reach**2 - radius**2) / (2.0 * reach * radius)
+        if abs(cosine) > 1.0:
+            raise InputError(f"{key} = {radius:g}: its arc does not reach the addendum circle")
+        at = float(np.arctan2(self.sign * center[1], center[0]))
+        return at - self.sign * float(np.arccos(cosine))
 
     def segment(
         self, name: str, start: np.ndarray, beta: float, convexity: float, length: float

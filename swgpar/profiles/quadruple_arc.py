@@ -15,7 +15,7 @@ import numpy as np
 from swgpar.errors import InputError
 from swgpar.geometry.bracketed_root import root_between
 from swgpar.profiles.flank import ToothProfile
-from swgpar.profiles.pitch_point import PitchPointFrame
+from swgpar.profiles.pitch_point import PitchPointFrame, PlacedSegment
 
 
 def closing_angle(radius: Callable[[float], float], target: float, refusal: str) -> float:
@@ -32,6 +32,38 @@ def closing_angle(radius: Callable[[float], float], target: float, refusal: str)
     return float(root_between(lambda angle: radius(angle) - target, low, high, xtol=1e-15))
 
 
+def root_arcs(
+    frame: PitchPointFrame,
+    bottom: np.ndarray,
+    beta: float,
+    r_dedendum: float,
+    r_root: float,
+    name: str,
+) -> list[PlacedSegment]:
+    """The dedendum arc, and the root arc that leads it to the dedendum circle; radii in mm.
+
+    bottom : (2,) mm, where the dedendum arc begins;  beta : rad, inclination of the normal there
+    name : section of the design file, for messages
+    """
+    o_d = bottom + r_dedendum * frame.normal(beta)
+
+    def root_center(angle: float) -> np.ndarray:
+        return o_d - (r_dedendum - r_root) * frame.normal(beta + angle)
+
+    a_d = closing_angle(
+        lambda angle: float(np.hypot(*root_center(angle))) - frame.sign * r_root,
+        frame.r_root_circle,
+        f"{name}.r_root = {r_root:g} with r_dedendum = {r_dedendum:g} does not meet the dedendum "
+        f"circle",
+    )
+    o_r, joint = root_center(a_d), beta + a_d
+    lower, length = o_r - r_root * frame.normal(joint), r_root * (frame.inclination(o_r) - joint)
+    return [
+        ("dedendum", bottom, beta, -1.0 / r_dedendum, r_dedendum * a_d),
+        ("root", lower, joint, -1.0 / r_root, length),
+    ]
+
+
 def quadruple_arc(
     frame: PitchPointFrame,
     c_l: float,
@@ -46,13 +78,10 @@ def quadruple_arc(
     s, star, n = frame.sign, frame.base_angle, frame.normal
     top = frame.pitch_point + c_l * straight_l * frame.towards_tip
     bottom = frame.pitch_point - (1.0 - c_l) * straight_l * frame.towards_tip
-    o_a, o_d = top - r_addendum * n(star), bottom + r_dedendum * n(star)
+    o_a = top - r_addendum * n(star)
 
     def tip_center(angle: float) -> np.ndarray:
         return o_a + (r_addendum - r_tip) * n(star + angle)
-
-    def root_center(angle: float) -> np.ndarray:
-        return o_d - (r_dedendum - r_root) * n(star + angle)
 
     ends = ("tip", "addendum", r_tip, r_addendum), ("root", "dedendum", r_root, r_dedendum)
     for end, side, last, first in ends:
@@ -68,20 +97,12 @@ def quadruple_arc(
         f"{name}.r_tip = {r_tip:g} with r_addendum = {r_addendum:g} does not meet the addendum "
         f"circle",
     )
-    a_d = closing_angle(
-        lambda t: float(np.hypot(*root_center(t))) - s * r_root,
-        frame.r_root_circle,
-        f"{name}.r_root = {r_root:g} with r_dedendum = {r_dedendum:g} does not meet the dedendum "
-        f"circle",
-    )
-    o_t, o_r = tip_center(a_a), root_center(a_d)
-    beta_t, beta_r = frame.inclination(o_t), frame.inclination(o_r)
-    upper, lower = o_a + r_addendum * n(star + a_a), o_r - r_root * n(star + a_d)
+    o_t = tip_center(a_a)
+    beta_t, upper = frame.inclination(o_t), o_a + r_addendum * n(star + a_a)
     pieces = [
         ("tip", o_t + r_tip * n(beta_t), beta_t, 1.0 / r_tip, r_tip * (beta_t - star - a_a)),
         ("addendum", upper, star + a_a, 1.0 / r_addendum, r_addendum * a_a),
         ("straight", top, star, 0.0, straight_l),
-        ("dedendum", bottom, star, -1.0 / r_dedendum, r_dedendum * a_d),
-        ("root", lower, star + a_d, -1.0 / r_root, r_root * (beta_r - star - a_d)),
+        *root_arcs(frame, bottom, star, r_dedendum, r_root, name),
     ]
     return frame.profile(pieces, name)

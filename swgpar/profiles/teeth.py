@@ -32,3 +32,13 @@ class Teeth:
     def r_pitch(self) -> float:
         """Pitch radius, mm (eq. 3.13)."""
         return 0.5 * self.n_teeth * self.module
+
+    @property
+    def r_tip_circle(self) -> float:
+        """Addendum radius, mm (eq. 3.16)."""
+        return self.r_pitch + self.sign * self.addendum
+
+    @property
+    def r_root_circle(self) -> float:
+        """Dedendum radius, mm (eq. 3.17)."""
+        return self.r_pitch - self.sign * self.dedendum

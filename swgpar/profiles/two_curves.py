@@ -39,8 +39,7 @@ def two_curves(
         _along(convex, upper[1], upper[0], "face"),
         _along(concave, lower[0], lower[1], "flank"),
     )
-    tip = teeth.r_pitch + teeth.sign * teeth.addendum
-    root = teeth.r_pitch - teeth.sign * teeth.dedendum
+    tip, root = teeth.r_tip_circle, teeth.r_root_circle
     segments = (above, _cubic(above, below), below)
     return ToothProfile(segments, teeth.external, tip, root, teeth.n_teeth)
 
