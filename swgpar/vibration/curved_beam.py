@@ -84,6 +84,18 @@ class BeamSection:
         """E I* / (S R²)"""
         return self.E * self.bending / (self.shear * self.radius**2)
 
+    @property
+    def stiffnesses(self) -> np.ndarray:
+        """(3,) N, N·m² and N, of stretching, bending and shear."""
+        return np.array([self.E * self.area, self.E * self.bending, self.shear])
+
+    @property
+    def inertia_matrix(self) -> np.ndarray:
+        """(3, 3) kg/m, kg and kg·m, of u, w and r."""
+        matrix = np.diag([self.area, self.area, self.inertia])
+        matrix[[1, 2], [2, 1]] = self.coupling
+        return self.density * matrix
+
 
 def solutions(section: BeamSection, angle: float) -> np.ndarray:
     """P: (3, 6), u, w (m) and r (rad) of the six solutions at an angle from the middle."""
@@ -132,9 +144,7 @@ class Element:
         ends = [solutions(section, end) for end in (-0.5 * angle, 0.5 * angle)]
         inverse = np.linalg.inv(np.vstack(ends))
         points, weights = np.polynomial.legendre.leggauss(QUADRATURE)
-        inertial = section.density * np.diag([section.area, section.area, section.inertia])
-        inertial[[1, 2], [2, 1]] = section.density * section.coupling
-        stiffnesses = section.E * section.area, section.E * section.bending, section.shear
+        inertial, stiffnesses = section.inertia_matrix, section.stiffnesses
         bending, stretching, mass = (np.zeros((6, 6)) for _ in range(3))
         for x, weight in zip(
             0.5 * angle * points, 0.5 * angle * section.radius * weights, strict=True
@@ -286,10 +296,9 @@ def free_frequencies(section: BeamSection, waves: int) -> np.ndarray:
 
     Exact for the energy above: u = U cos(n a), w = W sin(n a), r = V sin(n a).
     """
-    n, r, s = float(waves), section.radius, section
+    n, r = float(waves), section.radius
     strains = np.array([[1.0, n, 0.0], [1.0 / r, n / r, -n], [-n, -1.0, r]]) / r
-    mass = s.density * np.diag([s.area, s.area, s.inertia])
-    mass[[1, 2], [2, 1]] = s.density * s.coupling
     # with strains as unknowns: round-off of the stiff ones does not reach bending
-    of_strains = np.linalg.inv(strains) / np.sqrt([s.E * s.area, s.E * s.bending, s.shear])
-    return 1.0 / np.sqrt(np.linalg.eigvalsh(of_strains.T @ mass @ of_strains)[::-1])
+    of_strains = np.linalg.inv(strains) / np.sqrt(section.stiffnesses)
+    mass = of_strains.T @ section.inertia_matrix @ of_strains
+    return 1.0 / np.sqrt(np.linalg.eigvalsh(mass)[::-1])
