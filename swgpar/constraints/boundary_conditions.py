@@ -5,6 +5,8 @@ Both meet the protocol `ForceTerm`.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from swgpar.contact.contact import NO_KEYS
@@ -13,6 +15,7 @@ from swgpar.fem.sparse import BlockRows, add_diagonal
 from swgpar.load.load_states import LoadState
 
 
+@dataclass(frozen=True, eq=False)
 class PrescribedDisplacement:
     """Nodes that are held at given displacements by stiff springs.
 
@@ -22,11 +25,10 @@ class PrescribedDisplacement:
     stiffness : N/mm of each spring, far above that of the elements
     """
 
-    def __init__(
-        self, partition: Partition, nodes: np.ndarray, displacement: np.ndarray, stiffness: float
-    ) -> None:
-        self.partition, self.nodes = partition, nodes
-        self.displacement, self.stiffness = displacement, stiffness
+    partition: Partition
+    nodes: np.ndarray
+    displacement: np.ndarray
+    stiffness: float
 
     def evaluate(
         self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
@@ -39,14 +41,15 @@ class PrescribedDisplacement:
         return NO_KEYS
 
 
+@dataclass(frozen=True, eq=False)
 class DeadLoad:
     """Forces that do not depend on the displacement.
 
     nodes : (n,) local nodes that this rank owns, each once;  forces : (n, 3) N
     """
 
-    def __init__(self, nodes: np.ndarray, forces: np.ndarray) -> None:
-        self.nodes, self.forces = nodes, forces
+    nodes: np.ndarray
+    forces: np.ndarray
 
     def evaluate(
         self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None

@@ -3,6 +3,8 @@ it."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from mpi4py import MPI
 
@@ -18,6 +20,7 @@ LARGEST_STEP, MEETING_DEPTH = 0.05, 2e-4
 which they meet."""
 
 
+@dataclass(frozen=True, eq=False)
 class FlankClearance:
     """Clearance of the loaded flanks in the last evaluation of their contact; all methods are
     collective.
@@ -31,13 +34,10 @@ class FlankClearance:
     module : mm;  outer_radius : mm, radius that no tooth is farther out than
     """
 
-    def __init__(
-        self, flanks: FlankContact, comm: MPI.Comm, *, module: float, outer_radius: float
-    ) -> None:
-        self.flanks = flanks
-        self.comm = comm
-        self.module = module
-        self.outer_radius = outer_radius
+    flanks: FlankContact
+    comm: MPI.Comm
+    module: float
+    outer_radius: float
 
     def gap(self, side: int) -> float:
         """Smallest gap (mm) of the loaded flanks; inf where none is near."""

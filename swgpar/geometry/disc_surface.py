@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import ClassVar
+
 import numpy as np
 
 from swgpar.geometry.cams import Cam, RollerCam, WaveGenerator
@@ -11,6 +14,7 @@ APART = 1.0
 """Level (mm) of points beside a disc: nothing touches there."""
 
 
+@dataclass(frozen=True, eq=False)
 class TwoDiscSurface:
     """Level function of two crowned discs: that on +y lies at z > 0, the other one at z < 0.
 
@@ -19,18 +23,13 @@ class TwoDiscSurface:
     crowning : mm, at the ends of a disc;  shape : "parabolic" or "circular", of the crowning
     """
 
-    slope = 0.0
+    slope: ClassVar[float] = 0.0
 
-    def __init__(
-        self,
-        cam: RollerCam,
-        width: float,
-        distance: float,
-        crowning: float = 0.0,
-        shape: str = "parabolic",
-    ) -> None:
-        self.cam, self.width, self.distance = cam, width, distance
-        self.crowning, self.shape = crowning, shape
+    cam: RollerCam
+    width: float
+    distance: float
+    crowning: float
+    shape: str
 
     def evaluate(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Level h (n,) mm, gradient (n, 3), Hessian (n, 3, 3) 1/mm at points (n, 3) of the cam.

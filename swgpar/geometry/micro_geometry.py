@@ -8,6 +8,8 @@ the sense of the words of section 7.13.3.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from swgpar.geometry.cams import Cam
@@ -68,6 +70,7 @@ def _three_waves(x: np.ndarray, y: np.ndarray) -> Waves:
     )
 
 
+@dataclass(frozen=True, eq=False)
 class WaveGeneratorSurface:
     """Level function of the crowned cam: exact in-plane distance less the radial modification.
 
@@ -79,17 +82,12 @@ class WaveGeneratorSurface:
     shape : "parabolic" or "circular", of the crowning;  lobes : 2 or 3, of the cam
     """
 
-    def __init__(
-        self,
-        cam: Cam,
-        width: float,
-        crowning: float = 0.0,
-        slope: float = 0.0,
-        shape: str = "parabolic",
-        lobes: int = 2,
-    ) -> None:
-        self.cam, self.width, self.lobes = cam, width, lobes
-        self.crowning, self.slope, self.shape = crowning, slope, shape
+    cam: Cam
+    width: float
+    crowning: float = 0.0
+    slope: float = 0.0
+    shape: str = "parabolic"
+    lobes: int = 2
 
     def evaluate(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Level h (n,) mm, gradient (n, 3), Hessian (n, 3, 3) 1/mm at points (n, 3) on the cam."""
