@@ -31,3 +31,15 @@ def error_of(levels: Sequence[float], ratio: float) -> float:
     if before * last > 0.0:
         order = float(np.clip(np.log(before / last) / np.log(ratio), LOWEST_ORDER, HIGHEST_ORDER))
     return change / (ratio**order - 1.0)
+
+
+def error_at_ends(ends: Sequence[float], between: Sequence[float], ratio: float) -> float:
+    """Error of the last value at the ends of the teeth, which is the largest one.
+
+    Where it falls from window to window, the largest stress is not above it, and not below the one
+    between the ends.
+    """
+    error = error_of(ends, ratio)
+    if len(between) == len(ends) > 1 and ends[-1] < ends[-2]:
+        error = min(error, ends[-1] - between[-1] + error_of(between, ratio))
+    return error

@@ -26,7 +26,7 @@ from swgpar.fem.vectors import read_field, write_field
 from swgpar.flank_pressure.flank_loads import flank_forces, line_loads, nodal_forces
 from swgpar.geometry.rotation import rotated
 from swgpar.largest_stress.places import OF_REGION
-from swgpar.largest_stress.window_regions import pressed, read_regions
+from swgpar.largest_stress.window_regions import pressed, read_regions, tooth_nodes
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe
@@ -36,7 +36,7 @@ from swgpar.meshing.tooth_sector import build_sector
 from swgpar.meshing.trim import trimmed
 from swgpar.model.drive_model import DriveModel
 from swgpar.model.part_contacts import contacts_of_part
-from swgpar.model.regions import END, region_of, warning_of
+from swgpar.model.regions import WITHOUT_LIMIT, warning_of
 from swgpar.model.torques import torques
 from swgpar.model.window_mesh import WindowMesh
 from swgpar.solve.discrete_problem import DiscreteProblem
@@ -51,9 +51,6 @@ RING_SECTORS = 3
 CUP_LENGTH = 2.0
 """Length of the cup's wall behind the teeth that belongs to a window, over sqrt(radius *
 thickness): a disturbance of the cut at its end decays by e within about 0.8 of that."""
-
-TOOTHED = 0.5 + 1e-9
-"""Share of the face width on either side of its middle to which the toothed part reaches."""
 
 STIFFNESS = 1e3
 """Stiffness of the springs that hold the nodes of the cuts, over E times the module: forces of some
@@ -122,25 +119,8 @@ def shared_mesh(model: DriveModel, recipe: MeshRecipe, gear: str) -> WindowMesh:
     key = gear, recipe, count
     if key not in model.window_meshes:
         layout, sector = model.partition.layouts[gear], window_sector(model.geometry, recipe, gear)
-        model.window_meshes[key] = WindowMesh(layout, sector, count, model.comm)
+        model.window_meshes[key] = WindowMesh(model.geometry, layout, sector, count, model.comm)
     return model.window_meshes[key]
-
-
-def tooth_nodes(mesh: SectorMesh, geometry: DriveGeometry, ends: bool) -> np.ndarray:
-    """Nodes (n,) of the toothed part at the ends of its face width, or between them. The plane has
-    no ends.
-
-    The fillet at the back of the teeth belongs to their end.
-    """
-    z, face_width = (
-        np.zeros(len(mesh.coords)) if mesh.plane else np.abs(mesh.coords[:, 2]),
-        geometry.face_width,
-    )
-    if not ends:
-        return np.flatnonzero(z <= END * face_width)
-    return np.flatnonzero(
-        (z > END * face_width) & (z <= TOOTHED * face_width + geometry.cup.back_fillet)
-    )
 
 
 def sectors_of(gear: str) -> int:
@@ -345,21 +325,35 @@ class LocalProblem:
         return named, sectors[inside]
 
     def largest(self, ends: bool = False) -> WindowStress:
-        """Largest s1 of the teeth at their ends or between them, one pitch or more inside of the
-        cuts; collective."""
-        mesh = self.layout.mesh
+        """Largest s1 of the teeth at their ends or between them that has a limit, one pitch or more
+        inside of the cuts; collective."""
+        nodes = tooth_nodes(self.layout.mesh, self.model.geometry, ends)
+        return self._tension(nodes[~self._no_limit(nodes)])
+
+    def largest_at_corners(self) -> WindowStress | None:
+        """Largest s1 of the teeth where it has no limit; None where it has one everywhere;
+        collective."""
+        mesh, geometry = self.layout.mesh, self.model.geometry
+        parts = (False,) if mesh.plane else (False, True)
+        nodes = np.concatenate([tooth_nodes(mesh, geometry, ends) for ends in parts])
+        nodes = nodes[self._no_limit(nodes)]
+        return self._tension(nodes) if len(nodes) else None
+
+    def _no_limit(self, nodes: np.ndarray) -> np.ndarray:
+        return np.isin(self._shared.regions[nodes], WITHOUT_LIMIT)
+
+    def _tension(self, nodes: np.ndarray) -> WindowStress:
+        """Largest s1 at nodes (n,) of the sector; collective."""
         stresses, _ = self._stresses
-        toothed = tooth_nodes(mesh, self.model.geometry, ends)
-        found = self._found(stresses[f"{STRESS_PREFIXES[self.gear][0]}_s1"][:, toothed], toothed)
-        region = region_of(self.model.geometry, mesh, found.node, False)
-        return self._named(found, region)
+        found = self._found(stresses[f"{STRESS_PREFIXES[self.gear][0]}_s1"][:, nodes], nodes)
+        return self._named(found, str(self._shared.regions[found.node]))
 
     def by_region(self) -> dict[str, WindowStress]:
         """Largest stresses of the regions that the window resolves, by names with `OF_REGION`;
         collective."""
         geometry, mesh = self.model.geometry, self.layout.mesh
         length = CUP_LENGTH * geometry.wall_decay if "cut" in mesh.node_sets else 0.0
-        regions = read_regions(geometry, mesh, length)
+        regions = read_regions(geometry, mesh, length, self._shared.regions)
         stresses, sectors = self._stresses
         near = pressed(geometry, mesh, self.pressing)[sectors]
         found = {}

@@ -26,10 +26,14 @@ from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.meshing.sector import SectorMesh
 from swgpar.model.drive_model import DriveModel
 from swgpar.model.nodal_pressure import nodal_pressure
-from swgpar.model.regions import END, NEAR, warning_of
+from swgpar.model.regions import END, NEAR, UNDER_CONTACT, WITHOUT_LIMIT, warning_of
 
 TOUCHED = 0.02
 """Share of the largest nodal pressure from which a flank's node counts as touched."""
+
+OFF_CORNERS = "_off_corners"
+"""Ending of the names of stresses apart from the contact of flanks and off all places where there
+is no limit."""
 
 APART, APART_DISTANCE = "_apart", 0.25
 """Ending of the names of stresses apart from the contact of flanks; distance (modules) from a
@@ -49,8 +53,9 @@ class Place:
 
     value : MPa;  body : name
     region : "tooth root", "tooth end", "flank under contact", "flank", "tip", "rim inside", "rim",
-    "notch", "cup wall", "fillet at the back", "fillet", "closed end", "bore", "attachment",
-    "flange", "rim of the flange", "outer surface" or "inside the tooth"
+    "notch", "corner", "rim at the edge of the cam", "cup wall", "fillet at the back", "fillet",
+    "closed end", "bore", "attachment", "flange", "rim of the flange", "outer surface" or "inside
+    the tooth"
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
     warning : why the value depends on the mesh; empty where it converges
@@ -95,8 +100,12 @@ class LargestStresses(AnswerGroup):
             )
             for body in ("fs", "rg")
             for stress in STRESSES
-            for ending, words in (("", ""), (APART, ", apart from the contact"))
-            if not (ending and stress == "s1")
+            for ending, words in (
+                ("", ""),
+                (APART, ", apart from the contact"),
+                (OFF_CORNERS, ", apart from the contact, and off corners without a radius"),
+            )
+            if not (ending == APART and stress == "s1")
         )
     )
     regions: Mapping[str, Place]
@@ -127,6 +136,7 @@ class LargestStresses(AnswerGroup):
         kinds = {kind.name.partition(".")[2]: kind for kind in declared}
         for name, place in (*self.places.items(), *self.regions.items()):
             stress, within, region = name.partition(OF_REGION)
+            hidden = stress.endswith(OFF_CORNERS) and not self._lies_at_a_corner(stress)
             kind = kinds[stress + within]
             one = Answer(
                 name=f"largest.{name}",
@@ -135,9 +145,16 @@ class LargestStresses(AnswerGroup):
                 text=f"{kind.text}{region}",
                 place=place.text,
                 remark=place.warning,
-                detail=kind.detail,
+                detail=kind.detail or hidden,
             )
             yield with_no_limit(one) if place.warning else with_error(one, place.error)
+
+    def _lies_at_a_corner(self, name: str) -> bool:
+        """Whether the largest stress apart from the contact has no limit, where another one off
+        corners has this name."""
+        stress = name.removesuffix(OFF_CORNERS)
+        largest = self.places.get(stress + APART, self.places.get(stress))
+        return largest is not None and largest.region in WITHOUT_LIMIT
 
 
 def find_places(
@@ -153,7 +170,8 @@ def find_places(
     |s3| and von Mises are looked for apart from the contact of flanks as well, with names that end
     with `APART`: on surfaces and in the rim. Inside of a tooth they decrease with the distance from
     the contact, wherever it is cut off. All are looked for in every region as well, with names that
-    have `OF_REGION`; only values above 0.
+    have `OF_REGION`; only values above 0. Names that end with `OFF_CORNERS` are of those apart from
+    the contact that have a limit.
 
     fields : nodal fields of both bodies as `DriveModel.stresses` gives them
     on_edge : whether a contact of flanks lies on the edge of a tooth
@@ -190,6 +208,11 @@ def find_places(
                     np.where(apart, values, -np.inf),
                     np.zeros_like(touched),
                 )
+            limited = np.where(below, regions[True], regions[False])
+            limited = ~np.isin(limited, (*WITHOUT_LIMIT, UNDER_CONTACT)) & (
+                apart | (stress == "s1")
+            )
+            names[f"{prefix}_{stress}{OFF_CORNERS}"] = np.where(limited, values, -np.inf), below
             names |= _by_region(f"{prefix}_{stress}", regions, values, below)
             for column, of in names.items():
                 place = _largest(model, name, *of)

@@ -27,9 +27,18 @@ from swgpar.largest_stress.places import (
     near_contact,
     pressed_nodes,
 )
+from swgpar.largest_stress.window_regions import tooth_nodes
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
-from swgpar.model.regions import BACK, FLANK, RIM_INSIDE, TIP, TOOTH_END, TOOTH_ROOT
+from swgpar.model.regions import (
+    BACK,
+    FLANK,
+    RIM_INSIDE,
+    TIP,
+    TOOTH_END,
+    TOOTH_ROOT,
+    WITHOUT_LIMIT,
+)
 
 UNREFINED = {"plane": (), "cup": (FLANK, TIP)}
 """Regions of the flexible spline whose elements are the same in all windows: no error follows from
@@ -85,15 +94,21 @@ class WindowReadings:
 
     skipped : coarsest windows that are left out
     count : windows so far, by tooth
+    corners : the largest tension at the teeth where it has no limit, of the last windows, by tooth
     """
 
     skipped: int
     levels: dict[int, dict[str, list[float]]] = field(default_factory=dict)
     last: dict[int, dict[str, WindowStress]] = field(default_factory=dict)
     count: dict[int, int] = field(default_factory=dict)
+    corners: dict[int, WindowStress] = field(default_factory=dict)
 
-    def add(self, tooth: int, found: Mapping[str, WindowStress]) -> None:
+    def add(
+        self, tooth: int, found: Mapping[str, WindowStress], at_corner: WindowStress | None = None
+    ) -> None:
         """Keep what the next window around a tooth gives."""
+        if at_corner is not None:
+            self.corners[tooth] = at_corner
         of_tooth, before = self.levels.setdefault(tooth, {}), self.count.get(tooth, 0)
         for name, stress in found.items():
             # a region that coarser windows had not had no stress there
@@ -112,6 +127,15 @@ class WindowReadings:
             if self.count[tooth] == finest
         }
         return max(found, key=lambda tooth: found[tooth])
+
+    def at_corner(self, model: DriveModel, s1: float) -> Place | None:
+        """The largest tension at the teeth where it has no limit; None where it is not above
+        another one (MPa)."""
+        found = max(self.corners.values(), key=lambda one: one.value, default=None)
+        if found is None or found.value <= s1:
+            return None
+        at = FLEXIBLE_SPLINE, found.position, found.region, found.tooth
+        return replace(_place(model, *at, found.value, math.inf), warning=found.warning)
 
     def stresses(
         self, model: DriveModel, gear: str, nodal: Mapping[str, np.ndarray], ratio: float
@@ -237,3 +261,19 @@ def nodal_by_sector(
             gathered = np.concatenate(model.comm.allgather(read))
             found[f"{prefix}_{stress}{OF_REGION}{region}"] = gathered
     return found
+
+
+def largest_by_tooth(model: DriveModel, s1: np.ndarray, ends: bool) -> np.ndarray:
+    """Largest s1 (n_modelled,) MPa of the teeth of all modelled sectors, at their ends or between
+    them, where it has a limit; collective. s1 : (n_owned, n_node) MPa, nodal averages"""
+    mesh = model.partition.layouts[FLEXIBLE_SPLINE].mesh
+    nodes = tooth_nodes(mesh, model.geometry, ends)
+    limited = ~np.isin(model.regions[FLEXIBLE_SPLINE][False][nodes], WITHOUT_LIMIT)
+    return largest_of_nodes(model, s1, nodes[limited])
+
+
+def largest_of_nodes(model: DriveModel, s1: np.ndarray, nodes: np.ndarray) -> np.ndarray:
+    """Largest s1 (n_modelled,) MPa at these nodes (n,) of all modelled sectors of the flexible
+    spline; collective. s1 : (n_owned, n_node) MPa, nodal averages"""
+    mine = s1[:, nodes].max(axis=1) if len(s1) else np.zeros(0)
+    return np.concatenate(model.comm.allgather(mine))

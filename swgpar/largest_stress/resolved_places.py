@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.largest_stress.places import APART, OF_REGION, ROLLER, Place
+from swgpar.largest_stress.places import APART, OF_REGION, OFF_CORNERS, ROLLER, Place
 from swgpar.largest_stress.root_stress import RootStress
 from swgpar.largest_stress.wall_stress import WallStress
 from swgpar.model.regions import CUP_WALL, INSIDE, UNDER_CONTACT
@@ -36,6 +36,8 @@ def with_windows(
     names
     """
     found, resolved = dict(places), windowed_places(root_stress, wall)
+    if root_stress is not None and (corner := root_stress.at_corner) is not None:
+        resolved[f"fs_s1{OF_REGION}{corner.region}"] = corner
     for name, place in resolved.items():
         nodal, risen = places.get(name), _risen(place, places.get(name), loaded.get(name))
         beyond = nodal is not None and nodal.value > risen.value
@@ -75,7 +77,7 @@ def _of_root(root_stress: RootStress) -> dict[str, Place]:
             radius=root_stress.radius,
             z=root_stress.z,
             angle_deg=root_stress.angle_deg,
-            warning=root_stress.warning,
+            warning="",
             error=root_stress.total_error,
         )
     }
@@ -96,7 +98,7 @@ def _risen(place: Place, nodal: Place | None, loaded: float | None) -> Place:
 def _totals(
     stress: str, found: Mapping[str, Place], nodal: Mapping[str, Place]
 ) -> dict[str, Place]:
-    """The largest stress of a body, and that apart from the contact of flanks.
+    """The largest stress of a body, that apart from the contact of flanks, and that off corners.
 
     A tension below a contact comes from the elements alone: surfaces are pressed there. What
     compression and von Mises stress have below it is not resolved, so that the largest of all has
@@ -104,12 +106,16 @@ def _totals(
     """
     regions = [place for name, place in found.items() if name.startswith(stress + OF_REGION)]
     apart = [place for place in regions if place.region not in (UNDER_CONTACT, INSIDE)]
+    limited, known = [place for place in apart if not place.warning], {}
+    name = stress + OFF_CORNERS
+    if limited and name in nodal:
+        known[name] = replace(_largest(limited), on_mesh=nodal[name].value)
     if stress.endswith("s1"):
-        return {stress: replace(_largest(apart), on_mesh=nodal[stress].value)}
+        return known | {stress: replace(_largest(apart), on_mesh=nodal[stress].value)}
     largest = _largest(regions)
     if any(place.region == UNDER_CONTACT for place in regions):
         largest = replace(largest, error=None)
-    known = {stress: replace(largest, on_mesh=nodal[stress].value)}
+    known[stress] = replace(largest, on_mesh=nodal[stress].value)
     if stress + APART in nodal:
         known[stress + APART] = replace(_largest(apart), on_mesh=nodal[stress + APART].value)
     return known

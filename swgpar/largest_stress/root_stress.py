@@ -30,17 +30,14 @@ from swgpar.answers.answer import (
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.largest_stress.candidate_teeth import candidates, followed
-from swgpar.largest_stress.convergence import error_of
-from swgpar.largest_stress.local_problem import (
-    LocalProblem,
-    WindowState,
-    WindowStress,
-    tooth_nodes,
-)
-from swgpar.largest_stress.places import OF_REGION, root_nodes
+from swgpar.largest_stress.convergence import error_at_ends, error_of
+from swgpar.largest_stress.local_problem import LocalProblem, WindowState, WindowStress
+from swgpar.largest_stress.places import OF_REGION, Place, root_nodes
 from swgpar.largest_stress.region_stress import (
     RegionStress,
     WindowReadings,
+    largest_by_tooth,
+    largest_of_nodes,
     nodal_averages,
     nodal_by_sector,
 )
@@ -78,29 +75,40 @@ class OverPeriod:
 
 @evaluation
 class RootStress(AnswerGroup):
-    """Largest tensile stress at the teeth.
+    """Largest tensile stress at the teeth where it has a limit.
 
+    at_corner : a larger one where it has none
     error : MPa, estimated, of the window's mesh; None where it is not known
-    region : as of a `Place`;  warning : why there is no limit to converge to; empty where there is
-    one
+    region : as of a `Place`
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
-    part : of the tooth;  by_part : largest s1 (MPa) of every part on the windows, coarse to fine,
-    while it was followed
-    elements : of the finest window
+    part : of the tooth;  elements : of the finest window
+    by_part : largest s1 (MPa) of every part on the windows, coarse to fine, while followed
     drive_error : MPa, estimated, of the drive's mesh; None where it is not known
     regions : largest stresses of the regions of both gears that windows resolve, by names with
     `OF_REGION`
     period : angles of the wave generator (degrees) and s1 (MPa) there, of one sampled period
     """
 
-    s1: float = answer(
-        "root.s1",
-        "largest tension at the teeth under load, by windows",
-        "MPa",
-        error="total_error",
-        place="place",
-        remark="warning",
+    s1: float = part_answers(
+        AnswerKind(
+            "root.s1",
+            "largest tension at the teeth under load, by windows",
+            "MPa",
+            "largest",
+            error="total_error",
+            place="place_of_largest",
+            remark="warning",
+        ),
+        AnswerKind(
+            "root.s1_off_corners",
+            "the same off corners without a radius and off edges of the cam",
+            "MPa",
+            "s1",
+            detail=True,
+            error="total_error",
+            place="place",
+        ),
     )
     error: float | None = answer(
         "root.s1_error",
@@ -113,7 +121,6 @@ class RootStress(AnswerGroup):
         "root.s1_on_mesh", "the same by nodal averages of the drive's mesh", "MPa"
     )
     region: str
-    warning: str
     tooth: int
     radius: float
     z: float
@@ -123,6 +130,7 @@ class RootStress(AnswerGroup):
     elements: int
     drive_error: float | None = None
     regions: Mapping[str, RegionStress] = field(default_factory=dict)
+    at_corner: Place | None = None
     period: tuple[tuple[float, float], ...] = part_answers(
         AnswerKind(
             "root.mean_s1",
@@ -146,7 +154,12 @@ class RootStress(AnswerGroup):
 
     def answers(self) -> Iterator[Answer]:
         for one in super().answers():
-            yield with_no_limit(one) if one.name == "root.s1" and self.warning else one
+            if self.at_corner is None:
+                yield one
+            elif one.name == "root.s1":
+                yield with_no_limit(one)
+            else:
+                yield replace(one, detail=one.detail and one.name != "root.s1_off_corners")
 
     def remarks(self) -> Iterator[str]:
         if (over := self.over_period) is not None:
@@ -155,8 +168,23 @@ class RootStress(AnswerGroup):
             yield f"{len(self.period)} angles of the period, one window at each further one{change}"
 
     @property
+    def largest(self) -> float:
+        """s1 (MPa), or a larger one at a corner."""
+        return self.s1 if self.at_corner is None else self.at_corner.value
+
+    @property
+    def place_of_largest(self) -> str:
+        """Words for the place of `largest`."""
+        return self.place if self.at_corner is None else self.at_corner.text
+
+    @property
+    def warning(self) -> str:
+        """Why `largest` has no limit; empty where it has one."""
+        return "" if self.at_corner is None else self.at_corner.warning
+
+    @property
     def place(self) -> str:
-        """Words for the place."""
+        """Words for the place of `s1`."""
         return place_text(self.region, self.tooth, self.radius, self.z, self.angle_deg)
 
     @property
@@ -203,9 +231,9 @@ def resolve_root_stress(
         (False,) if kind == "plane" else (False, True)
     )  # between the ends of the teeth, and at them
     averages = nodal_averages(model, FLEXIBLE_SPLINE)
-    on_mesh = [_largest_by_tooth(model, averages[0], ends) for ends in parts]
+    on_mesh = [largest_by_tooth(model, averages[0], ends) for ends in parts]
     mesh = model.partition.layouts[FLEXIBLE_SPLINE].mesh
-    in_root = _largest_nodal(model, averages[0], root_nodes(model.geometry, mesh))
+    in_root = largest_of_nodes(model, averages[0], root_nodes(model.geometry, mesh))
     nodal = nodal_by_sector(model, state, FLEXIBLE_SPLINE, averages)
     parts_of_teeth = [f"fs_vm{OF_REGION}{part}" for part in (TOOTH_ROOT, TOOTH_END, RIM_INSIDE)]
     mises = np.max([nodal[name] for name in parts_of_teeth if name in nodal], axis=0)
@@ -238,14 +266,16 @@ def resolve_root_stress(
     error = error_of(values[best], RATIO[kind])
     if best[1]:
         error = (
-            error_at_ends(by_part, RATIO[kind]) if len(values[best]) >= LEVELS[kind] else math.inf
+            error_at_ends(by_part[ENDS], by_part[BETWEEN], RATIO[kind])
+            if len(values[best]) >= LEVELS[kind]
+            else math.inf
         )
     known = _place(model, found[best], PARTS[best[1]], by_part, error, float(np.max(on_mesh)))
     regions = readings.stresses(model, FLEXIBLE_SPLINE, nodal, RATIO[kind])
     if ring:
         regions |= _ring_stresses(model, state, count, skipped)
         _release(model)
-    return replace(known, regions=regions)
+    return replace(known, regions=regions, at_corner=readings.at_corner(model, known.s1))
 
 
 def _ring_stresses(
@@ -292,38 +322,11 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
     level = PERIOD_LEVEL[kind]
     ends = known.part == ENDS
     s1, _, _ = nodal_averages(model, FLEXIBLE_SPLINE)
-    tooth = int(_largest_by_tooth(model, s1, ends).argmax())
+    tooth = int(largest_by_tooth(model, s1, ends).argmax())
     found = _solve(model, state, [(tooth, ends)], window_recipe(kind, level))[tooth, ends]
     value = found.value * known.s1 / known.levels[level]
     period = known.period or ((0.0, known.s1),)
     return replace(known, period=(*period, (float(np.degrees(state.angle)), value)))
-
-
-def error_at_ends(by_part: Mapping[str, Sequence[float]], ratio: float) -> float:
-    """Error of the last value of `by_part` at the ends of the teeth, which is the largest one.
-
-    Where it falls from window to window, the largest stress is not above it, and not below the one
-    between the ends.
-    """
-    ends, between = by_part[ENDS], by_part[BETWEEN]
-    error = error_of(ends, ratio)
-    if len(between) == len(ends) > 1 and ends[-1] < ends[-2]:
-        error = min(error, ends[-1] - between[-1] + error_of(between, ratio))
-    return error
-
-
-def _largest_by_tooth(model: DriveModel, s1: np.ndarray, ends: bool) -> np.ndarray:
-    """Largest s1 (n_modelled,) MPa of the teeth of all modelled sectors, at their ends or between
-    them; collective. s1 : (n_owned, n_node) MPa, nodal averages"""
-    mesh = model.partition.layouts[FLEXIBLE_SPLINE].mesh
-    return _largest_nodal(model, s1, tooth_nodes(mesh, model.geometry, ends))
-
-
-def _largest_nodal(model: DriveModel, s1: np.ndarray, nodes: np.ndarray) -> np.ndarray:
-    """Largest s1 (n_modelled,) MPa at these nodes (n,) of all modelled sectors of the flexible
-    spline; collective. s1 : (n_owned, n_node) MPa, nodal averages"""
-    mine = s1[:, nodes].max(axis=1) if len(s1) else np.zeros(0)
-    return np.concatenate(model.comm.allgather(mine))
 
 
 def _solve(
@@ -346,7 +349,7 @@ def _solve(
         with _solved(model, state, tooth, recipe, states) as window:
             found |= {place: window.largest(place[1]) for place in places if place[0] == tooth}
             if readings is not None:
-                readings.add(tooth, window.by_region())
+                readings.add(tooth, window.by_region(), window.largest_at_corners())
     return found
 
 
@@ -387,7 +390,6 @@ def _place(
         error=error if math.isfinite(error) else None,
         on_mesh=on_mesh,
         region=found.region,
-        warning=found.warning,
         tooth=found.tooth % layout.mesh.n_sectors,
         radius=float(np.hypot(x, y)),
         z=0.0 if layout.mesh.plane else float(z),

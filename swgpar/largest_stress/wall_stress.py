@@ -24,7 +24,7 @@ from swgpar.meshing.sector import SectorMesh
 from swgpar.meshing.trim import trimmed
 from swgpar.meshing.wall_sector import WallCounts, WallSector, wall_sector
 from swgpar.model.drive_model import DriveModel
-from swgpar.model.regions import FILLET, region_of, warning_of
+from swgpar.model.regions import FILLET, WITHOUT_LIMIT, regions_of
 
 RINGS = WallCounts(4, 2), WallCounts(6, 3, around=1.5)
 """Elements of the rings, coarse to fine."""
@@ -363,10 +363,10 @@ def _regions_read(part: WallProblem, near: np.ndarray) -> np.ndarray:
     """Regions (n_node,) of a slice, empty where it is not read. near : (n_node,) bool"""
     geometry, mesh = part.model.geometry, part.layout.mesh
     regions = np.full(len(near), "", dtype=object)
-    for node in np.flatnonzero(near & (mesh.coords[:, 2] >= _first_z(part.model))):
-        region = region_of(geometry, mesh, int(node), False)
-        if not warning_of(geometry, region, mesh.coords[node]):
-            regions[node] = region
+    nodes = np.flatnonzero(near & (mesh.coords[:, 2] >= _first_z(part.model)))
+    found = regions_of(geometry, mesh, nodes, False)
+    limited = ~np.isin(found, WITHOUT_LIMIT)
+    regions[nodes[limited]] = found[limited]
     return regions
 
 

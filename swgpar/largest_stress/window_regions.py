@@ -16,14 +16,13 @@ from swgpar.model.regions import (
     BACK,
     BESIDE,
     CUP_WALL,
+    END,
     FLANK,
     RIM,
     RIM_INSIDE,
     TIP,
     TOOTH_END,
     TOOTH_ROOT,
-    region_of,
-    warning_of,
 )
 
 OF_SPLINE = (TOOTH_ROOT, TOOTH_END, FLANK, TIP, RIM_INSIDE, BACK, CUP_WALL)
@@ -35,16 +34,23 @@ BEHIND = 1.5
 wall do not resolve it, and that from the cut of a window from which it does."""
 
 
+TOOTHED = 0.5 + 1e-9
+"""Share of the face width on either side of its middle to which the toothed part reaches."""
+
+
 def wall_start(geometry: DriveGeometry, cup: CupGeometry) -> float:
     """Distance (mm) from the back of the teeth at which rings begin: behind its fillet, and where
     no cam touches."""
     return max(cup.back_fillet, 0.5 * (geometry.cam_width - geometry.face_width))
 
 
-def read_regions(geometry: DriveGeometry, mesh: SectorMesh, length: float) -> np.ndarray:
+def read_regions(
+    geometry: DriveGeometry, mesh: SectorMesh, length: float, every: np.ndarray
+) -> np.ndarray:
     """Region (n_node,) of the nodes of a window's sector, empty where nothing is read.
 
     length : mm, of the wall behind the teeth that belongs to the window
+    every : (n_node,) regions of all nodes where no contact presses
     """
     wanted = OF_RING if mesh.body == RING_GEAR else OF_SPLINE
     regions = np.full(len(mesh.coords), "", dtype=object)
@@ -54,10 +60,8 @@ def read_regions(geometry: DriveGeometry, mesh: SectorMesh, length: float) -> np
     read &= ~inside_teeth(geometry, mesh) & ~_beside_edges(geometry, mesh, length)
     if mesh.lower_nodes is not None:
         read &= mesh.lower_nodes == np.arange(len(read))
-    for node in np.flatnonzero(read):
-        region = region_of(geometry, mesh, int(node), False)
-        if region in wanted and not warning_of(geometry, region, mesh.coords[node]):
-            regions[node] = region
+    read &= np.isin(every, wanted)
+    regions[read] = every[read]
     return regions
 
 
@@ -79,6 +83,23 @@ def _beside_edges(geometry: DriveGeometry, mesh: SectorMesh, length: float) -> n
         corner = geometry.inner_radius + thickness
         beside |= np.hypot(radius - corner, z - back) < BESIDE * thickness
     return beside
+
+
+def tooth_nodes(mesh: SectorMesh, geometry: DriveGeometry, ends: bool) -> np.ndarray:
+    """Nodes (n,) of the toothed part at the ends of its face width, or between them. The plane has
+    no ends.
+
+    The fillet at the back of the teeth belongs to their end.
+    """
+    z, face_width = (
+        np.zeros(len(mesh.coords)) if mesh.plane else np.abs(mesh.coords[:, 2]),
+        geometry.face_width,
+    )
+    if not ends:
+        return np.flatnonzero(z <= END * face_width)
+    return np.flatnonzero(
+        (z > END * face_width) & (z <= TOOTHED * face_width + geometry.cup.back_fillet)
+    )
 
 
 def pressed(geometry: DriveGeometry, mesh: SectorMesh, forces: np.ndarray) -> np.ndarray:

@@ -3,16 +3,21 @@ to converge to."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.meshing.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.sector import SectorMesh
+from swgpar.model.sharp_corners import sharp_corners
 
 BACK = "fillet at the back"
 """Region of the fillet between the back of the teeth and the wall of the cup."""
 
 ATTACHED = "attachment"
-"""Region of the clamped ring of closed end or flange, or of the ring in which its bolts lie."""
+"""Region of the clamped ring of closed end or flange, or of the ring in which its bolts lie; of the
+edges of a ring gear whose outer surface is held."""
 
 TOOTH_ROOT, TOOTH_END, UNDER_CONTACT = "tooth root", "tooth end", "flank under contact"
 """Regions of the roots and of the ends of the teeth; of the flanks that touch and of what is close
@@ -25,6 +30,13 @@ RIM_INSIDE, RIM, NOTCH_REGION = "rim inside", "rim", "notch"
 """Regions of the inner half of the flexible spline's rim, of the outer half of the ring gear's rim,
 and of the corner without a fillet behind the teeth."""
 
+OUTER = "outer surface"
+"""Region of the outer surface of the ring gear."""
+
+CAM_EDGE, CORNER = "rim at the edge of the cam", "corner"
+"""Regions where the stress has no limit: inside of the rim at the edge of the wave generator, and
+beside corners without a radius."""
+
 CUP_WALL = "cup wall"
 """Region of the wall between the back of the teeth and its fillet."""
 
@@ -36,6 +48,9 @@ WALL = (CUP_WALL, FILLET, "closed end", "bore", "flange", "rim of the flange")
 
 END = 0.45
 """Share of the face width from its middle beyond which a place belongs to the end of a tooth."""
+
+WITHOUT_LIMIT = (NOTCH_REGION, ATTACHED, CAM_EDGE, CORNER)
+"""Regions where the stress grows with every finer mesh."""
 
 AT_ENDS = (TOOTH_END, BACK, NOTCH_REGION)
 """Regions of the ends of the teeth."""
@@ -54,6 +69,7 @@ the corner there."""
 AVERAGE = "below the contact of teeth: an average over elements, larger on a finer mesh"
 NOTCH = "in the notch behind the teeth, a corner without fillet: no limit to converge to"
 EDGE = "at the edge of the wave generator: edge contact, no limit to converge to"
+NO_RADIUS = "which has no radius: no limit to converge to"
 CLAMPED = "at the edge of a rigid attachment: no limit to converge to"
 
 
@@ -61,15 +77,52 @@ def sector_regions(geometry: DriveGeometry, mesh: SectorMesh) -> dict[bool, np.n
     """Regions (n_node,) of the nodes of a sector, by whether a contact of flanks presses on
     them."""
     nodes = range(len(mesh.coords))
-    return {
-        touched: np.array([region_of(geometry, mesh, node, touched) for node in nodes])
-        for touched in (False, True)
-    }
+    return {touched: regions_of(geometry, mesh, nodes, touched) for touched in (False, True)}
+
+
+def regions_of(
+    geometry: DriveGeometry, mesh: SectorMesh, nodes: Sequence[int] | np.ndarray, touched: bool
+) -> np.ndarray:
+    """Regions (n,) of nodes (n,) of a sector. touched : whether a contact of flanks presses on
+    them, or close to them"""
+    found = np.array([_smooth_region(geometry, mesh, int(node), touched) for node in nodes])
+    found = found.astype(object)
+    points = mesh.coords[np.asarray(nodes, dtype=int)]
+    found[_at_the_cam_edge(geometry, points) & (found == RIM_INSIDE)] = CAM_EDGE
+    at_held_edge = _at_a_held_edge(geometry, mesh, points)
+    found[at_held_edge & np.isin(found, (RIM, OUTER))] = ATTACHED
+    of_wall = np.isin(found, (*WALL, RIM_INSIDE))
+    for corner in sharp_corners(geometry, mesh.body):
+        found[corner.near(points) & (of_wall | corner.of_tooth)] = CORNER
+    return found.astype(str)
 
 
 def region_of(geometry: DriveGeometry, mesh: SectorMesh, node: int, touched: bool) -> str:
-    """Region of a node of a tooth sector. touched : whether a contact of flanks presses on it, or
-    close to it"""
+    """Region of one node, see `regions_of`."""
+    return str(regions_of(geometry, mesh, [node], touched)[0])
+
+
+def _at_the_cam_edge(geometry: DriveGeometry, points: np.ndarray) -> np.ndarray:
+    """Whether points (n, 3) mm have the z of an edge of the wave generator, (n,) bool."""
+    if geometry.model == "plane":
+        return np.zeros(len(points), dtype=bool)
+    beyond = np.abs(points[:, 2]) - 0.5 * geometry.cam_width
+    return np.abs(beyond) < NEAR * geometry.module
+
+
+def _at_a_held_edge(geometry: DriveGeometry, mesh: SectorMesh, points: np.ndarray) -> np.ndarray:
+    """Whether points (n, 3) mm of a ring gear are close to an edge of its outer surface, which is
+    held if there is no housing around it, (n,) bool."""
+    if mesh.plane or mesh.body == FLEXIBLE_SPLINE or geometry.housing > 0.0:
+        return np.zeros(len(points), dtype=bool)
+    gear = geometry.gears[mesh.body]
+    below = gear.outer_radius - np.hypot(points[:, 0], points[:, 1])
+    away = np.min([np.abs(points[:, 2] - end) for end in gear.ends], axis=0)
+    return np.hypot(below, away) < BESIDE * gear.rim
+
+
+def _smooth_region(geometry: DriveGeometry, mesh: SectorMesh, node: int, touched: bool) -> str:
+    """Region of a node without regard to edges of the cam and corners without a radius."""
     x, y, z = mesh.coords[node]
     radius, half = float(np.hypot(x, y)), 0.5 * geometry.face_width
     if not mesh.plane and _at_the_back(geometry, mesh, radius, float(z)):
@@ -97,7 +150,7 @@ def region_of(geometry: DriveGeometry, mesh: SectorMesh, node: int, touched: boo
         if radius < root - near:
             return TIP if radius < mesh.profile.r_tip_circle + near else inside
         return (
-            "outer surface"
+            OUTER
             if radius > outer - near
             else RIM
             if radius > root + 0.5 * geometry.gears["ring_gear"].rim
@@ -178,14 +231,11 @@ def _is_attached(cup: CupGeometry, radius: float) -> bool:
 def warning_of(geometry: DriveGeometry, region: str, point: np.ndarray) -> str:
     """Why a stress at a point (3,) mm of a region has no limit, or depends on the mesh; empty where
     it converges."""
-    if region == UNDER_CONTACT:
-        return AVERAGE
+    if region == CORNER:
+        corners = [one for body in geometry.gears for one in sharp_corners(geometry, body)]
+        nearest = min(corners, key=lambda one: float(one.distance(point[None])[0]))
+        return f"beside {nearest.text}, {NO_RADIUS}"
     if region == NOTCH_REGION:
-        return NOTCH
-    if region == ATTACHED:
-        return CLAMPED
-    edge = 0.5 * geometry.cam_width
-    at_edge = region == RIM_INSIDE and abs(abs(point[2]) - edge) < NEAR * geometry.module
-    if geometry.model != "plane" and at_edge:
-        return EDGE
-    return ""
+        radius = geometry.inner_radius + geometry.cup_thickness
+        return f"{NOTCH}: radius {radius:.2f}, z {geometry.cup.wall.back:.2f} mm"
+    return {UNDER_CONTACT: AVERAGE, ATTACHED: CLAMPED, CAM_EDGE: EDGE}.get(region, "")

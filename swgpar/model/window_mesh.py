@@ -16,14 +16,17 @@ from scipy.sparse import csr_matrix
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
+from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.meshing.interpolation import interpolation
 from swgpar.meshing.sector import SectorMesh
+from swgpar.model.regions import regions_of
 from swgpar.solve.tangent_matrix import TangentMatrix
 
 
 class WindowMesh:
     """One window at a time is on it.
 
+    geometry : of the drive
     body : layout of the gear in the drive;  mesh : its sector in windows
     count : sectors of a window;  comm : communicator
 
@@ -31,9 +34,17 @@ class WindowMesh:
     from_drive : interpolation from the drive's mesh;  partition, elements : of the present window
     blocks : room of its tangent, with the factor
     factor_angle : rad, of the first sector of the window whose tangent is factorised; None for none
+    regions : (n_node,) regions of the nodes where no contact presses
     """
 
-    def __init__(self, body: BodyLayout, mesh: SectorMesh, count: int, comm: MPI.Comm) -> None:
+    def __init__(
+        self,
+        geometry: DriveGeometry,
+        body: BodyLayout,
+        mesh: SectorMesh,
+        count: int,
+        comm: MPI.Comm,
+    ) -> None:
         self.gear, self.mesh = body.name, mesh
         self.from_drive = interpolation(body.mesh, mesh)
         chain = BodyLayout(
@@ -48,6 +59,7 @@ class WindowMesh:
         self.elements = Elements(self.partition)
         self.blocks = TangentMatrix(self.elements)
         self.factor_angle: float | None = None
+        self.regions = regions_of(geometry, mesh, range(len(mesh.coords)), False)
         self._from_coarser: tuple[SectorMesh, csr_matrix] | None = None
 
     @property

@@ -114,7 +114,6 @@ def windows(levels: list[float], part: str = BETWEEN) -> RootStress:
     """The largest stress, on these windows."""
     place = {
         "region": "",
-        "warning": "",
         "tooth": 0,
         "radius": 0.0,
         "z": 0.0,

@@ -133,7 +133,6 @@ def rooted(regions: dict[str, RegionStress]) -> RootStress:
         error=None,
         on_mesh=0.0,
         region="tooth root",
-        warning="",
         tooth=0,
         radius=59.0,
         z=0.0,

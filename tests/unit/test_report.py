@@ -115,7 +115,6 @@ def test_verdicts_follow_the_numbers(folder: Path) -> None:
         error=20.0,
         on_mesh=90.0,
         region="tooth root",
-        warning="",
         tooth=1,
         radius=20.0,
         z=0.0,

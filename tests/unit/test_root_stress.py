@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from swgpar.largest_stress.candidate_teeth import candidates, followed, may_be_largest
-from swgpar.largest_stress.convergence import error_of
+from swgpar.largest_stress.convergence import error_at_ends, error_of
 from swgpar.largest_stress.local_problem import WindowStress
-from swgpar.largest_stress.root_stress import BETWEEN, ENDS, error_at_ends
 
 
 def teeth(**values: float) -> np.ndarray:
@@ -131,9 +130,7 @@ def test_a_stress_at_the_ends_that_falls_is_bounded_by_the_one_between_them() ->
     falling, rising = [270.0, 292.0, 284.0], [270.0, 278.0, 284.0]
     between = [270.0, 278.0, 282.0]
     alone = error_of(falling, 1.5)
-    assert error_at_ends({BETWEEN: between[:1], ENDS: falling}, 1.5) == alone
-    assert error_at_ends({BETWEEN: between, ENDS: falling}, 1.5) == pytest.approx(
-        2.0 + error_of(between, 1.5)
-    )
+    assert error_at_ends(falling, between[:1], 1.5) == alone
+    assert error_at_ends(falling, between, 1.5) == pytest.approx(2.0 + error_of(between, 1.5))
     assert 2.0 + error_of(between, 1.5) < alone
-    assert error_at_ends({BETWEEN: between, ENDS: rising}, 1.5) == error_of(rising, 1.5)
+    assert error_at_ends(rising, between, 1.5) == error_of(rising, 1.5)

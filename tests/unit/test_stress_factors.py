@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import pytest
 
+from swgpar.answers.answer import NO_LIMIT
 from swgpar.evaluation.stress_factors import stress_factors
-from swgpar.largest_stress.places import ROLLER, Place
+from swgpar.largest_stress.places import ROLLER, LargestStresses, Place
 from swgpar.largest_stress.region_stress import RegionStress
 from swgpar.largest_stress.resolved_places import with_windows
 from swgpar.largest_stress.root_stress import BETWEEN, RootStress
@@ -51,7 +52,6 @@ def root(s1: float, regions: Mapping[str, Place] | None = None) -> RootStress:
         error=3.0,
         on_mesh=500.0,
         region="tooth root",
-        warning="",
         tooth=0,
         radius=59.0,
         z=0.0,
@@ -139,3 +139,43 @@ def test_windows_of_the_teeth_see_the_beginning_of_the_wall_only() -> None:
         assert found.value == expected and found.error is None
     beside = with_windows(NODAL, LOADED, root(600.0, regions), wall(10.0))["fs_s1 in cup wall"]
     assert beside.value == 260.0 and beside.error == 9.0
+
+
+def test_off_corners_the_largest_stress_has_its_own_error() -> None:
+    corner = replace(place(900.0, "corner"), warning="beside a corner")
+    nodal = NODAL | {
+        "fs_s1": corner,
+        "fs_s1 in corner": corner,
+        "fs_s1_off_corners": place(500.0, "tooth root"),
+    }
+    loaded = {name: one.value for name, one in nodal.items()}
+    known = wall(392.0, 40.0)
+    found = with_windows(nodal, loaded, root(600.0), known)
+    assert found["fs_s1"] == replace(corner, on_mesh=900.0)
+    off = found["fs_s1_off_corners"]
+    assert (off.region, off.value, off.on_mesh) == ("tooth root", 600.0, 500.0)
+    assert off.error == pytest.approx(5.0)
+    answers = {one.name: one for one in LargestStresses.of(found).answers()}
+    assert answers["largest.fs_s1"].no_error == NO_LIMIT
+    assert answers["largest.fs_s1"].remark == "beside a corner"
+    assert not answers["largest.fs_s1_off_corners"].detail
+    assert answers["largest.fs_s1_off_corners"].error == pytest.approx(5.0)
+    # without such a corner both are the same, and the second one is a detail
+    plain = with_windows(nodal | {"fs_s1": NODAL["fs_s1"]}, loaded, root(1000.0), known)
+    answers = {one.name: one for one in LargestStresses.of(plain).answers()}
+    assert answers["largest.fs_s1"].value == answers["largest.fs_s1_off_corners"].value == 1000.0
+    assert answers["largest.fs_s1_off_corners"].detail
+
+
+def test_a_tension_at_a_corner_of_the_teeth_stands_beside_the_one_off_it() -> None:
+    corner = Place(900.0, "flexible_spline", "notch", 0, 20.0, 5.0, 0.0, "in the notch")
+    answers = {one.name: one for one in replace(root(600.0), at_corner=corner).answers()}
+    assert answers["root.s1"].value == 900.0 and answers["root.s1"].no_error == NO_LIMIT
+    assert (answers["root.s1"].place, answers["root.s1"].remark) == (corner.text, "in the notch")
+    off = answers["root.s1_off_corners"]
+    assert (off.value, off.error, off.detail) == (600.0, 5.0, False)
+    answers = {one.name: one for one in root(600.0).answers()}
+    assert answers["root.s1"].value == answers["root.s1_off_corners"].value == 600.0
+    assert answers["root.s1_off_corners"].detail and answers["root.s1"].error == 5.0
+    found = with_windows(NODAL, LOADED, replace(root(600.0), at_corner=corner), None)
+    assert found["fs_s1"].region == "notch" and found["fs_s1"].warning == "in the notch"
