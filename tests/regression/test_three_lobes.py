@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import swgpar
 from support.commands import assert_same_history, run_command, succeed
@@ -51,3 +52,32 @@ def test_restart_on_other_ranks_and_fields_of_the_whole(tmp_path: Path) -> None:
     trace = stress[..., 0] + stress[..., 3] + stress[..., 5]
     assert np.abs(trace - trace[0]).max() < 1e-5 * np.abs(trace).max()
     assert np.abs(stress[1] - stress[0]).max() > 0.1 * np.abs(stress).max()
+
+
+def test_a_bearing_with_losses_and_fatigue(tmp_path: Path) -> None:
+    """Loads that repeat after a third of the balls, their life, their friction and the report."""
+    out = tmp_path / "out"
+    keys = (
+        "wave_generator.bearing={balls=33, ball_diameter=8.0, race_thickness=1.2}",
+        "steps.rotation=3",
+        "steps.samples=3",
+        "losses.bearing_friction=0.002",
+        "fatigue.fatigue_limit=480",
+        "output.root_stress=false",
+        "output.figures=false",
+    )
+    run = ("run", DRIVERS / "three_lobes.toml", "--mesh", RECIPE, "--out", out, "--set", *keys)
+    assert "rating life L10 of the bearing" in succeed(program(*run)).stdout
+    result = swgpar.open_result(out)
+    bearing, losses = result.summary.bearing, result.summary.losses
+    assert result.summary.copies == 3
+    assert abs(result.summary.numerics.balance_error_Nmm) < 1e-2
+    thirds = result.balls["load_N"].reshape(-1, 3, 11)
+    assert np.abs(thirds - thirds[:, :1]).max() == 0.0
+    assert bearing.balls_fixed_to_cam and bearing.life.L10_hours > 0.0
+    assert bearing.largest_load_N == thirds.max() and thirds.min() == 0.0
+    # Coulomb's friction of the sum of the loads on the circle of the centres; the race turns
+    # against the wave generator, by 1/40 of it
+    arm = 0.5 * result.summary.design.bearing_sizes.pitch_diameter
+    expected = 0.002 * 3.0 * thirds[:, 0].sum(axis=1).mean() * arm * (1.0 + 1.0 / 40.0)
+    assert losses.parts_Nmm.bearing == pytest.approx(expected, rel=1e-9)
