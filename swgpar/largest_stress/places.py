@@ -3,6 +3,7 @@ means anything."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
@@ -21,6 +22,7 @@ from swgpar.answers.answer import (
     with_no_limit,
 )
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.body_layout import BodyLayout
 from swgpar.load.load_states import LoadState
 from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.meshing.sector import SectorMesh
@@ -73,6 +75,35 @@ class Place:
     warning: str
     error: float | None = None
     on_mesh: float | None = None
+
+    @classmethod
+    def at(
+        cls,
+        layout: BodyLayout,
+        region: str,
+        point: np.ndarray,
+        tooth: int,
+        value: float,
+        error: float = math.inf,
+    ) -> Place:
+        """The place of a stress without a warning.
+
+        point : (3,) mm, undeformed, with the tooth at +y;  tooth : number, of any turn
+        value, error : MPa, the error infinite if unknown
+        """
+        x, y, z = point
+        angle = float(layout.sector_angle(np.array(tooth)) - np.arctan2(x, y))
+        return cls(
+            value=value,
+            body=layout.name,
+            region=region,
+            tooth=tooth % layout.mesh.n_sectors,
+            radius=float(np.hypot(x, y)),
+            z=0.0 if layout.mesh.plane else float(z),
+            angle_deg=float(np.degrees(angle)) % 360.0,
+            warning="",
+            error=error if math.isfinite(error) else None,
+        )
 
     @property
     def text(self) -> str:
@@ -305,17 +336,7 @@ def _largest(model: DriveModel, name: str, values: np.ndarray, touched: np.ndarr
             bool(touched[sector, node]),
         )
     value, sector, node, pressed = max(model.comm.allgather(best), key=lambda one: one[0])
-    x, y, z = point = body.layout.mesh.coords[node]
+    layout, point = body.layout, body.layout.mesh.coords[node]
     region = str(model.regions[name][pressed][node])
-    tooth = body.layout.first_tooth + sector
-    angle = float(body.layout.sector_angle(np.array(tooth)) - np.arctan2(x, y))
-    return Place(
-        value=value,
-        body=body.layout.name,
-        region=region,
-        tooth=tooth % body.layout.mesh.n_sectors,
-        radius=float(np.hypot(x, y)),
-        z=0.0 if body.layout.mesh.plane else float(z),
-        angle_deg=float(np.degrees(angle)) % 360.0,
-        warning=warning_of(model.geometry, region, point),
-    )
+    place = Place.at(layout, region, point, layout.first_tooth + sector, value)
+    return replace(place, warning=warning_of(model.geometry, region, point))

@@ -134,8 +134,9 @@ class WindowReadings:
         found = max(self.corners.values(), key=lambda one: one.value, default=None)
         if found is None or found.value <= s1:
             return None
-        at = FLEXIBLE_SPLINE, found.position, found.region, found.tooth
-        return replace(_place(model, *at, found.value, math.inf), warning=found.warning)
+        layout = model.partition.layouts[FLEXIBLE_SPLINE]
+        place = Place.at(layout, found.region, found.position, found.tooth, found.value)
+        return replace(place, warning=found.warning)
 
     def stresses(
         self, model: DriveModel, gear: str, nodal: Mapping[str, np.ndarray], ratio: float
@@ -164,7 +165,8 @@ class WindowReadings:
         levels, tooth, read = known[main], self.last[other][name].tooth, 0.0
         region = name.partition(OF_REGION)[2]
         unrefined = gear == FLEXIBLE_SPLINE and region in UNREFINED[model.geometry.model]
-        place = partial(_place, model, gear, self.last[main][name].position, region)
+        layout = model.partition.layouts[gear]
+        place = partial(Place.at, layout, region, self.last[main][name].position)
         if nodal is not None:
             read, elsewhere = _read_and_elsewhere(nodal, main, known, gear)
             beyond = float(nodal[elsewhere]) / read if read > 0.0 else 1.0
@@ -199,32 +201,6 @@ def _read_and_elsewhere(
     for tooth in known:
         far[(tooth + beside) % len(nodal)] = -np.inf
     return float(nodal[(main + beside) % len(nodal)].max()), int(far.argmax())
-
-
-def _place(
-    model: DriveModel,
-    gear: str,
-    position: np.ndarray,
-    region: str,
-    tooth: int,
-    value: float,
-    error: float,
-) -> Place:
-    """position : (3,) mm, undeformed, with the tooth at +y;  error : MPa, infinite if unknown"""
-    x, y, z = position
-    layout = model.partition.layouts[gear]
-    angle = float(layout.sector_angle(np.array(tooth)) - np.arctan2(x, y))
-    return Place(
-        value=value,
-        body=gear,
-        region=region,
-        tooth=tooth % layout.mesh.n_sectors,
-        radius=float(np.hypot(x, y)),
-        z=0.0 if layout.mesh.plane else float(z),
-        angle_deg=float(np.degrees(angle)) % 360.0,
-        warning="",
-        error=error if math.isfinite(error) else None,
-    )
 
 
 def nodal_averages(model: DriveModel, gear: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -141,15 +141,16 @@ def resolve_wall(
             rings.append(_solved_ring(model, state, counts, rings[-1:]))
         first, last = (_largest(ring.problem, _regions_of_ring(ring.problem)) for ring in rings)
         on_slices = _on_slices(rings, last, tension)
-        places = {}
+        places, layout = {}, model.partition.layouts[FLEXIBLE_SPLINE]
         for name, spot in last.items():
-            value, error = spot, np.inf
+            best, error = spot, np.inf
             if name in on_slices:
-                value, error = on_slices[name].spot, on_slices[name].error
+                best, error = on_slices[name].spot, on_slices[name].error
             elif name in first:  # nodal averages are of first order
                 error = abs(spot.value - first[name].value) / (RING_RATIO - 1.0)
             error += spot.value * _drive_share(name, first, coarse)
-            places[name] = _place(model, value, name, error if np.isfinite(error) else None)
+            region, tooth = name.partition(OF_REGION)[2], layout.first_tooth + best.sector
+            places[name] = Place.at(layout, region, best.point, tooth, best.value, error)
     finally:
         for ring in rings:
             ring.problem.destroy()
@@ -368,22 +369,3 @@ def _regions_read(part: WallProblem, near: np.ndarray) -> np.ndarray:
     limited = ~np.isin(found, WITHOUT_LIMIT)
     regions[nodes[limited]] = found[limited]
     return regions
-
-
-def _place(model: DriveModel, spot: Spot, name: str, error: float | None) -> Place:
-    region = name.partition(OF_REGION)[2]
-    layout = model.partition.layouts[FLEXIBLE_SPLINE]
-    tooth = layout.first_tooth + spot.sector
-    radius, z = spot.section
-    angle = float(layout.sector_angle(np.array(tooth)) - np.arctan2(*spot.point[:2]))
-    return Place(
-        value=spot.value,
-        body=FLEXIBLE_SPLINE,
-        region=region,
-        tooth=tooth % layout.mesh.n_sectors,
-        radius=float(radius),
-        z=float(z),
-        angle_deg=float(np.degrees(angle)) % 360.0,
-        warning="",
-        error=error,
-    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import nan
+from types import SimpleNamespace
 from typing import cast
 
 import numpy as np
@@ -25,17 +26,14 @@ ROOT, FLANK = "fs_vm in tooth root", "fs_vm in flank"
 RATIO = 2.0
 
 
-def place_of(
-    _model: object,
-    gear: str,
-    _position: np.ndarray,
-    region: str,
-    tooth: int,
-    value: float,
-    error: float,
-) -> Place:
-    known = None if error == np.inf else error
-    return Place(value, gear, region, tooth, 20.0, 0.0, 0.0, "", error=known)
+class Layout:
+    """What a place asks a layout for."""
+
+    name = FLEXIBLE_SPLINE
+    mesh = SimpleNamespace(n_sectors=20, plane=False)
+
+    def sector_angle(self, tooth: np.ndarray) -> np.ndarray:
+        return np.pi / 10.0 * tooth
 
 
 class Model:
@@ -45,11 +43,7 @@ class Model:
         model = "cup"
 
     geometry = Geometry()
-
-
-@pytest.fixture(autouse=True)
-def _no_layout(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("swgpar.largest_stress.region_stress._place", place_of)
+    partition = SimpleNamespace(layouts={FLEXIBLE_SPLINE: Layout()})
 
 
 def readings(levels: dict[int, list[float]], name: str = ROOT, skipped: int = 0) -> WindowReadings:
