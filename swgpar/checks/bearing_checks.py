@@ -17,6 +17,10 @@ DEEPEST_HOLLOW = 0.01
 """Depth of a hollow of the cam that its inner race may span, over half of the deflection: balls are
 off their places by that much there."""
 
+LOWER = 0.1
+"""Share of half the deflection by which balls beside a lobe may lie lower than its tip without a
+remark."""
+
 
 def check_bearing(design: DriveDesign) -> None:
     """Raise InputError for the first size of the bearing that does not fit the others."""
@@ -66,3 +70,21 @@ def _check_taper(design: DriveDesign) -> None:
         else f'only 0 with drive.model = "{design.drive.model}", which has no open end'
     )
     require(abs(design.bearing.race_taper) <= most, taper, design.bearing.race_taper, allowed)
+
+
+def bearing_remarks(design: DriveDesign) -> list[str]:
+    """Balls so few that a lobe is between two of them at times."""
+    if design.bearing is None:
+        return []
+    spacing = 2.0 * np.pi / design.bearing.balls
+    centres, *_ = design.grown_ball_lines()(np.array([0.0, 0.5 * spacing, -0.5 * spacing]))
+    tip, *beside = np.hypot(*centres.T)
+    lower = (tip - max(beside)) / (0.5 * design.deflection)
+    if lower <= LOWER:
+        return []
+    balls, lobes = design.bearing.balls, design.wave_generator.lobes
+    return [
+        f"{SECTION}.balls = {balls} are few for {lobes} lobes: where a lobe is midway between two "
+        f"of them, they lie {100.0 * lower:.0f} % of half the deflection lower than its tip, and "
+        "the flexible spline is deflected less"
+    ]

@@ -3,6 +3,7 @@ torques that are too small to be resolved, plastics, angles that show the same s
 
 from __future__ import annotations
 
+from swgpar.checks.bearing_checks import bearing_remarks
 from swgpar.checks.clearance import clearances
 from swgpar.checks.growth_checks import growth_remarks
 from swgpar.checks.inertia import inertia_remarks
@@ -29,6 +30,7 @@ def remarks(design: DriveDesign) -> list[str]:
         *tooth_remarks(design),
         *strain_remarks(design),
         *growth_remarks(design),
+        *bearing_remarks(design),
         *inertia_remarks(design.rim_inertia, design.speeds, design.load),
     ]
     torque, negligible = design.load.torque, design.negligible_torque

@@ -10,6 +10,7 @@ from support.paths import DESIGN
 from support.small_drive import PLANE
 from support.three_lobes import MODELS
 from swgpar import load_design
+from swgpar.checks.remarks import remarks
 from swgpar.contact.point_contact import ball_spring, point_contact
 from swgpar.contact.smooth_curve import shape_functions, smooth_curve
 from swgpar.errors import InputError
@@ -185,6 +186,7 @@ def test_bad_bearing(override: str, key: str, words: str) -> None:
     assert f"wave_generator.bearing.{key}" in message and words in message and "\n" not in message
 
 
+BEARING_KEYS = "wave_generator.bearing"
 CUP = ("micro_geometry.wg_slope=0", *BEARING)
 
 
@@ -285,6 +287,21 @@ def test_a_hollow_cam_is_refused() -> None:
     design = load_design(DESIGN, MODELS["plane"]).with_values({"wave_generator": keys})
     with pytest.raises(InputError, match=words):
         design.with_values({"wave_generator.bearing": bearing})
+
+
+def test_few_balls_for_the_lobes() -> None:
+    """Small balls that are pi / Z from one of n lobes lie w0 (1 - cos(n pi / Z)) lower: 0.109 w0
+    with 20 balls on three lobes, 0.115 w0 with 13 on two, and less than 0.1 w0 with one more."""
+    thin = (f"{BEARING_KEYS}.ball_diameter=0.3", f"{BEARING_KEYS}.race_thickness=0.05")
+    cam = ("wave_generator.type=harmonic", "wave_generator.C=1")
+    for keys, few in ((PLANE, 13), (MODELS["plane"], 20)):
+        first, second = (
+            remarks(load_design(DESIGN, [*keys, *cam, *thin, f"{BEARING_KEYS}.balls={balls}"]))
+            for balls in (few, few + 1)
+        )
+        (said,) = set(first) - set(second)
+        assert f"{BEARING_KEYS}.balls = {few} are few for" in said
+        assert "they lie 11 % of half the deflection lower than its tip" in said
 
 
 def test_balls_that_differ_from_lobe_to_lobe() -> None:
