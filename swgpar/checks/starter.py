@@ -270,6 +270,7 @@ def _table(request: Request, play: float) -> dict[str, Any]:
         table["micro_geometry"] = {"wg_crowning": _rounded(PANCAKE_CROWNING * module)}
     table["material"] = {"E": 210e3, "nu": 0.29}
     table["load"] = {"torque": request.torque}
+    table["rating"] = {"rated_torque": request.torque}
     table["wave_generator"] |= _cam_keys(request.cam, table)
     return table
 

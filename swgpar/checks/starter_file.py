@@ -29,6 +29,7 @@ def as_toml(request: Request, design: DriveDesign, table: dict[str, Any], name: 
         "those of the teeth multiples of the module.",
         f"#   swgpar check {name}",
         f"#   mpirun -n 2 swgpar run {name} --out results/{name.removesuffix('.toml')}",
+        f"#   mpirun -n 2 swgpar rate {name} --out results/{name.removesuffix('.toml')}_rating",
     ]
     for section, content in table.items():
         lines += _section(section, getattr(design, section), content)

@@ -63,11 +63,12 @@ class RatingRow:
         its run has left out"""
         answer = None if summary is None else self.answer(summary)
         bound = "" if summary is None or answer is None else self.lower_bound(summary)
+        reason = without if summary is None else self.missing or without
         return Verdict(
             self.name,
             answer,
             self.limit,
-            bound or ("" if answer else self.missing or without),
+            bound or ("" if answer else reason),
             is_lower_bound=bool(bound),
             of_strength=self.of_strength,
         )
