@@ -45,7 +45,7 @@ class RatingRow:
 
     name : what is judged;  case : of the run;  answer : takes it from the summary
     limit : None without a requirement
-    missing : why no run gives an answer; empty otherwise
+    missing : why no run gives an answer, or why there is no limit; empty otherwise
     lower_bound : says of a summary why the answer is a lower bound; empty where it is none
     of_strength : whether it is about the strength of the drive
     """
@@ -63,12 +63,14 @@ class RatingRow:
         its run has left out"""
         answer = None if summary is None else self.answer(summary)
         bound = "" if summary is None or answer is None else self.lower_bound(summary)
-        reason = without if summary is None else self.missing or without
+        lacking = self.missing if summary is not None else ""
+        if answer is None:
+            lacking = lacking or without or self.missing
         return Verdict(
             self.name,
             answer,
             self.limit,
-            bound or ("" if answer else reason),
+            bound or (lacking if answer is None or self.limit is None else ""),
             is_lower_bound=bool(bound),
             of_strength=self.of_strength,
         )
@@ -141,7 +143,14 @@ def _strength(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow
         source = f"{FIRST_YIELD:g} times fatigue.yield_strength over rating.yield_safety [Johnson]"
         value = FIRST_YIELD * strengths.yield_strength / safety
         first = Limit(value, Sense.AT_MOST, source)
-    yield RatingRow("yield below the flanks", LoadCase.LARGEST, pressure, first, of_strength=True)
+    yield RatingRow(
+        "yield below the flanks",
+        LoadCase.LARGEST,
+        pressure,
+        first,
+        "" if first else NO_STRENGTHS,
+        of_strength=True,
+    )
 
 
 def _bearing(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:

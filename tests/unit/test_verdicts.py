@@ -281,6 +281,13 @@ def test_without_requirements_rows_stand_and_say_so() -> None:
         verdict = one.verdict(summary("none", 0.0), plan.missing.get(one.case, ""))
         assert verdict.judgement == OPEN
         assert verdict.why
+    found = summary("contact.pressure", 5.0)
+    for name, why in (
+        ("pressure of the flanks", "no requirement"),
+        ("yield below the flanks", "no strengths are given: [fatigue]"),
+    ):
+        assert row(name, design).verdict(found, "").why == why
+    assert row("resolution", design).verdict(None, "the run waits").why == "the run waits"
     found = summary("stiffness.K1", 5.0)
     assert row("stiffness K1", design).verdict(found, "").why == "no requirement"
     assert plan.missing[LoadCase.RATCHETING] == "rating.momentary_torque is not given"
