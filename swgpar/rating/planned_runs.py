@@ -42,7 +42,7 @@ class PlannedRun:
     design : None where it is refused, for the reason in `refusal`
     torque : N·m, None of a run that has several
     left_out : what the design asks for and the run does not have, and why
-    windows : whether stresses and pressures of the sheet are from it, which an accuracy is for
+    windows : whether its stresses are resolved, which an accuracy is for
     """
 
     cases: tuple[LoadCase, ...]
@@ -117,7 +117,12 @@ def rating_loads(design: DriveDesign) -> RatingLoads:
 
 @dataclass(frozen=True)
 class _UnderTorque:
-    """What a run under one torque is for. period : whether it goes through one"""
+    """What a run under one torque is for.
+
+    period : whether it goes through one
+    windows : whether stresses are resolved and the mesh is compared with coarser ones, from which
+    the errors follow
+    """
 
     cases: tuple[LoadCase, ...]
     sections: tuple[str, ...] = ()
@@ -154,9 +159,7 @@ def plan_runs(design: DriveDesign) -> RatingPlan:
     given = tuple(name for name in ("losses", "deviations") if getattr(design, name) is not None)
     apart = friction and "deviations" in given
     beside = tuple(name for name in given if name != "deviations" or not friction)
-    # without a limit for it the pressure of the flanks is not worth windows
-    judged = design.rating is not None and design.rating.flank_pressure is not None
-    want(loads.rated, _UnderTorque((LoadCase.RATED,), beside, period=True, windows=judged))
+    want(loads.rated, _UnderTorque((LoadCase.RATED,), beside, period=True, windows=True))
     if design.fatigue is None:
         missing[LoadCase.REPEATED_PEAK] = NO_STRENGTHS
     else:
@@ -165,7 +168,7 @@ def plan_runs(design: DriveDesign) -> RatingPlan:
     if design.bearing is None:
         missing[LoadCase.AVERAGE] = NO_BEARING
     else:
-        want(loads.average, _UnderTorque((LoadCase.AVERAGE,)))
+        want(loads.average, _UnderTorque((LoadCase.AVERAGE,), windows=True))
     want(loads.largest, _UnderTorque((LoadCase.LARGEST,), windows=True))
     runs = [_under_torque(design, loads, torque, run) for torque, run in wanted.items()]
     if "losses" in given:

@@ -56,7 +56,7 @@ def run_one(
             record["accuracy"] = options.accuracy
         if folder is not None:
             old = on_root(comm, lambda: read_status(folder))
-            same = old.get("identity", record["identity"]) == record["identity"]
+            same = _continues(old, record)
             if options.restart and old.get("status") == "finished":
                 outcome = _finished_before(system, folder, comm, record, old)
                 if outcome is not None:
@@ -100,6 +100,14 @@ def _make(folder: Path, comm: MPI.Comm) -> None:
     if comm.rank == 0:
         with suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
+
+
+def _continues(old: dict[str, Any], record: dict[str, Any]) -> bool:
+    """Whether a run goes on from what its folder holds: not where it computes more in the loaded
+    state, which is passed. old : its status file"""
+    begun = {name for name in record if name not in ("identity", "rotation")} if old else set()
+    same = old.get("identity", record["identity"]) == record["identity"]
+    return same and all(old.get(name) == record[name] for name in begun)
 
 
 def _finished_before(

@@ -13,8 +13,10 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+import swgpar
 from support.html_text import assert_needs_nothing_else
 from support.paths import DATA, DESIGN, RECIPE, ROOT
+from support.stepping import small
 from support.study_files import assert_refused, jobs_of
 from swgpar.analysis.error_estimate import estimate
 from swgpar.errors import InputError
@@ -29,7 +31,7 @@ from swgpar.studies.report import make_report
 from swgpar.studies.spec import load_study
 from swgpar.studies.study import queue
 from swgpar.studies.table import compare_cases, study_rows
-from swgpar.systems.drive import Drives
+from swgpar.systems.drive import DRIVE, Drives
 
 MESHES = f'meshes = ["{RECIPE}"]'
 Write = Callable[..., Path]
@@ -240,6 +242,20 @@ def test_an_unforeseen_error_is_the_case_s_own(study_file: Write, tmp_path: Path
     found = run_one(job.case.system, job.case.design, options)
     assert (found.status, found.reason) == ("failed", "ZeroDivisionError: by nothing")
     assert read_status(tmp_path / "a" / "b")["reason"] == found.reason
+
+
+def test_a_run_begins_anew_where_more_is_asked_of_its_loaded_state(tmp_path: Path) -> None:
+    """Windows belong to the loaded state, from which a checkpoint has gone on."""
+    design = small("plane", "steps.rotation=0")
+    options = RunOptions(tmp_path, recipe=swgpar.load_mesh(RECIPE), comm=MPI.COMM_SELF)
+    first = run_one(DRIVE, design, options)
+    again = run_one(
+        DRIVE,
+        design.with_values({"output.root_stress": True}),
+        replace(options, restart=True),
+    )
+    assert first.status == again.status == "finished"
+    assert "root.s1" not in first.values and again.values["root.s1"] > 0.0
 
 
 @pytest.mark.parametrize("dimensions", [2, 3])
