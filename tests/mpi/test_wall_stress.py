@@ -29,7 +29,21 @@ from swgpar.meshing.wall_sector import WallCounts
 from swgpar.model.regions import sector_regions
 
 SHARP: Changes = {"fillet_radius": 1.0, "end_thickness": 0.6, "length": 8.0}
-FILLETS: dict[str, Changes] = {"cup": SHARP, "clamped hat": HAT_CLAMPED | SHARP}
+HUB: Changes = SHARP | {
+    "end_contour": [
+        {"radius": 12.0, "thickness": 0.3, "rounding": 0.3},
+        {"radius": 11.0, "thickness": 1.2, "rounding": 0.3},
+    ],
+    "attachment": "clamped",
+    "clamping_radius": 9.0,
+}
+"""Bends most where a thin closed end becomes a hub."""
+
+FILLETS: dict[str, Changes] = {
+    "cup": SHARP,
+    "clamped hat": HAT_CLAMPED | SHARP,
+    "hub": HUB | {"fillet_radius": 1.5, "length": 10.0},
+}
 """Walls that bend most in a sharp fillet. The mesh has one element there."""
 
 BOLTED: Changes = bolted(8) | SHARP | {"bolt_circle": 26.0}
@@ -51,10 +65,10 @@ def resolved(stepper: LoadStepper) -> WallStress:
 
 
 @pytest.mark.parallel([2, 3])
-def test_any_number_of_ranks_gives_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("case", ["clamped hat", "hub"])
+def test_any_number_of_ranks_gives_the_same(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
     coarse = tuple(WallCounts(6 + k, 3, 0.7) for k in range(3))
     monkeypatch.setattr(wall_stress, "SLICES", coarse)
-    case = "clamped hat"
     found, alone = resolved(drive(case)), resolved(drive(case, alone=True))
     parallel_assert(list(found.places) == list(alone.places) and len(found.levels) > 1)
     for name, place in found.places.items():
@@ -70,11 +84,12 @@ def test_a_finer_whole_ring_is_within_the_error(case: str, monkeypatch: pytest.M
     found = resolved(stepper)
     ring = wall_stress._solved_ring(model, state, WallCounts(16, 8)).problem
     regions = sector_regions(model.geometry, ring.layout.mesh)[False]
-    s1, _, mises = principal(ring.stress()[:, regions == "fillet"])
+    region = "closed end" if case == "hub" else "fillet"
+    s1, _, mises = principal(ring.stress()[:, regions == region])
     ring.destroy()
     nodal = find_places(model, state, model.stresses()[1])
     for stress, truth in (("fs_s1", s1.max()), ("fs_vm", mises.max())):
-        name = f"{stress}{OF_REGION}fillet"
+        name = f"{stress}{OF_REGION}{region}"
         place, average = found.places[name], nodal[name].value
         print(f"{name}: {place.value:.1f} ± {place.error:.1f}, {truth:.1f}, nodal {average:.1f}")
         assert abs(place.value - truth) < place.error < 0.25 * truth
