@@ -101,17 +101,24 @@ def _of_wall(cup: CupGeometry) -> Iterator[SharpCorner]:
         slope = float(np.arctan2(second[1] - first[1], second[0] - first[0]))
         thickness = float(first[1] - wall.inner.points[0, 1])
         yield SharpCorner((float(first[1]), wall.back), reach_of(RIGHT + slope, thickness))
-    for (distance, radius), reach in _of_lines(wall):
+    for (distance, radius), reach in _of_lines(wall, fillet=-1):
         yield SharpCorner((radius, wall.back + distance), reach)
-    for (way, height), reach in _of_lines(wall.plate):
+    for (way, height), reach in _of_lines(wall.plate, fillet=0):
         radius, z = wall.off_plate(np.array([way]), np.array([height]))[0].tolist()
         yield SharpCorner((radius, z), reach)
 
 
-def _of_lines(lines: PairedLines) -> Iterator[tuple[list[float], float]]:
-    """Points (mm) of both lines that nothing rounds, and how far (mm) their stress reaches."""
+def _of_lines(lines: PairedLines, fillet: int) -> Iterator[tuple[list[float], float]]:
+    """Points (mm) of both lines that nothing rounds, and how far (mm) their stress reaches.
+
+    fillet : which of them are at the fillet, where lines go on level: 0 or -1
+    """
     across = np.linalg.norm(lines.outer.points - lines.inner.points, axis=1)
     for line, outwards in ((lines.inner, -1.0), (lines.outer, 1.0)):
+        along, up = np.diff(line.points, axis=0)[fillet]
+        turn = float(np.arctan2(up, along)) * (1.0 if fillet == 0 else -1.0)
+        size = float(min(across[fillet], np.hypot(along, up)))
+        yield line.points[fillet].tolist(), reach_of(outwards * turn, size)
         for k, turn in enumerate(line.turning(), 1):
             if line.rounding[k] == 0.0:
                 beside = np.linalg.norm(np.diff(line.points[k - 1 : k + 2], axis=0), axis=1)

@@ -131,3 +131,13 @@ def test_corners_of_closed_ends_are_those_on_the_concave_sides() -> None:
     changes = DISHED | {"back_fillet": 0.1, "end_contour": rounded}
     assert not sharp_corners(shaped(changes).geometry, "flexible_spline")
     assert not sharp_corners(shaped(DIAPHRAGM | {"back_fillet": 0.1}).geometry, "flexible_spline")
+
+
+@pytest.mark.parametrize(("thickness", "corners"), [(3.0, [[17.08, 13.52]]), (0.9, []), (0.1, [])])
+def test_an_end_that_grows_from_its_fillet_on_has_a_corner_there(
+    thickness: float, corners: list[list[float]]
+) -> None:
+    """By 12.8 degrees; by 2 none is felt, and a thinner one is convex."""
+    end = {"end_contour": [{"radius": 6.0, "thickness": thickness}], "back_fillet": 0.1}
+    found = sharp_corners(shaped(end).geometry, "flexible_spline")
+    assert [corner.at for corner in found] == [pytest.approx(at) for at in corners]
