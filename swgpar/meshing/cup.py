@@ -35,7 +35,7 @@ Bending by the teeth and by the closed end decays within some decay lengths of t
 the wall is: a longer one has the same elements at its ends, and more of them."""
 
 
-def graded(length: float, recipe: CupRecipe, decay: float) -> Floats:
+def steps_of_cylinder(length: float, recipe: CupRecipe, decay: float) -> Floats:
     """Distances (n,), mm, of the stations of a cylinder, as far as `length`; decay : length, mm."""
     usual = length * symmetric_steps(recipe.cylinder, recipe.end_ratio)
     if length <= LONG * decay:
@@ -56,7 +56,7 @@ def cylinder_stations(
     decay : length, mm, over which bending of the wall decays
     fillet : its radius, mm;  layers : elements along it, from which those behind it grow
     """
-    usual = graded(length, recipe, decay)
+    usual = steps_of_cylinder(length, recipe, decay)
     if fillet == 0.0:
         return usual
     step = fillet / layers
