@@ -129,7 +129,7 @@ def accepted_options(comm: MPI.Comm, *, all_errors: bool = False) -> Iterator[No
         named = [
             f"-{name} {values[name]}: "
             for name in sorted(_given & set(values))
-            if values[name] in text.split()
+            if (values[name] or "").lower() in text.lower().split()
         ]
         failure = "".join(named[:1]) + text
     reason = next((text for text in comm.allgather(failure) if text is not None), None)

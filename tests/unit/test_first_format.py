@@ -43,3 +43,13 @@ def test_another_content_is_refused_with_both_versions(
         match=rf"summary.json of swgpar 0.1.0 .* swgpar {swgpar.__version__} reads",
     ):
         swgpar.open_result(folder)
+
+
+@pytest.mark.parametrize("text", ["", "[]", '{"design": 1}', "{}"])
+def test_a_summary_without_a_design_is_refused(text: str, tmp_path: Path) -> None:
+    folder = tmp_path / "plane"
+    shutil.copytree(FOLDERS / "plane", folder)
+    (folder / "summary.json").write_text(text, encoding="utf-8")
+    with pytest.raises(swgpar.OutputError, match="cannot read .*summary.json: ") as refusal:
+        swgpar.open_result(folder)
+    assert len(str(refusal.value).splitlines()) == 1

@@ -103,6 +103,12 @@ def test_files_of_the_command_line_are_read(tmp_path: Path) -> None:
             "-stiffness_ksp_type preonly solves with lu or cholesky alone",
         ),
         (2, "-stiffness_pc_type ilu", "type ILU and matrix type mpiaij"),
+        (2, "-stiffness_pc_type icc", "-stiffness_pc_type icc: Could not locate a solver type"),
+        (
+            2,
+            "-stiffness_pc_factor_mat_solver_type petsc",
+            "-stiffness_pc_factor_mat_solver_type petsc: MatSolverType petsc does not support",
+        ),
         (1, "-options_file nowhere", "-options_file nowhere: there is no such file"),
     ],
 )
@@ -119,6 +125,7 @@ def test_options_that_cannot_be_used_are_refused(
     [
         "-stiffness_pc_factor_mat_solver_type petsc",
         "-stiffness_ksp_type cg -stiffness_pc_type bjacobi",
+        "-stiffness_ksp_type minres -stiffness_pc_type sor",
     ],
 )
 def test_other_linear_solvers_solve(tmp_path: Path, options: str) -> None:
