@@ -189,7 +189,7 @@ def bend(model: DriveModel) -> None:
     model.problem.x.set(0.0)
     for body, field in fields.items():
         layout = model.partition.layouts[body]
-        angle = layout.sector_angle(layout.first_tooth + model.partition.owned_indices(body))
+        angle = layout.chain_angle(model.partition.owned_indices(body))
         points = rotated(layout.mesh.coords, angle[:, None])
         values = field.displacement(points.reshape(-1, 3)).reshape(points.shape)
         write_field(model.partition, body, values, model.problem.x)

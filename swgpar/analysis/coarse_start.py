@@ -33,7 +33,7 @@ def transfer(coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec) -
     """Set y of the fine model to x of the coarse one, sector by sector, on the same ranks."""
     for body, layout in fine.partition.layouts.items():
         sectors = fine.partition.owned_indices(body)
-        angle = layout.sector_angle(layout.first_tooth + sectors)
+        angle = layout.chain_angle(sectors)
         local = rotated(read_field(coarse.partition, body, sectors, x), -angle[:, None])
         matrix = interpolation(coarse.partition.layouts[body].mesh, layout.mesh)
         values = np.zeros((len(local), matrix.shape[0], 3))

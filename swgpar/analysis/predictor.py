@@ -94,7 +94,7 @@ def predict(
         own = partition.owned_indices(body)
         rotation, coords = 0.0 if body in resting else output_rotation, layout.mesh.coords
         moved = _pattern(partition, fixed_body, body, known, angle, rotation)
-        at = layout.sector_angle(layout.first_tooth + own)[:, None]
+        at = layout.chain_angle(own)[:, None]
         new.append((body, rotated(coords + moved, at) - rotated(coords, at)))
     for body, values in new:
         write_field(partition, body, values, x)
@@ -152,6 +152,6 @@ def _pattern(
         turned = (angle - state.angle) * drift + rotation
         sectors = own + point.teeth
         field = read_field(partition, body, sectors, state.x)
-        local = rotated(field, -layout.sector_angle(layout.first_tooth + sectors)[:, None])
+        local = rotated(field, -layout.chain_angle(sectors)[:, None])
         moved += point.weight * (rotated(coords + local, np.full((len(own), 1), turned)) - coords)
     return moved

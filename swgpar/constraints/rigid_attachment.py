@@ -100,7 +100,7 @@ class RigidAttachment(NodeMeans):
         moves: bool = False,
     ) -> None:
         layout, mesh = body.layout, body.layout.mesh
-        angles = layout.sector_angle(layout.first_tooth + body.sectors[body.owned])
+        angles = layout.chain_angle(body.sectors[body.owned])
         around = [
             area_shares(mesh, surface, angle, inside, width)
             for angle in (*(angles[:1] - mesh.pitch), *angles)

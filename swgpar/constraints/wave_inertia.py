@@ -44,7 +44,7 @@ class WaveInertia:
         self.masses = masses[self._nodes]
         self._first = lobes / (2.0 * np.sin(lobes * mesh.pitch))
         self._second = (0.5 * lobes / np.sin(0.5 * lobes * mesh.pitch)) ** 2
-        self._angle = layout.sector_angle(layout.first_tooth + body.sectors)[:, None]
+        self._angle = layout.chain_angle(body.sectors)[:, None]
 
     def is_active(self, state: LoadState) -> bool:
         """With the cam."""

@@ -122,7 +122,7 @@ class BallContact:
         self.coords = body.positions()[sector, nodes]
         layout, local = body.layout, body.layout.mesh.coords[groove[:, 0]]
         pitch, at = layout.mesh.pitch, np.arctan2(-local[:, 0], local[:, 1])
-        origin = layout.sector_angle(layout.first_tooth + body.sectors[0]) if n_sectors else 0.0
+        origin = layout.chain_angle(body.sectors[0]) if n_sectors else 0.0
         self.angle = origin + (column // n) * pitch + np.where(column % n, at[column % n], at[0])
         self.own_range = n * body.owned.start, n * body.owned.stop
         self.alone = not body.preceding.any()

@@ -225,7 +225,7 @@ class FlankPairs:
         number, sixths = self.partition.node_numbers(
             FLEXIBLE_SPLINE, np.array([pair.sector]), slave.corners.ravel()
         )
-        angle = layout.sector_angle(np.array(layout.first_tooth + pair.sector))
+        angle = layout.chain_angle(np.array(pair.sector))
         c, s = np.cos(angle), np.sin(angle)
         rotation = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
         return PlacedFaces(

@@ -59,7 +59,7 @@ def facing_flanks(
     tips = np.concatenate([f.nodes[0] for f in layout.mesh.flanks])
     body = np.unique(np.concatenate([f.nodes.ravel() for f in layout.mesh.flanks]))
     x = spline.positions()[rows] + spline.displacement(u)[rows]
-    angle = layout.sector_angle(layout.first_tooth + np.arange(first, end))
+    angle = layout.chain_angle(np.arange(first, end))
     c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
     flank = x[:, body]
     local_x, local_y = c * flank[..., 0] + s * flank[..., 1], -s * flank[..., 0] + c * flank[..., 1]

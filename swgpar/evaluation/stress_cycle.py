@@ -163,6 +163,6 @@ def sector_stress(body: BodyElements, fields: Mapping[str, np.ndarray]) -> np.nd
     fields : nodal fields of the body, of `DriveModel.stresses`
     """
     before, layout = body.positions()[body.owned][..., :2], body.layout
-    angle = layout.sector_angle(layout.first_tooth + body.sectors[body.owned])
+    angle = layout.chain_angle(body.sectors[body.owned])
     angle = angle + rotation_between(before, before + fields["displacement"][..., :2])
     return rotated_tensor(fields["stress"], -angle[:, None])

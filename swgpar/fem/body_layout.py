@@ -114,6 +114,10 @@ class BodyLayout:
         """Angle (rad) of the sectors of teeth about z, counter-clockwise from +y; any shape."""
         return self.mesh.sector_angle(tooth)
 
+    def chain_angle(self, index: np.ndarray) -> np.ndarray:
+        """Angle (rad) of modelled sectors by their index in the chain; any shape."""
+        return self.sector_angle(self.first_tooth + index)
+
     def sector_of_tooth(self, tooth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Index in the chain of any tooth (-1 where it is not modelled) and its flag (uint8)."""
         periods, rest = np.divmod(np.asarray(tooth) - self.first_tooth, self.teeth_per_period)
@@ -125,7 +129,7 @@ class BodyLayout:
 
         sectors : (n,) indices in the chain;  field : (n, n_node, 3) mm, overwritten at these nodes
         """
-        angle = self.sector_angle(self.first_tooth + sectors)
+        angle = self.chain_angle(sectors)
         if self.held:
             nodes, lower = self.fixed, self.mesh.lower_nodes
             if lower is not None:

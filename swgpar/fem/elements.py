@@ -126,7 +126,7 @@ class BodyElements:
         self.assembled = self._assembled()
 
     def _rotation(self) -> np.ndarray:
-        angle = self.layout.sector_angle(self.layout.first_tooth + self.sectors)
+        angle = self.layout.chain_angle(self.sectors)
         return np.column_stack([np.cos(angle), np.sin(angle)]).reshape(-1, 2)
 
     def activate(self, active: np.ndarray) -> None:
@@ -178,7 +178,7 @@ class BodyElements:
 
     def positions(self) -> np.ndarray:
         """Undeformed positions of all nodes of the sectors seen; (n_sectors, n_node, 3) mm."""
-        angle = self.layout.sector_angle(self.layout.first_tooth + self.sectors)
+        angle = self.layout.chain_angle(self.sectors)
         return rotated(self.layout.mesh.coords, angle[:, None])
 
     def part_forces(self, u: np.ndarray, part: int) -> np.ndarray:

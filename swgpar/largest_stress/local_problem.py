@@ -211,7 +211,7 @@ class LocalProblem:
     def _interpolated(self, field: np.ndarray, matrix: csr_matrix) -> np.ndarray:
         """Displacement (n_teeth, n_node, 3) mm at the nodes of this window from that on another
         mesh of its teeth. matrix : of `interpolation`"""
-        angle = self.layout.sector_angle(self.layout.first_tooth + np.arange(self.layout.count))
+        angle = self.layout.chain_angle(np.arange(self.layout.count))
         local = rotated(field, -angle[:, None])
         return rotated(np.stack([matrix @ sector for sector in local]), angle[:, None])
 
@@ -235,7 +235,7 @@ class LocalProblem:
             return
         nodes = np.unique(mesh.faces["end"])
         for sector in range(SECTORS):
-            angle = self.layout.sector_angle(np.array(self.layout.first_tooth + sector))
+            angle = self.layout.chain_angle(np.array(sector))
             yield (
                 np.array([sector]),
                 nodes[cup.is_attached(rotated(mesh.coords[nodes], float(angle))[:, :2])],
@@ -293,7 +293,7 @@ class LocalProblem:
         x, y, _ = mesh.coords[nodes].T
         force = (moment * share / (x**2 + y**2))[:, None] * np.column_stack([-y, x, 0.0 * x])
         for sector in range(SECTORS):
-            angle = self.layout.sector_angle(np.array([self.layout.first_tooth + sector]))
+            angle = self.layout.chain_angle(np.array([sector]))
             index, own = self._numbers(np.array([sector]), nodes)
             np.add.at(forces, index[0, own[0]], rotated(force[None], angle[:, None])[0][own[0]])
 

@@ -196,7 +196,7 @@ class WallProblem:
         """Whether closed end or flange is attached in any of the sectors."""
         layout = self.layout
         faces = layout.mesh.coords[layout.mesh.faces["end"]].mean(axis=1)[:, :2]
-        angles = layout.sector_angle(layout.first_tooth + np.arange(layout.count))
+        angles = layout.chain_angle(np.arange(layout.count))
         return any(
             self.model.design.cup.is_attached(rotated(faces, angle)).any() for angle in angles
         )

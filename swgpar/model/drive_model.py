@@ -120,7 +120,7 @@ class DriveModel:
         body = self.elements.bodies[FLEXIBLE_SPLINE]
         if body.layout.condensed is None:
             return 0.0
-        angle = body.layout.sector_angle(body.layout.first_tooth + body.sectors[body.owned])
+        angle = body.layout.chain_angle(body.sectors[body.owned])
         theta = relative_end_rotation(
             body.layout.mesh, angle, body.displacement(self.problem.displacement())[body.owned]
         )
