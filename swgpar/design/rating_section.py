@@ -47,7 +47,9 @@ class RatingSection(Section):
         gt=0.0,
         le=1e6,
     )
-    life: float | None = quantity(None, unit="h", text="required life of the bearing", gt=0.0)
+    life: float | None = quantity(
+        None, unit="h", text="required life of bearing and flexible spline", gt=0.0
+    )
     yield_safety: float = _safety("against yield under the largest torque")
     fatigue_safety: float = _safety("against fatigue under the repeated peak torque")
     static_safety: float = _safety("of the bearing's balls under the largest torque")

@@ -222,26 +222,27 @@ def _under_torque(
     *,
     without_friction: bool = False,
 ) -> PlannedRun:
-    """A run under one torque (N·m). Where a period is refused it has the loaded state alone."""
+    """A run under one torque (N·m). Where it is refused, a run with stresses leaves out its
+    sections, and then its period."""
     content, said = _content(design, loads, torque, run.sections), ""
     if without_friction:
         content["contact"] = {**content.get("contact", {}), "friction": 0.0}
         said = "friction of the flanks, which it cannot have"
     if not run.windows:
         content["output"] = {**content["output"], "root_stress": False}
-    try:
-        made = make_drive(_with_period(design, content, run))
-        return PlannedRun(run.cases, made, torque, "", said, run.windows)
-    except InputError as error:
-        if not run.period:
-            return PlannedRun(run.cases, None, torque, str(error))
-        state = {key: value for key, value in content.items() if key not in APART}
-        reason = str(error)
-    try:
-        made = make_drive(state)
-        return PlannedRun(run.cases, made, torque, "", f"a period: {reason}", run.windows)
-    except InputError as error:
-        return PlannedRun(run.cases, None, torque, str(error))
+    alone = {key: value for key, value in content.items() if key not in APART}
+    ways = [_with_period(design, content, run)]
+    if run.windows:
+        ways += [_with_period(design, alone, run), alone]
+    refusals: list[str] = []
+    for way in ways:
+        try:
+            made = make_drive(way)
+        except InputError as error:
+            refusals.append(str(error))
+            continue
+        return PlannedRun(run.cases, made, torque, "", (*refusals, said)[0], run.windows)
+    return PlannedRun(run.cases, None, torque, refusals[0])
 
 
 def _with_period(design: DriveDesign, content: dict[str, Any], run: _UnderTorque) -> dict[str, Any]:

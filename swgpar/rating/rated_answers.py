@@ -3,6 +3,7 @@ safeties, shares."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection
 from dataclasses import replace
 
@@ -65,6 +66,21 @@ def least_fatigue_safety(summary: DriveSummary, regions: Collection[str]) -> Ans
 def _with_warning(answer: Answer, region: RegionSafety) -> Answer:
     """The answer, where its stress depends on the mesh without a limit."""
     return with_no_limit(replace(answer, remark=region.warning)) if region.warning else answer
+
+
+def spline_life(summary: DriveSummary) -> Answer | None:
+    """Life of the flexible spline in hours by Basquin; infinite without damage."""
+    if summary.fatigue is None:
+        return None
+    hours = summary.fatigue.life.life_hours
+    answer = Answer(
+        name="fatigue.life_hours",
+        value=math.inf if hours is None else hours,
+        unit="h",
+        text="life by Basquin",
+        place=summary.fatigue.least["goodman"].place,
+    )
+    return with_error(answer, None)
 
 
 def static_safety(summary: DriveSummary) -> Answer | None:

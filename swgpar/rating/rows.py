@@ -28,6 +28,7 @@ from swgpar.rating.rated_answers import (
     largest_mises,
     least_fatigue_safety,
     resolution,
+    spline_life,
     static_safety,
 )
 
@@ -36,6 +37,7 @@ AnswerSource = Callable[[DriveSummary], Answer | None]
 
 IDEAL = "a lower bound, that of the ideal drive: [deviations] is not given"
 NO_FRICTION = "a lower bound: contact.friction = 0, and the loop has no area"
+ALWAYS_AT_PEAK = "a lower bound, of the repeated peak torque at all times"
 NO_WALL = 'drive.model = "plane" has no wall'
 
 
@@ -93,7 +95,7 @@ def rating_rows(design: DriveDesign, accuracy: float | None = None) -> list[Rati
     loads, section = rating_loads(design), design.rating
     assert section is not None  # `rating_loads` has refused a design without it
     return [
-        *_strength(design, section),
+        *_strength(design, section, loads),
         *_bearing(design, section),
         *_bolts(design),
         _ratcheting(section, loads),
@@ -103,7 +105,9 @@ def rating_rows(design: DriveDesign, accuracy: float | None = None) -> list[Rati
     ]
 
 
-def _strength(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
+def _strength(
+    design: DriveDesign, section: RatingSection, loads: RatingLoads
+) -> Iterator[RatingRow]:
     strengths = design.fatigue
     safety = section.yield_safety
     least = Limit(section.fatigue_safety, Sense.AT_LEAST, "rating.fatigue_safety")
@@ -129,6 +133,14 @@ def _strength(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow
             wall,
             of_strength=not wall,
         )
+    often = loads.repeated_peak > loads.average
+    yield RatingRow(
+        "life of the flexible spline",
+        LoadCase.REPEATED_PEAK,
+        spline_life,
+        _required(section.life, Sense.AT_LEAST, "life"),
+        lower_bound=lambda _: ALWAYS_AT_PEAK if often else "",
+    )
     pressure, given = _named("contact.pressure"), section.flank_pressure
     source = section.flank_pressure_source or "rating.flank_pressure"
     yield RatingRow(

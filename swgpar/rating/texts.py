@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from swgpar.answers.verdict import Judgement, Verdict
 from swgpar.presentation.answer_text import error_text, value_text
 from swgpar.rating.sheet import RatingSheet, RunEntry
@@ -13,6 +15,8 @@ def amount_text(verdict: Verdict) -> str:
     answer = verdict.answer
     if answer is None or answer.value is None:
         return "—"
+    if math.isinf(answer.value):
+        return "without end"
     return f"{value_text(answer.value)} {answer.unit}".rstrip()
 
 

@@ -8,7 +8,7 @@ from typing import Any, cast
 import pytest
 
 import swgpar
-from support.paths import DESIGN
+from support.paths import DESIGN, DRIVERS
 from support.small_drive import PLANE
 from swgpar.answers.answer import NO_LIMIT, Answer
 from swgpar.answers.verdict import Judgement, Limit, Sense, Verdict, worst
@@ -18,6 +18,7 @@ from swgpar.drive_results.report_checks import RESOLUTION
 from swgpar.drive_results.strength_checks import FIRST_YIELD
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.errors import InputError
+from swgpar.input.toml_file import read_toml
 from swgpar.rating.planned_runs import LoadCase, plan_runs
 from swgpar.rating.rate_drive import accuracy_of
 from swgpar.rating.rated_answers import STATIC_PRESSURE
@@ -220,6 +221,21 @@ def test_fatigue_of_a_part(part: str, safety: float, judgement: Judgement) -> No
     assert judged(f"fatigue of {part}", rated(), found) == OPEN
 
 
+def test_life_of_the_flexible_spline() -> None:
+    """Under a peak torque that does not always act it is a lower bound."""
+    always = {**RATING, "average_torque": RATING["repeated_peak_torque"]}
+    for hours, alone, bound in (
+        (6999.0, FAILS, OPEN),
+        (7001.0, PASSES, PASSES),
+        (None,) + 2 * (PASSES,),
+    ):
+        life = SimpleNamespace(life_hours=hours)
+        least = {"goodman": SimpleNamespace(place="")}
+        found = summary("none", 0.0, fatigue=SimpleNamespace(life=life, least=least))
+        assert judged("life of the flexible spline", rated(rating=always), found) == alone
+        assert judged("life of the flexible spline", rated(), found) == bound
+
+
 def test_static_safety_and_life_of_the_bearing() -> None:
     design = rated(**with_bearing())
     most = STATIC_PRESSURE / 2.0 ** (1.0 / 3.0)
@@ -331,6 +347,29 @@ def test_a_load_from_one_side_has_no_period_and_the_sheet_says_it() -> None:
     first = plan.runs[0]
     assert first.design is not None and first.design.losses is None
     assert "radial force" in first.left_out
+
+
+def test_a_pancake_drive_keeps_its_period_without_what_it_cannot_have() -> None:
+    table = read_toml(DRIVERS / "pancake.toml")
+    rating = {"rating": RATING, "fatigue": {}, "losses": {}}
+    plan = plan_runs(load_rated_design(table | rating))
+    runs = {run.name: run for run in plan.runs}
+    first = runs["rated torque"]
+    assert first.design is not None and first.design.steps.samples and not first.design.losses
+    assert 'drive.model = "pancake"' in first.left_out
+    for name in ("no load", "stiffness", "ratcheting"):
+        assert runs[name].design is None and 'drive.model = "pancake"' in runs[name].refusal
+
+
+def test_sections_that_exclude_each_other_may_stand_in_one_file() -> None:
+    keys = {"stiffness": {"positions": 2}, "ratcheting": {"increment": 0.05}}
+    runs = {run.name: run for run in plan_runs(rated(**keys)).runs}
+    loop, jump = runs["stiffness"].design, runs["ratcheting"].design
+    assert loop is not None and loop.stiffness is not None and loop.ratcheting is None
+    assert (loop.stiffness.positions, loop.stiffness.torque) == (2, RATING["rated_torque"])
+    assert jump is not None and jump.ratcheting is not None and jump.ratcheting.increment == 0.05
+    with pytest.raises(InputError, match="gear train has no rating"):
+        load_rated_design(DRIVERS / "gear_pair.toml")
 
 
 def test_an_accuracy_is_for_runs_with_stresses() -> None:
