@@ -382,18 +382,17 @@ def _place(
     error: float,
     on_mesh: float,
 ) -> RootStress:
-    x, y, z = found.position
     layout = model.partition.layouts[FLEXIBLE_SPLINE]
-    angle = float(layout.sector_angle(np.array(found.tooth)) - np.arctan2(x, y))
+    place = Place.at(layout, found.region, found.position, found.tooth, found.value, error)
     return RootStress(
-        s1=found.value,
-        error=error if math.isfinite(error) else None,
+        s1=place.value,
+        error=place.error,
         on_mesh=on_mesh,
         region=found.region,
-        tooth=found.tooth % layout.mesh.n_sectors,
-        radius=float(np.hypot(x, y)),
-        z=0.0 if layout.mesh.plane else float(z),
-        angle_deg=float(np.degrees(angle)) % 360.0,
+        tooth=place.tooth,
+        radius=place.radius,
+        z=place.z,
+        angle_deg=place.angle_deg,
         part=part,
         by_part=by_part,
         elements=found.elements,
