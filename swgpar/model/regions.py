@@ -97,11 +97,6 @@ def regions_of(
     return found.astype(str)
 
 
-def region_of(geometry: DriveGeometry, mesh: SectorMesh, node: int, touched: bool) -> str:
-    """Region of one node, see `regions_of`."""
-    return str(regions_of(geometry, mesh, [node], touched)[0])
-
-
 def _at_the_cam_edge(geometry: DriveGeometry, points: np.ndarray) -> np.ndarray:
     """Whether points (n, 3) mm have the z of an edge of the wave generator, (n,) bool."""
     if geometry.model == "plane":

@@ -20,7 +20,6 @@ from swgpar.model.regions import (
     CAM_EDGE,
     EDGE,
     NOTCH,
-    region_of,
     regions_of,
     warning_of,
 )
@@ -81,8 +80,7 @@ def test_roots_that_end_at_the_corner_have_no_limit_there(thickness: float, expe
     grid = mesh.flanks[0]
     end, front = (regions((design, mesh), grid.nodes[-1:, k]) for k in (-1, 0))
     assert end == {expected} and front == {"tooth end"}
-    region = region_of(design.geometry, mesh, int(grid.nodes[-1, -1]), False)
-    warning = warning_of(design.geometry, region, mesh.coords[grid.nodes[-1, -1]])
+    warning = warning_of(design.geometry, *end, mesh.coords[grid.nodes[-1, -1]])
     assert warning.startswith(NOTCH) == (expected == "notch")
 
 
@@ -103,10 +101,7 @@ def test_a_fillet_takes_the_place_of_the_notch() -> None:
 def test_regions_of_the_ring_gear() -> None:
     design = swgpar.load_design(REFERENCE)
     mesh = build_sector(design.geometry, load_recipe("coarse"), "ring_gear")
-    found = {
-        region_of(design.geometry, mesh, int(node), False)
-        for node in np.unique(mesh.faces["outer"])
-    }
+    found = regions((design, mesh), np.unique(mesh.faces["outer"]))
     assert found == {"outer surface", "attachment"}  # its edges are held
     housed = swgpar.load_design(REFERENCE, ["ring_gear.housing.thickness=6"])
     mesh = build_sector(housed.geometry, load_recipe("coarse"), "ring_gear")
@@ -147,10 +142,7 @@ def test_nodes_inside_of_teeth_are_on_no_surface(
     assert len(inside) > 50
     faces = {node for name in mesh.faces for node in np.unique(mesh.faces[name])}
     assert not faces & set(inside.tolist())
-    assert {region_of(design.geometry, mesh, int(node), False) for node in inside} <= {
-        "inside the tooth",
-        "tooth end",
-    }
+    assert regions((design, mesh), inside) <= {"inside the tooth", "tooth end"}
 
 
 def test_roots_are_where_the_region_says_it(cup: tuple[DriveDesign, SectorMesh]) -> None:
