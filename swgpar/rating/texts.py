@@ -56,7 +56,7 @@ def headline_text(sheet: RatingSheet) -> str:
 
 def counts_text(sheet: RatingSheet) -> str:
     """How many rows have a judgement."""
-    return ", ".join(f"{judgement} {count}" for judgement, count in sheet.counts.items())
+    return ", ".join(f"{judgement}: {count}" for judgement, count in sheet.counts.items())
 
 
 def run_text(run: RunEntry) -> str:
