@@ -57,10 +57,9 @@ class PlannedRun:
         """Its name: the cases."""
         return ", ".join(self.cases)
 
-    @property
-    def folder(self) -> str:
-        """Name of its folder."""
-        return self.cases[0].replace(" ", "_")
+    def folder(self, identity: str) -> str:
+        """Name of its folder. identity : of what it computes, empty of a run that is refused"""
+        return "_".join(filter(None, (*self.cases[0].split(), identity[:IDENTITY])))
 
 
 @dataclass(frozen=True)
@@ -93,6 +92,9 @@ class RatingLoads:
 NO_STRENGTHS = "no strengths are given: [fatigue]"
 NO_BEARING = "the wave generator has no bearing: [wave_generator.bearing]"
 NO_LOSSES = "no coefficients of losses are given: [losses]"
+
+IDENTITY = 8
+"""Letters of an identity that tell the runs of one case apart."""
 
 APART = ("rating", "stiffness", "ratcheting", "fatigue", "losses", "deviations", "frequencies")
 """Sections that a run has only where it is for them."""

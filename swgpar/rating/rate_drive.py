@@ -13,7 +13,7 @@ from swgpar.analysis.shortcuts import MESHES
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.errors import InputError
-from swgpar.meshing import load_recipe
+from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.rating.page import rating_page
 from swgpar.rating.planned_runs import LoadCase, PlannedRun, RatingPlan, plan_runs
 from swgpar.rating.rows import RatingRow, rating_rows
@@ -39,22 +39,32 @@ WAITS = "the run waits"
 class _Book:
     """What has become of the runs, and the sheet that follows.
 
-    plan : the runs;  rows : of the sheet;  folder : of its files
-    outcomes : of the runs that have ended, by their folders
+    plan : the runs;  rows : of the sheet;  recipe : of the meshes;  folder : of the files
+    places : folders of the runs, by their names. A run that is changed has another one, so that
+    those that are done are found again
+    outcomes : of the runs that have ended, by their names
     """
 
     def __init__(
-        self, design: DriveDesign, plan: RatingPlan, rows: list[RatingRow], folder: Path
+        self,
+        design: DriveDesign,
+        plan: RatingPlan,
+        rows: list[RatingRow],
+        recipe: MeshRecipe,
+        folder: Path,
     ) -> None:
         self.design, self.plan, self.rows, self.folder = design, plan, rows, folder
+        self.places = {
+            run.name: f"{RUNS}/{run.folder(_identity(run, recipe))}" for run in plan.runs
+        }
         self.outcomes: dict[str, Outcome] = {}
         self.summaries: dict[LoadCase, DriveSummary] = {}
 
     def note(self, run: PlannedRun, outcome: Outcome, comm: MPI.Comm) -> None:
         """A run has ended; every rank reads its summary."""
-        self.outcomes[run.folder] = outcome
+        self.outcomes[run.name] = outcome
         if outcome.status == "finished":
-            result = DRIVE.open(self.folder / RUNS / run.folder, comm)
+            result = DRIVE.open(self.folder / self.places[run.name], comm)
             self.summaries |= dict.fromkeys(run.cases, result.summary)
 
     def _missing(self, case: LoadCase) -> str:
@@ -62,21 +72,21 @@ class _Book:
         if case in self.plan.missing:
             return self.plan.missing[case]
         run = next(run for run in self.plan.runs if case in run.cases)
-        if run.folder not in self.outcomes:
+        if run.name not in self.outcomes:
             return WAITS
-        outcome = self.outcomes[run.folder]
+        outcome = self.outcomes[run.name]
         if outcome.status == "failed":
             return outcome.reason
         return f"left out: {run.left_out}" if run.left_out else ""
 
     def _entry(self, run: PlannedRun) -> RunEntry:
-        outcome = self.outcomes.get(run.folder)
+        outcome = self.outcomes.get(run.name)
         status = "waits" if outcome is None else outcome.status
         return RunEntry(
             name=run.name,
             torque=run.torque,
             status="refused" if run.refusal else status,
-            folder=f"{RUNS}/{run.folder}",
+            folder=self.places[run.name],
             reason=run.refusal or ("" if outcome is None else outcome.reason),
             left_out=run.left_out,
             wall_s=None if outcome is None else outcome.wall_s,
@@ -107,11 +117,13 @@ def rate_drive(design: DriveDesign, options: RunOptions) -> RatingSheet:
     if folder is None:
         raise InputError("out is missing: a rating keeps its runs in a folder")
     plan, rows = on_all(comm, lambda: (plan_runs(design), rating_rows(design, options.accuracy)))
-    if options.recipe is None:
+    recipe = options.recipe
+    if recipe is None:
         name = MESHES[design.drive.model]
-        options = replace(options, recipe=load_recipe(name), recipe_name=name)
+        recipe = load_recipe(name)
+        options = replace(options, recipe=recipe, recipe_name=name)
     _claim(folder, options)
-    book, count = _Book(design, plan, rows, folder), len(plan.runs)
+    book, count = _Book(design, plan, rows, recipe, folder), len(plan.runs)
     watch.saved("runs", 0, count)
 
     def run(index: int, own: MPI.Comm, _: object) -> None:
@@ -119,7 +131,7 @@ def rate_drive(design: DriveDesign, options: RunOptions) -> RatingSheet:
         watch.doing(f"run {index + 1} of {count}: {planned.name}")
         given = replace(
             options,
-            out=folder / RUNS / planned.folder,
+            out=folder / book.places[planned.name],
             accuracy=accuracy_of(planned, options.accuracy),
             comm=own,
             terminal=False,
@@ -134,6 +146,10 @@ def rate_drive(design: DriveDesign, options: RunOptions) -> RatingSheet:
 
     do_runs(comm, "ranks", count, run, None)
     return book.sheet()
+
+
+def _identity(run: PlannedRun, recipe: MeshRecipe) -> str:
+    return "" if run.design is None else str(DRIVE.identity(run.design, recipe)["identity"])
 
 
 def accuracy_of(run: PlannedRun, accuracy: float | None) -> float | None:

@@ -122,8 +122,8 @@ def _finished_before(
     if old.get("identity", record["identity"]) != record["identity"]:
         return Outcome(
             "failed",
-            f"{folder} holds results of another design: give another folder, in a study another "
-            "name of the case, or overwrite = true (--overwrite)",
+            f"{folder} holds results of another design: rename the case, or overwrite = true "
+            "(--overwrite)",
         )
 
     outcome = None

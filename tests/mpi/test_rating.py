@@ -70,6 +70,10 @@ def test_a_rating_from_the_design_to_its_files(tmp_path: Path) -> None:
     again = swgpar.rate(design(efficiency=0.001), out, mesh=RECIPE, restart=True)
     parallel_assert([run.wall_s for run in again.runs] == seconds)
     parallel_assert(judgements(again)["efficiency"] == Judgement.PASSES)
+    other = swgpar.rate(design(K1=2.0, rated_torque=0.25), out, mesh=RECIPE, restart=True)
+    parallel_assert({run.status for run in other.runs} == {"finished"})
+    kept = {run.name: run.wall_s for run in other.runs if run.wall_s in seconds}
+    parallel_assert(list(kept) == ["no load"])
 
 
 @pytest.mark.parallel([1, 2])
