@@ -21,6 +21,8 @@ Three lines meet at I: the flank is smooth at K, where a block's corner would be
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from swgpar.geometry.arrays import Floats
@@ -102,7 +104,7 @@ class HalfTooth:
         s_k, s_q = block_ends(profile)
         s_tip, self.tip = self._tip(s_k)
         s_root, self.root = self._root(s_q)
-        self.s_side = stations(profile, s_k, s_q, recipe.flank)
+        self.s_side = self._side(s_k, s_root)
         self.s = np.concatenate((s_tip[:-1], self.s_side, s_root[1:]))
 
     def _tip(self, s_k: float) -> tuple[Floats, Floats]:
@@ -121,6 +123,17 @@ class HalfTooth:
         start = profile.polar_angle(profile.length)[0]
         land = polar(profile.r_root_circle, start + (self.half_pitch - start) * even(n_land))
         return s_root, np.concatenate((profile.point(s_root), land[1:]))
+
+    def _side(self, s_k: float, s_root: Floats) -> Floats:
+        """Arc lengths (n,) of the flank's nodes from K to Q, mm. s_root : of those from Q to R"""
+        profile, count, s_q = self.profile, self.recipe.flank, float(s_root[0])
+        begin = profile.root_start
+        if not (self.recipe.even_root and s_k < begin < s_q and len(s_root) > 1 and count > 1):
+            return stations(profile, s_k, s_q, count)
+        arc = math.ceil((s_q - begin) / (s_root[1] - s_root[0]) * (1.0 - 1e-9))
+        arc = min(arc, count // 2)
+        above = stations(profile, s_k, begin, count - arc)
+        return np.concatenate((above, begin + (s_q - begin) * even(arc)[1:]))
 
     def blocks(self) -> list[Sides]:
         """Sides of all blocks: cap, side, core, under, root, lower rim under tooth and root."""

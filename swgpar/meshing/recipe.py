@@ -29,6 +29,11 @@ class ToothRecipe(Section):
     root: int = quantity(
         text="elements from the split in the root arc to the middle of the root", ge=2, le=200
     )
+    even_root: bool = quantity(
+        False,
+        text="whether elements above the split in the root arc, which the flank gives, are as long "
+        "as those below it",
+    )
     under: int = quantity(
         text="layers of elements between the root and the lower rim", ge=1, le=100
     )
