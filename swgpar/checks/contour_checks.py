@@ -223,6 +223,12 @@ def _check_lean(
             if wall == 0.0:
                 continue
             lean = 90.0 - float(np.degrees(np.angle(across / (way * wall))))
+            if abs(lean) > 90.0:
+                raise InputError(
+                    f"{contour.point(k)}: its corner of {names['outer_distance']} and "
+                    f"{names['outer_radius']} lies beyond that {contour.opposite}: allowed are "
+                    "lines that do not cross, from files in their order"
+                )
             if abs(lean) > LARGEST_LEAN:
                 raise InputError(
                     f"{contour.point(k)}: the line between its corners leans by {abs(lean):.3g} "

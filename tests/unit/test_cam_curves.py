@@ -256,6 +256,7 @@ def test_lines_that_are_no_points(text: str, words: str, tmp_path: Path) -> None
         ("a if a else b", "comparisons"),
         ("a // b", "allowed \\+ - "),
         ("a ** theta", "exponents that do not depend"),
+        ("a + 0 * 9 ** 9 ** 9 ** 9", "allowed finite exponents"),
         ("sin(a, b)", "one argument"),
         ("foo", "allowed a, b, theta, pi"),
         ("pi = 3; a", "another name"),

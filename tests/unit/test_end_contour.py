@@ -181,6 +181,11 @@ REFUSED = [
         "square to the closed end beside it: allowed up to 50 degrees, by near_radius",
     ),
     (
+        end({"radius": 12.0, "near_distance": 12.5}),
+        "cup.end_contour.1: its corner of near_radius and near_distance ",
+        "lies beyond that on the far face",
+    ),
+    (
         end({"radius": 16.0, "thickness": 0.6, "rounding": 90.0}),
         "cup.end_contour.1.rounding = 90 ",
         "half of the shorter side",

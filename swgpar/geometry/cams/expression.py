@@ -176,6 +176,8 @@ class PolarExpression:
         if isinstance(node.op, ast.Sub):
             return Jet(x.value - y.value, x.first - y.first, x.second - y.second)
         if isinstance(node.op, ast.Pow):
+            if not np.isfinite(y.value).all():
+                raise self._refused(node, "finite exponents")
             if y.first.any() or y.second.any() or np.ptp(y.value):
                 raise self._refused(node, "exponents that do not depend on theta")
             return _power(x, float(y.value[0]))
