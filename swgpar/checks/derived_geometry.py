@@ -14,6 +14,9 @@ from swgpar.profiles import Points
 from swgpar.profiles.from_points import fitted_flank
 from swgpar.profiles.rigid_teeth import RigidMesh
 
+SAME = 1e-9
+"""Share by which equal thicknesses differ."""
+
 
 def _smallest(cam: Cam, lobes: int) -> dict[str, float]:
     """Smallest size of the cam: its half width, or its radius between three lobes."""
@@ -125,12 +128,12 @@ def _cup(design: DriveDesign) -> dict[str, float]:
     end = "flange" if cup.shape == "hat" else "closed end"
     thinnest = min(thicknesses(of_cup.points))
     sizes = {"cup thickness (mm)": of_cup.thickness}
-    if thinnest != of_cup.thickness:
+    if not np.isclose(thinnest, of_cup.thickness, rtol=SAME):
         sizes["thinnest place of the wall (mm)"] = thinnest
     if of_cup.end_thickness != of_cup.thickness:
         sizes[f"thickness of the {end} (mm)"] = of_cup.end_thickness
     thinnest = min(thicknesses(of_cup.wall.plate_points))
-    if thinnest != of_cup.end_thickness:
+    if not np.isclose(thinnest, of_cup.end_thickness, rtol=SAME):
         sizes[f"thinnest place of the {end} (mm)"] = thinnest
     if cup.attachment == "clamped":
         sizes["attached area, one side (mm2)"] = np.pi * abs(cup.edge**2 - cup.clamping_radius**2)

@@ -17,7 +17,7 @@ from scipy.interpolate import CubicSpline
 
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.cup_wall import CupWall, decay_length
-from swgpar.geometry.paired_lines import thicknesses
+from swgpar.geometry.paired_lines import PairedLines, thicknesses
 from swgpar.meshing.cup import Meridian, section_lines
 from swgpar.meshing.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.quality import element_quality
@@ -41,7 +41,7 @@ hat by 0.15 % (docs/verification/largest_stress.md)."""
 
 
 CLOSE = 0.25
-"""Share of an element within which stations on closed end or flange become one."""
+"""Share of an element within which stations become one."""
 
 SAMPLES = 101
 """Places between two fixed stations at which the length of the elements is known."""
@@ -97,7 +97,8 @@ def plate_ways(cup: CupGeometry, counts: WallCounts, first: float) -> Floats:
     thinnest = min(thicknesses(wall.plate_points))
     width, longest = cup.plate_length, counts.limit(begin, thinnest)
     if cup.has_washers:
-        return refined(cup, _with_washers(cup, first, longest), counts)[1:]
+        along = _with_washers(cup, first, longest)
+        return refined(wall.plate, cup.plate_stations(along), cup.ring_ways, counts)[1:]
     free = width
     if cup.clamping_radius is not None:
         free = float(cup.plate_length_at(np.array(cup.clamping_radius)))
@@ -105,34 +106,35 @@ def plate_ways(cup: CupGeometry, counts: WallCounts, first: float) -> Floats:
     along = graded_line(free, first, last, longest) if free > first else np.array([0.0, free])
     if free < width:
         along = np.append(along, free + graded_line(width - free, first, longest, longest)[1:])
-    return refined(cup, along, counts)[1:]
+    return refined(wall.plate, cup.plate_stations(along), cup.ring_ways, counts)[1:]
 
 
-def refined(cup: CupGeometry, usual: Floats, counts: WallCounts) -> Floats:
-    """Ways (n,) mm from the fillet of stations on closed end or flange. Arcs of its contour have as
-    many elements, for their angle, as the fillet; the others grow away from them.
+def refined(lines: PairedLines, usual: Floats, fixed: Floats, counts: WallCounts) -> Floats:
+    """Places (n,) mm of stations on lines whose arcs have as many elements, for their angle, as the
+    fillet; the others grow away from them.
 
-    usual : (m,) mm, lengths from 0 to `plate_length`, of stations without a contour
+    usual : (m,) mm, stations without that;  fixed : (k,) mm, those that stay beside corners
     """
-    plate, usual = cup.wall.plate, cup.plate_stations(usual)
-    corners, arcs = plate.corners(), plate.arcs()
-    if not corners.size:
+    corners, arcs = lines.corners(), lines.arcs()
+    if not arcs.size:
         return usual
-    begin, end, angle = arcs.T
+    known = lines.along(usual)
+    (begin, end), angle = lines.along(arcs[:, :2]).T, arcs[:, 2]
     step = (end - begin) / np.ceil(counts.fillet * angle / (0.5 * np.pi) - ROUND_OFF)
-    marks = np.unique(np.concatenate([usual[[0, -1]], corners, cup.ring_ways]))
-    for at, near in zip(arcs[:, :2].ravel(), np.repeat(step, 2), strict=True):
-        if np.abs(marks - at).min() > CLOSE * near:
+    places = np.concatenate([usual[[0, -1]], corners[corners > usual[0]], fixed])
+    marks = np.unique(lines.along(places))
+    for at, near in zip(np.append(begin, end), np.tile(step, 2), strict=True):
+        if at > known[0] and np.abs(marks - at).min() > CLOSE * near:
             marks = np.sort(np.append(marks, at))
     stations = [marks[0]]
     for low, high in pairwise(marks):
         way = np.linspace(low, high, SAMPLES)
         beyond = np.maximum(np.maximum(begin - way[:, None], way[:, None] - end), 0.0)
-        size = np.column_stack([_spacing(usual, way), step + (GROWTH - 1.0) * beyond]).min(axis=1)
+        size = np.column_stack([_spacing(known, way), step + (GROWTH - 1.0) * beyond]).min(axis=1)
         number = cumulative_trapezoid(1.0 / size, way, initial=0.0)
         count = max(1, int(np.ceil(number[-1] - CLOSE)))
         stations += np.interp(np.arange(1, count + 1) * number[-1] / count, number, way).tolist()
-    return np.array(stations)
+    return lines.at_length(np.array(stations))
 
 
 def _spacing(stations: Floats, at: Floats) -> Floats:
@@ -185,9 +187,10 @@ def graded_section(geometry: DriveGeometry, counts: WallCounts, start: float) ->
     usual = wall.at_length(length - graded_line(length - first, arc, longest, longest)[::-1])
     usual[0] = start
     angle = wall.turn_angles(counts.fillet)[1:]
+    stations = wall.stations(usual, usual[usual <= start])
     return section_lines(
         geometry.cup,
-        wall.stations(usual, usual[usual <= start]),
+        refined(wall, stations, stations[:1], counts),
         angle,
         plate_ways(geometry.cup, counts, arc),
     )

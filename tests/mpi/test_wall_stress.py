@@ -11,7 +11,7 @@ from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
 import swgpar
-from support.cup_shapes import HAT, HAT_CLAMPED, Changes, bolted, shaped
+from support.cup_shapes import CLAMPED, HAT, HAT_CLAMPED, Changes, bolted, cone, shaped
 from support.paths import RECIPE
 from support.stepping import WORLD, loaded
 from swgpar.analysis.load_stepping import LoadStepper
@@ -43,8 +43,13 @@ FILLETS: dict[str, Changes] = {
     "cup": SHARP,
     "clamped hat": HAT_CLAMPED | SHARP,
     "hub": HUB | {"fillet_radius": 1.5, "length": 10.0},
+    "cone": cone(60.0, rounding=0.3) | CLAMPED,
 }
-"""Walls that bend most in a sharp fillet. The mesh has one element there."""
+"""Walls that bend most in a sharp fillet, or in roundings of their contours. The mesh of the drive
+has one element there."""
+
+REGIONS = {"hub": "closed end", "cone": "cup wall"}
+"""Where they bend most, but for the fillet."""
 
 BOLTED: Changes = bolted(8) | SHARP | {"bolt_circle": 26.0}
 """Eight bolts close to the fillet, around which the closed end bends most."""
@@ -78,13 +83,13 @@ def test_any_number_of_ranks_gives_the_same(case: str, monkeypatch: pytest.Monke
 
 @cases
 def test_a_finer_whole_ring_is_within_the_error(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nodal averages of the drive are far from it, in the wrong region even."""
+    """Nodal averages of the drive are far from it, in the wrong region even, but in the cone."""
     stepper = drive(case)
     model, state = stepper.model, stepper.load_state
     found = resolved(stepper)
     ring = wall_stress._solved_ring(model, state, WallCounts(16, 8)).problem
     regions = sector_regions(model.geometry, ring.layout.mesh)[False]
-    region = "closed end" if case == "hub" else "fillet"
+    region = REGIONS.get(case, "fillet")
     s1, _, mises = principal(ring.stress()[:, regions == region])
     ring.destroy()
     nodal = find_places(model, state, model.stresses()[1])
@@ -93,7 +98,7 @@ def test_a_finer_whole_ring_is_within_the_error(case: str, monkeypatch: pytest.M
         place, average = found.places[name], nodal[name].value
         print(f"{name}: {place.value:.1f} ± {place.error:.1f}, {truth:.1f}, nodal {average:.1f}")
         assert abs(place.value - truth) < place.error < 0.25 * truth
-        assert average < 0.8 * truth
+        assert case == "cone" or average < 0.8 * truth
         assert len(found.levels[name]) == len(wall_stress.SLICES)
 
 
