@@ -6,11 +6,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.meshing.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.sector import SectorMesh
-from swgpar.model.sharp_corners import sharp_corners
+from swgpar.model.sharp_corners import REACH, sharp_corners
 
 BACK = "fillet at the back"
 """Region of the fillet between the back of the teeth and the wall of the cup."""
@@ -89,6 +90,7 @@ def regions_of(
     found = found.astype(object)
     points = mesh.coords[np.asarray(nodes, dtype=int)]
     found[_at_the_cam_edge(geometry, points) & (found == RIM_INSIDE)] = CAM_EDGE
+    found[_beside_the_wall(geometry, mesh)[np.asarray(nodes, dtype=int)]] = NOTCH_REGION
     at_held_edge = _at_a_held_edge(geometry, mesh, points)
     found[at_held_edge & np.isin(found, (RIM, OUTER))] = ATTACHED
     of_wall = np.isin(found, (*WALL, RIM_INSIDE))
@@ -103,6 +105,29 @@ def _at_the_cam_edge(geometry: DriveGeometry, points: np.ndarray) -> np.ndarray:
         return np.zeros(len(points), dtype=bool)
     beyond = np.abs(points[:, 2]) - 0.5 * geometry.cam_width
     return np.abs(beyond) < NEAR * geometry.module
+
+
+def _beside_the_wall(geometry: DriveGeometry, mesh: SectorMesh) -> np.ndarray:
+    """Nodes (n_node,) bool on the back of the teeth within the reach of the corner behind them,
+    where the wall continues the layers below the root.
+
+    There the corner of the mesh goes up the root arc as far as the elements of the wall do.
+    """
+    found, cup = np.zeros(len(mesh.coords), dtype=bool), geometry.cup
+    if mesh.plane or mesh.body != FLEXIBLE_SPLINE or cup is None:
+        return found
+    if cup.back_fillet > 0.0 or not cup.continues_root:
+        return found
+    z, near = mesh.coords[:, 2], NEAR * geometry.module
+    radius = np.hypot(mesh.coords[:, 0], mesh.coords[:, 1])
+    surface = geometry.inner_radius + geometry.cup_thickness
+    above = np.flatnonzero((np.abs(z - cup.wall.back) < near) & (radius > surface - near))
+    of_wall = mesh.hexes[z[mesh.hexes].max(axis=1) > cup.wall.back + near]
+    corner = np.intersect1d(above, of_wall)
+    if len(corner):
+        distance, _ = cKDTree(mesh.coords[corner]).query(mesh.coords[above])
+        found[above[distance <= REACH * geometry.cup_thickness]] = True
+    return found
 
 
 def _at_a_held_edge(geometry: DriveGeometry, mesh: SectorMesh, points: np.ndarray) -> np.ndarray:

@@ -10,7 +10,9 @@ from support.paths import DESIGN, RECIPE, REFERENCE
 from support.small_drive import PLANE
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.rotation import GEAR_STRESSES
+from swgpar.largest_stress.local_problem import window_sector
 from swgpar.largest_stress.places import APART, OFF_CORNERS, inside_teeth, root_nodes
+from swgpar.largest_stress.window_recipes import window_recipe
 from swgpar.largest_stress.window_regions import tooth_nodes
 from swgpar.meshing import SectorMesh, load_recipe
 from swgpar.meshing.tooth_sector import build_sector
@@ -20,6 +22,7 @@ from swgpar.model.regions import (
     CAM_EDGE,
     EDGE,
     NOTCH,
+    WITHOUT_LIMIT,
     regions_of,
     warning_of,
 )
@@ -147,3 +150,20 @@ def test_nodes_inside_of_teeth_are_on_no_surface(
 
 def test_roots_are_where_the_region_says_it(cup: tuple[DriveDesign, SectorMesh]) -> None:
     assert regions(cup, root_nodes(cup[0].geometry, cup[1])) == {"tooth root"}
+
+
+def test_roots_on_elements_of_the_wall_are_at_the_corner() -> None:
+    """A wall nearly as thick as the rim continues the layers below the root: its elements go up the
+    root arc, and so does the corner behind the teeth in the mesh."""
+    for thickness, at_the_corner in ((0.95, True), (0.8, False)):
+        design = swgpar.load_design(REFERENCE, [f"cup.thickness_coef={thickness}"])
+        mesh = window_sector(design.geometry, window_recipe("cup", 2))
+        found = regions_of(design.geometry, mesh, range(len(mesh.coords)), False)
+        z, back = mesh.coords[:, 2], 0.5 * design.drive.face_width
+        behind = z[mesh.hexes].max(axis=1) > back + 1e-9
+        shared = np.intersect1d(mesh.hexes[behind], np.flatnonzero(np.abs(z - back) < 1e-9))
+        on_flanks = np.intersect1d(shared, mesh.flanks[0].nodes)
+        assert (len(on_flanks) > 3) == at_the_corner
+        assert set(found[on_flanks]) <= {"notch"}
+        front = np.isin(found, WITHOUT_LIMIT) & (z < -0.5 * back)
+        assert set(found[front]) <= {CAM_EDGE}
