@@ -20,6 +20,10 @@ PRESSED = 1e-4
 """Difference of the growths of a frame and of what it holds above which it is said: on steel a
 pressure that makes some 20 MPa."""
 
+NEARER = 0.01
+"""Growth of a pitch circle against that of the flexible spline (modules) above which it is said:
+as much as a backlash of c_P = 0.995."""
+
 
 def check_growth(design: DriveDesign) -> None:
     """Raise InputError for the first temperature or fit that does not fit the design."""
@@ -76,6 +80,28 @@ def _expansions(design: DriveDesign) -> Iterator[tuple[str, str, bool]]:
 
 
 def growth_remarks(design: DriveDesign) -> list[str]:
+    """Sentences where a rigid frame presses or pulls what it holds, and where teeth come nearer or
+    part."""
+    return [*_frame_remarks(design), *_tooth_remarks(design)]
+
+
+def _tooth_remarks(design: DriveDesign) -> list[str]:
+    """A sentence for every pair of gears whose pitch circles do not grow alike."""
+    grown = {
+        gear: design.growths[gear].across * design.teeth(gear).r_pitch for gear in design.gears
+    }
+    spline, *rings = design.gears
+    return [
+        f"teeth of the {spline.replace('_', ' ')} come {1e3 * abs(nearer):.0f} µm "
+        f"{'nearer to' if nearer > 0.0 else 'farther from'} those of the {ring.replace('_', ' ')} "
+        "by growth, were both free: clearances of rigid teeth are those at "
+        "load.reference_temperature"
+        for ring in rings
+        if abs(nearer := grown[spline] - grown[ring]) > NEARER * design.drive.module
+    ]
+
+
+def _frame_remarks(design: DriveDesign) -> list[str]:
     """A sentence where a rigid frame presses or pulls what it holds."""
     if not design.frame_is_rigid:
         return []

@@ -64,6 +64,25 @@ def test_a_thin_rim_is_said_before_it_runs() -> None:
     assert "0.11 of the height of the teeth (0.72 mm)" in sentence
 
 
+@pytest.mark.parametrize(
+    ("gear", "words"),
+    [
+        (
+            "flexible_spline",
+            "flexible spline come 18 µm nearer to those of the ring gear by growth",
+        ),
+        ("ring_gear", "flexible spline come 19 µm farther from those of the ring gear by growth"),
+    ],
+)
+def test_teeth_that_come_nearer_by_growth_are_said(gear: str, words: str) -> None:
+    """75 K at 12e-6 / K on pitch circles of 20 and 21 mm; bodies that grow alike are not named."""
+    warm = ("material.expansion=12e-6", f"{gear}.temperature=95")
+    (sentence,) = [one for one in remarks(design(*warm)) if "rigid teeth" in one]
+    assert words in sentence
+    both = [*warm, "flexible_spline.temperature=25", "ring_gear.temperature=25"]
+    assert not [one for one in remarks(design(*both)) if "rigid teeth" in one]
+
+
 def test_a_cam_longer_than_the_bore_is_said() -> None:
     """With a minor axis as large as the bore, an ellipse is longer by about half of the
     deflection."""
