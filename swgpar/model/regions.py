@@ -257,5 +257,5 @@ def warning_of(geometry: DriveGeometry, region: str, point: np.ndarray) -> str:
         return f"beside {nearest.text}, {NO_RADIUS}"
     if region == NOTCH_REGION:
         radius = geometry.inner_radius + geometry.cup_thickness
-        return f"{NOTCH}: radius {radius:.2f}, z {geometry.cup.wall.back:.2f} mm"
+        return f"{NOTCH} (radius {radius:.2f}, z {geometry.cup.wall.back:.2f} mm)"
     return {UNDER_CONTACT: AVERAGE, ATTACHED: CLAMPED, CAM_EDGE: EDGE}.get(region, "")
