@@ -339,9 +339,10 @@ def main() -> int:
     for name, group in groups(
         arguments.random, arguments.seed, tuple(arguments.sensible), arguments.first
     ).items():
-        work[name] = lambda name=name, group=group: run_group(
-            name, group, out, arguments.at_once, arguments.restart
-        )
+        if group.cases():
+            work[name] = lambda name=name, group=group: run_group(
+                name, group, out, arguments.at_once, arguments.restart
+            )
     table = tables / "stability.csv"
     rows: list[Row] = []
     if table.exists():  # groups that do not run now keep their rows

@@ -262,10 +262,11 @@ def export(
     out : path
         Folder, which is made.
     formats : sequence of str
-        Of a design "step" (solids), "dxf" (outlines), "csv" (points of the cam), "teeth" (points of
-        the flanks, CSV and DXF) and "inp" (job of CalculiX up to the loaded state), of a result
-        "vtkhdf" and "xdmf" (fields with all teeth), "parquet" (all tables), "lookup" (torsional
-        spring and ripple for multibody programs) and "fmu" (the same as an FMU).
+        Of a design "step" (solids), "dxf" (outlines), "csv" (points of the cam, and of a cup's wall
+        and end), "teeth" (points of the flanks, CSV and DXF) and "inp" (job of CalculiX up to the
+        loaded state), of a result "vtkhdf" and "xdmf" (fields with all teeth), "parquet" (all
+        tables), "lookup" (torsional spring and ripple for multibody programs) and "fmu" (the same
+        as an FMU).
     mesh : str, path or MeshRecipe
         Mesh of the format "inp".
     ripple : result of a drive, or the folder of one

@@ -139,9 +139,9 @@ mesh is that of the recipe"""
 PLAIN = """compute all that the design asks for: without this, a drive without friction leaves out the assembly step by
 step and further periods, where the design does not set their keys"""
 
-FORMATS = """step: solids of gears and cam; dxf: their outlines; csv: points of the cam; inp: job of CalculiX; vtkhdf, xdmf:
-fields with all teeth; parquet: tables; lookup: torsional spring and ripple for multibody programs; fmu: the same as
-an FMU (FMI 2.0)"""
+FORMATS = """step: solids of gears and cam; dxf: their outlines; csv: points of the cam, and of a cup's wall and
+end; inp: job of CalculiX; vtkhdf, xdmf: fields with all teeth; parquet: tables; lookup: torsional spring and ripple
+for multibody programs; fmu: the same as an FMU (FMI 2.0)"""
 
 MODELS = "cup drive, toothed section in plane stress, two ring gears"
 SHAPES = "flexible spline: a cup, one of half the length, a silk hat"

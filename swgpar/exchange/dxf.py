@@ -12,7 +12,7 @@ import numpy as np
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.exchange.outlines import Edge, gear_outline
-from swgpar.geometry.arrays import Floats
+from swgpar.exchange.wall_lines import wall_lines
 from swgpar.geometry.cams import cam_outlines
 
 
@@ -47,33 +47,20 @@ def _write_wall(design: DriveDesign, folder: Path) -> list[Path]:
     """Write wall.dxf with both surfaces of a cup's wall, on the layers inner and outer, and both
     faces of closed end or flange, on end_far and end_near: distance from the back of the teeth, and
     radius."""
-    if not design.has_cup:
+    lines = wall_lines(design)
+    if not lines:
         return []
-    document, wall = new_document(), design.cup_sizes.wall
-
-    def on_sheet(point: Floats) -> Floats:
-        """Distance and radius of a way and a height."""
-        radius, z = wall.off_plate(*point)
-        return np.array([z - wall.back, radius])
-
-    lines = {"inner": wall.inner, "outer": wall.outer}
-    faces = {"end_far": wall.plate.inner, "end_near": wall.plate.outer}
-    edges = {
-        layer: [Edge(np.array([start, end]), centre) for start, end, centre in line.pieces()]
-        for layer, line in lines.items()
-    } | {
-        layer: [
-            Edge(
-                np.array([on_sheet(start), on_sheet(end)]),
-                None if centre is None else on_sheet(centre),
-            )
-            for start, end, centre in line.pieces()
-        ]
-        for layer, line in faces.items()
-    }
-    for layer, of_layer in edges.items():
+    document = new_document()
+    for layer, one in lines.items():
         document.layers.add(layer)
-        draw(document.modelspace(), of_layer, layer)
+        edges = [
+            Edge(
+                np.array([one.place(start), one.place(end)]),
+                None if centre is None else one.place(centre),
+            )
+            for start, end, centre in one.line.pieces()
+        ]
+        draw(document.modelspace(), edges, layer)
     path = folder / "wall.dxf"
     document.saveas(path)
     return [path]

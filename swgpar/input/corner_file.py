@@ -1,7 +1,7 @@
 """Corners of a line of straight pieces and the arcs that round them, from a CSV or DXF file.
 
 An arc between two straight lines rounds the corner at which their tangents meet. A CSV file has the
-corners alone.
+corners, and with a third number on a line the radius that rounds it.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.input.curve_file import JOIN, dxf_entities, read_curve
+from swgpar.input.curve_file import JOIN, dxf_entities, read_rows
 
 STRAIGHT = 1e-6
 """Angle (rad) between two lines that make one."""
@@ -52,7 +52,8 @@ def read_corners(path: str | Path, layer: str | None = None) -> list[Corner]:
     """
     path = Path(path)
     if path.suffix.lower() != ".dxf":
-        corners = [Corner(x, y, 0.0) for x, y in read_curve(path, layer).tolist()]
+        rows = read_rows(path, layer, {2, 3})
+        corners = [Corner(row[0], row[1], row[2] if len(row) > 2 else 0.0) for row in rows]
         return corners if corners[0].x <= corners[-1].x else corners[::-1]
     entities, scale = dxf_entities(path, layer)
     parts: list[Any] = []

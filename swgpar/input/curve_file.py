@@ -11,6 +11,7 @@ without arcs are taken as points of the curve. Other straight lines are divided.
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Sized
 from pathlib import Path
 from typing import Any
 
@@ -47,20 +48,30 @@ def read_curve(path: str | Path, layer: str | None = None, *, divided: bool = Tr
     path = Path(path)
     if path.suffix.lower() == ".dxf":
         points = _of_dxf(path, layer, divided)
-    elif path.suffix.lower() in (".csv", ".txt", ".dat"):
-        if layer is not None:
-            raise InputError(f"layer = {show(layer)} has no meaning with {path}: allowed for DXF")
-        points = _of_csv(path)
     else:
-        raise InputError(f"{path} cannot be read as a curve: allowed .csv, .txt, .dat and .dxf")
+        points = np.array(read_rows(path, layer, {2}))
     if len(points) > 1 and np.hypot(*(points[0] - points[-1])) <= 1e-9 * np.abs(points).max():
         points = points[:-1]
-    if len(points) > MOST_POINTS:
-        raise InputError(f"{path} has {len(points)} points: allowed up to {MOST_POINTS}")
+    _require_few(points, path)
     return points
 
 
-def _of_csv(path: Path) -> np.ndarray:
+def _require_few(points: Sized, path: Path) -> None:
+    if len(points) > MOST_POINTS:
+        raise InputError(f"{path} has {len(points)} points: allowed up to {MOST_POINTS}")
+
+
+def read_rows(path: Path, layer: str | None, lengths: Collection[int]) -> list[list[float]]:
+    """Numbers of the lines of a CSV file, as they stand there.
+
+    layer : of a DXF file, which is refused;  lengths : how many numbers a line may have
+
+    Raises InputError for what cannot be read, with the line.
+    """
+    if path.suffix.lower() not in (".csv", ".txt", ".dat"):
+        raise InputError(f"{path} cannot be read as a curve: allowed .csv, .txt, .dat and .dxf")
+    if layer is not None:
+        raise InputError(f"layer = {show(layer)} has no meaning with {path}: allowed for DXF")
     try:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
@@ -79,18 +90,24 @@ def _of_csv(path: Path) -> np.ndarray:
         except ValueError:
             words += 1
             if points or words > 1:
-                raise _bad_line(path, number, line) from None
+                raise _bad_line(path, number, line, lengths) from None
             continue
-        if len(values) != 2 or not np.isfinite(values).all():
-            raise _bad_line(path, number, line)
+        if len(values) not in lengths or not np.isfinite(values).all():
+            raise _bad_line(path, number, line, lengths)
         points.append(values)
     if not points:
-        raise InputError(f"{path} has no points: allowed are lines of two numbers")
-    return np.array(points)
+        raise InputError(f"{path} has no points: allowed are lines of {_counted(lengths)}")
+    _require_few(points, path)
+    return points
 
 
-def _bad_line(path: Path, number: int, line: str) -> InputError:
-    return InputError(f"{path}, line {number}: {show(line)} is no point: allowed are two numbers")
+def _bad_line(path: Path, number: int, line: str, lengths: Collection[int]) -> InputError:
+    allowed = _counted(lengths)
+    return InputError(f"{path}, line {number}: {show(line)} is no point: allowed are {allowed}")
+
+
+def _counted(lengths: Collection[int]) -> str:
+    return f"{' or '.join({2: 'two', 3: 'three'}[length] for length in sorted(lengths))} numbers"
 
 
 def dxf_entities(path: Path, layer: str | None) -> tuple[list[Any], float]:

@@ -23,6 +23,7 @@ from swgpar.checks.derived_geometry import derived_geometry
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.exchange.dxf import write_dxf
+from swgpar.exchange.points import write_points
 from swgpar.meshing import load_recipe
 from swgpar.meshing.tooth_sector import build_sector
 from swgpar.meshing.wall_sector import WallCounts, wall_sector
@@ -66,7 +67,7 @@ def files(path: Path) -> Changes:
 
 @pytest.mark.parametrize("changes", [DIAPHRAGM, BOSS, DISHED, RING, {}])
 def test_there_and_back(changes: Changes, tmp_path: Path) -> None:
-    """Export and import of wall.dxf: the same faces."""
+    """Export and import of wall.dxf, and of its tables: the same faces."""
     case = shaped(changes)
     path = write_dxf(case, tmp_path)[-1]
     again = shaped({**changes, "end_contour": None, **files(path)})
@@ -77,6 +78,12 @@ def test_there_and_back(changes: Changes, tmp_path: Path) -> None:
         assert lines[1].radius(way) == pytest.approx(lines[0].radius(way), abs=1e-9)
         assert len(lines[1].arcs()) == len(lines[0].arcs())
     assert again.cup.end_far_file is None and again.cup.end_contour
+    write_points(case, tmp_path)
+    names = ("end_far", "end_near")
+    tables = {f"{name}_file": str(tmp_path / f"wall_{name}.csv") for name in names}
+    by_table = shaped({**changes, "end_contour": None, **tables}).cup.end_contour
+    for one, other in zip(by_table, again.cup.end_contour, strict=True):
+        assert one.model_dump() == pytest.approx(other.model_dump(), abs=1e-8)
     meshes = [
         build_sector(each.geometry, load_recipe("medium"), "flexible_spline")
         for each in (case, again)

@@ -11,6 +11,7 @@ import swgpar
 from support.cup_shapes import CONTOUR, Changes, cone, shaped
 from swgpar.errors import InputError
 from swgpar.exchange.dxf import write_dxf
+from swgpar.exchange.points import write_points
 from swgpar.input.corner_file import Corner, read_corners
 from swgpar.input.toml_file import to_toml
 
@@ -25,7 +26,7 @@ STEP: Changes = {
 
 @pytest.mark.parametrize("changes", [cone(79.0, rounding=0.5), CONTOUR, STEP])
 def test_there_and_back(changes: Changes, tmp_path: Path) -> None:
-    """Export and import of wall.dxf: the same surfaces."""
+    """Export and import of wall.dxf, and of its tables: the same surfaces."""
     case = shaped(changes)
     path = write_dxf(case, tmp_path)[-1]
     assert path.name == "wall.dxf"
@@ -42,6 +43,11 @@ def test_there_and_back(changes: Changes, tmp_path: Path) -> None:
         assert len(lines[1].arcs()) == len(lines[0].arcs())
     # the design needs no file any more
     assert again.cup.inner_file is None and again.cup.contour
+    write_points(case, tmp_path)
+    tables = {f"{side}_file": str(tmp_path / f"wall_{side}.csv") for side in ("inner", "outer")}
+    by_table = shaped({**changes, "contour": None, **tables})
+    for one, other in zip(by_table.cup_sizes.points, again.cup_sizes.points, strict=True):
+        assert tuple(one) == pytest.approx(tuple(other), abs=1e-8)
 
 
 def test_corners_of_csv_files(tmp_path: Path) -> None:
