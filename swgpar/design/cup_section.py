@@ -161,8 +161,8 @@ class Cup(Section):
 
     attachment: Literal["edge", "clamped", "bolted"] = quantity(
         "edge",
-        text="what carries the torque: bore or rim of the flange, a clamped ring of closed end or "
-        "flange, bolts",
+        text="what carries the torque: the bare bore or rim of the flange, a clamped ring of "
+        "closed end or flange, bolts",
     )
     clamping_radius: float | None = quantity(
         None,

@@ -50,7 +50,7 @@ def jamming_remark(
     return (
         f"the mean input torque of {mean:.4g} N·mm is far from the {expected:.4g} N·mm of the "
         f"energy balance, {where}: the teeth may jam, and the results are not those of a running "
-        "drive; swgpar check shows where teeth overlap"
+        f"drive; swgpar check shows where teeth overlap{_too_few(rows, mean - expected)}"
     )
 
 
@@ -81,6 +81,23 @@ def energy_remark(
         f"the mean input torque of {means[TORQUE]:.4g} N·mm departs from the {expected:.4g} N·mm "
         f"of the energy balance by {100 * abs(departure) / expected:.2g} %, more than its error of "
         f"{100 * allowed / expected:.2g} %: {_largest_departure(sequence, rows, pairs, departure)}"
+        f"{_too_few(rows, departure)}"
+    )
+
+
+def _too_few(rows: Sequence[Row], departure: float) -> str:
+    """Words where the few angles can make a departure (N·mm) of the mean torque; else none.
+
+    The mean over a period lies within the variation of the curve over twice the number of even
+    angles, by Koksma's inequality, and the curve varies as much as its values at least.
+    """
+    torque = column(rows, TORQUE)
+    variation = float(np.abs(torque - np.roll(torque, 1)).sum())
+    if abs(departure) > variation / (2.0 * len(torque)):
+        return ""
+    return (
+        f"; or {len(rows)} angles are too few for the mean of a torque that varies by "
+        f"{np.ptp(torque):.4g} N·mm: steps.samples"
     )
 
 

@@ -158,6 +158,24 @@ def test_a_run_that_departs_from_its_energy_balance_names_the_pair() -> None:
     assert any(word in rotation.energy for word in words)
 
 
+def test_few_angles_may_be_what_a_mean_torque_departs_by() -> None:
+    """22 N·mm in place of 10, of values that scatter by 400."""
+    sequence = load_sequence(design(*PERIOD))
+    torques = (-180.0, 60.0, 216.0, 100.0, -86.0)
+    rows = [
+        {"wg_angle_deg": 1.8 * (k + 1), "wg_torque_Nmm": torque} for k, torque in enumerate(torques)
+    ]
+    few = "5 angles are too few for the mean of a torque that varies by 396 N·mm: steps.samples"
+    for mean, scatters, said in ((22.0, True, True), (120.0, True, False), (22.0, False, False)):
+        sampled = rows if scatters else [{**row, "wg_torque_Nmm": mean} for row in rows]
+        remark = jamming_remark(sequence, sampled, {"wg_torque_Nmm": mean}, 0.0, [])
+        assert remark is not None
+        assert remark.endswith(few) == said
+    departs = energy_remark(sequence, rows, {"wg_torque_Nmm": 15.0}, 0.0, [], friction=False)
+    assert departs is not None
+    assert departs.endswith(few)
+
+
 def test_a_running_drive_is_not() -> None:
     good = design(*PERIOD)
     sequence = load_sequence(good)
