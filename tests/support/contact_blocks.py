@@ -250,6 +250,11 @@ class FixedRing:
         pass
 
 
+def _straight_ahead(tooth: np.ndarray) -> np.ndarray:
+    """Angles of sectors, rad."""
+    return 0.0 * np.asarray(tooth, dtype=float)
+
+
 def _elements(block: Block) -> Any:
     mesh = block.mesh
     layout = SimpleNamespace(
@@ -257,7 +262,8 @@ def _elements(block: Block) -> Any:
         mesh=mesh,
         body=Body(mesh, (block.material,), 1.0),
         first_tooth=0,
-        sector_angle=lambda tooth: 0.0 * np.asarray(tooth, dtype=float),
+        sector_angle=_straight_ahead,
+        chain_angle=_straight_ahead,
     )
     return SimpleNamespace(layout=layout)
 

@@ -81,8 +81,9 @@ def test_a_root_is_followed_below_a_stress_that_falls() -> None:
 @pytest.mark.parametrize(
     ("region", "value", "level", "expected"),
     [
-        ("tooth root", 99.6, 0, True),
-        ("tooth root", 99.6, 1, False),
+        ("tooth root", 97.5, 0, True),
+        ("tooth root", 96.5, 0, False),
+        ("tooth root", 99.4, 1, False),
         ("tooth root", 99.9, 1, True),
         ("tooth end", 91.0, 0, True),
         ("tooth end", 89.0, 0, False),
