@@ -27,15 +27,6 @@ elements have these lines as sides."""
 ROUND_OFF = 1.0 + 1e-9
 """Factor on largest values that follow from others."""
 
-WALL_NAMES = {
-    "distance": "distance",
-    "radius": "radius",
-    "thickness": "thickness",
-    "outer_distance": "outer_distance",
-    "outer_radius": "outer_radius",
-    "rounding": "rounding",
-    "outer_rounding": "outer_rounding",
-}
 END_NAMES = {
     "distance": "radius",
     "radius": "distance",
@@ -45,7 +36,8 @@ END_NAMES = {
     "rounding": "rounding",
     "outer_rounding": "near_rounding",
 }
-"""Keys of the points of a wall, and what these quantities are called in closed end or flange."""
+WALL_NAMES = {name: name for name in END_NAMES}
+"""Keys of the points of closed end or flange, and of a wall, by those of a wall."""
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from swgpar.checks.contour_checks import END_NAMES, WALL_NAMES
 from swgpar.checks.fit_checks import check_fit
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS, GearName
@@ -80,19 +82,8 @@ def _read_contour(section: dict[str, Any], key: str, sides: list[str]) -> dict[s
 
 def _wall_points(inner: list[Corner], outer: list[Corner]) -> list[dict[str, float]]:
     """Points of the wall behind the back of the teeth."""
-    return [
-        {
-            "distance": one.x,
-            "radius": one.y,
-            "outer_distance": other.x,
-            "outer_radius": other.y,
-            "rounding": one.rounding,
-            "outer_rounding": other.rounding,
-        }
-        for one, other in _paired(
-            *([one for one in line if one.x > AT_TEETH] for line in (inner, outer))
-        )
-    ]
+    behind = [[one for one in line if one.x > AT_TEETH] for line in (inner, outer)]
+    return _contour_points(behind, WALL_NAMES)
 
 
 def _end_points(
@@ -103,18 +94,18 @@ def _end_points(
         sorted((Corner(one.y, one.x, one.rounding) for one in line), key=lambda one: one.x)
         for line in (far, near)
     ]
-    points = [
-        {
-            "radius": one.x,
-            "distance": one.y,
-            "near_radius": other.x,
-            "near_distance": other.y,
-            "rounding": one.rounding,
-            "near_rounding": other.rounding,
-        }
-        for one, other in _paired(*lines)
-    ]
+    points = _contour_points(lines, END_NAMES)
     return points if section.get("shape") == "hat" else points[::-1]
+
+
+def _contour_points(lines: list[list[Corner]], names: Mapping[str, str]) -> list[dict[str, float]]:
+    """Points of a contour by the corners of its two lines. names : of keys, by those of a wall"""
+    keys = ("distance", "radius", "rounding")
+    return [
+        {names[key]: value for key, value in zip(keys, first, strict=True)}
+        | {names[f"outer_{key}"]: value for key, value in zip(keys, second, strict=True)}
+        for first, second in _paired(*lines)
+    ]
 
 
 def _read_points(section: Any, name: str, divided: bool) -> Any:
