@@ -2,40 +2,39 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from swgpar.geometry.arrays import Floats
-from swgpar.input.quantities import Section, quantity
+from swgpar.input.quantities import Section, not_negative, positive, quantity
+
+
+def _layer(line: str) -> Any:
+    return quantity(None, text=f"layer of a DXF file for the {line}; without it the model space")
 
 
 class ContourPoint(Section):
     """One table [[cup.contour]]: a corner of the wall's section on its inner surface, and that on
     the outer one. Between corners both surfaces are straight."""
 
-    distance: float = quantity(unit="mm", text="from the back of the teeth along the axis", gt=0.0)
-    thickness: float | None = quantity(
-        None,
-        unit="mm",
-        text="thickness of the wall, across the axis; needed without outer_radius",
-        gt=0.0,
+    distance: float = positive("from the back of the teeth along the axis", "mm")
+    thickness: float | None = positive(
+        "thickness of the wall, across the axis; needed without outer_radius", "mm", None
     )
-    radius: float | None = quantity(
-        None, unit="mm", text="inner radius of the wall; default that below the teeth", gt=0.0
+    radius: float | None = positive(
+        "inner radius of the wall; default that below the teeth", "mm", None
     )
-    outer_distance: float | None = quantity(
-        None, unit="mm", text="distance of the corner outside; default distance", gt=0.0
+    outer_distance: float | None = positive(
+        "distance of the corner outside; default distance", "mm", None
     )
-    outer_radius: float | None = quantity(
-        None, unit="mm", text="radius of the corner outside, in place of thickness", gt=0.0
+    outer_radius: float | None = positive(
+        "radius of the corner outside, in place of thickness", "mm", None
     )
-    rounding: float = quantity(
-        0.0, unit="mm", text="radius that rounds the corners at this point", ge=0.0
-    )
-    outer_rounding: float | None = quantity(
-        None, unit="mm", text="that of the corner outside; default rounding", ge=0.0
+    rounding: float = not_negative("radius that rounds the corners at this point", "mm", 0.0)
+    outer_rounding: float | None = not_negative(
+        "that of the corner outside; default rounding", "mm", None
     )
 
 
@@ -43,34 +42,24 @@ class EndContourPoint(Section):
     """One table [[cup.end_contour]]: a corner of closed end or flange on its far face, and that on
     the near one, towards the teeth. Between corners both faces are straight."""
 
-    radius: float = quantity(unit="mm", text="from the axis", gt=0.0)
-    thickness: float | None = quantity(
+    radius: float = positive("from the axis", "mm")
+    thickness: float | None = positive(
+        "thickness of closed end or flange there, along the axis; needed without near_distance",
+        "mm",
         None,
-        unit="mm",
-        text="thickness of closed end or flange there, along the axis; needed without "
-        "near_distance",
-        gt=0.0,
     )
-    distance: float | None = quantity(
-        None,
-        unit="mm",
-        text="from the back of the teeth to the far face; default cup.length",
-        gt=0.0,
+    distance: float | None = positive(
+        "from the back of the teeth to the far face; default cup.length", "mm", None
     )
-    near_radius: float | None = quantity(
-        None, unit="mm", text="radius of the corner on the near face; default radius", gt=0.0
+    near_radius: float | None = positive(
+        "radius of the corner on the near face; default radius", "mm", None
     )
-    near_distance: float | None = quantity(
-        None,
-        unit="mm",
-        text="from the back of the teeth to the near face, in place of thickness",
-        gt=0.0,
+    near_distance: float | None = positive(
+        "from the back of the teeth to the near face, in place of thickness", "mm", None
     )
-    rounding: float = quantity(
-        0.0, unit="mm", text="radius that rounds the corners at this point", ge=0.0
-    )
-    near_rounding: float | None = quantity(
-        None, unit="mm", text="that of the corner on the near face; default rounding", ge=0.0
+    rounding: float = not_negative("radius that rounds the corners at this point", "mm", 0.0)
+    near_rounding: float | None = not_negative(
+        "that of the corner on the near face; default rounding", "mm", None
     )
 
 
@@ -80,11 +69,9 @@ class Cup(Section):
     shape: Literal["cup", "hat"] = quantity(
         "cup", text="the wall ends in a closed end with a bore, or in a flange outwards (silk hat)"
     )
-    length: float = quantity(
-        unit="mm",
-        text="from the back of the teeth to the far face of closed end or flange, beside the "
-        "fillet",
-        gt=0.0,
+    length: float = positive(
+        "from the back of the teeth to the far face of closed end or flange, beside the fillet",
+        "mm",
     )
     thickness_coef: float = quantity(
         0.8,
@@ -105,17 +92,10 @@ class Cup(Section):
     outer_file: str | None = quantity(
         None, text="file of the outer surface, which belongs to inner_file"
     )
-    inner_layer: str | None = quantity(
-        None, text="layer of a DXF file for the inner surface; without it the model space"
-    )
-    outer_layer: str | None = quantity(
-        None, text="layer of a DXF file for the outer surface; without it the model space"
-    )
-    end_thickness: float | None = quantity(
-        None,
-        unit="mm",
-        text="thickness of closed end or flange beside the fillet; default that of the wall",
-        gt=0.0,
+    inner_layer: str | None = _layer("inner surface")
+    outer_layer: str | None = _layer("outer surface")
+    end_thickness: float | None = positive(
+        "thickness of closed end or flange beside the fillet; default that of the wall", "mm", None
     )
     end_contour: list[EndContourPoint] = quantity(
         [],
@@ -130,66 +110,51 @@ class Cup(Section):
     end_near_file: str | None = quantity(
         None, text="file of the near face, which belongs to end_far_file"
     )
-    end_far_layer: str | None = quantity(
-        None, text="layer of a DXF file for the far face; without it the model space"
-    )
-    end_near_layer: str | None = quantity(
-        None, text="layer of a DXF file for the near face; without it the model space"
-    )
-    fillet_radius: float = quantity(
-        unit="mm",
-        text="radius between wall and closed end on the outer side, between wall and flange on the "
+    end_far_layer: str | None = _layer("far face")
+    end_near_layer: str | None = _layer("near face")
+    fillet_radius: float = not_negative(
+        "radius between wall and closed end on the outer side, between wall and flange on the "
         "inner side; 0 is a sharp corner, with inside_radius",
-        ge=0.0,
+        "mm",
     )
-    inside_radius: float | None = quantity(
-        None,
-        unit="mm",
-        text="fillet radius in the corner on the other side; default a quarter of an ellipse "
+    inside_radius: float | None = positive(
+        "fillet radius in the corner on the other side; default a quarter of an ellipse "
         "around the centre of fillet_radius",
-        gt=0.0,
+        "mm",
+        None,
     )
-    inner_radius: float | None = quantity(
-        None, unit="mm", text='bore radius of the closed end, needed with shape "cup"', gt=0.0
+    inner_radius: float | None = positive(
+        'bore radius of the closed end, needed with shape "cup"', "mm", None
     )
-    flange_radius: float | None = quantity(
-        None, unit="mm", text='outer radius of the flange, needed with shape "hat"', gt=0.0
+    flange_radius: float | None = positive(
+        'outer radius of the flange, needed with shape "hat"', "mm", None
     )
-    back_fillet: float = quantity(
-        0.0, unit="mm", text="fillet radius between back of teeth and wall", ge=0.0
-    )
+    back_fillet: float = not_negative("fillet radius between back of teeth and wall", "mm", 0.0)
 
     attachment: Literal["edge", "clamped", "bolted"] = quantity(
         "edge",
         text="what carries the torque: the bare bore or rim of the flange, a clamped ring of "
         "closed end or flange, bolts",
     )
-    clamping_radius: float | None = quantity(
-        None,
-        unit="mm",
-        text='radius to which closed end or flange is clamped, needed with "clamped"',
-        gt=0.0,
+    clamping_radius: float | None = positive(
+        'radius to which closed end or flange is clamped, needed with "clamped"', "mm", None
     )
     bolts: int | None = quantity(
         None, text='bolts, evenly spaced, the first on +y, needed with "bolted"', ge=3, le=400
     )
-    bolt_circle: float | None = quantity(
-        None, unit="mm", text='diameter of the circle of the bolts, needed with "bolted"', gt=0.0
+    bolt_circle: float | None = positive(
+        'diameter of the circle of the bolts, needed with "bolted"', "mm", None
     )
-    washer_diameter: float | None = quantity(
-        None, unit="mm", text='diameter of the area under a bolt, needed with "bolted"', gt=0.0
+    washer_diameter: float | None = positive(
+        'diameter of the area under a bolt, needed with "bolted"', "mm", None
     )
-    bolt_preload: float | None = quantity(
-        None,
-        unit="N",
-        text="preload of a bolt: washers are judged against sliding and gaping",
-        gt=0.0,
+    bolt_preload: float | None = positive(
+        "preload of a bolt: washers are judged against sliding and gaping", "N", None
     )
-    joint_friction: float | None = quantity(
-        None,
-        text="friction coefficient between closed end or flange and what it is bolted to, needed "
+    joint_friction: float | None = positive(
+        "friction coefficient between closed end or flange and what it is bolted to, needed "
         "with bolt_preload",
-        gt=0.0,
+        default=None,
         le=1.0,
     )
 

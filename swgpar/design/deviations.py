@@ -13,7 +13,7 @@ from pydantic import model_validator
 
 from swgpar.errors import InputError
 from swgpar.geometry.pitch_deviations import pitch_tolerances, random_pitch_errors
-from swgpar.input.quantities import Section, quantity, show
+from swgpar.input.quantities import Section, not_negative, quantity, show
 from swgpar.profiles import Teeth
 from swgpar.profiles.flank_deviations import GearDeviations, direction
 
@@ -24,9 +24,7 @@ MICRO = 1e-3
 class Offset(Section):
     """Eccentricity of an axis."""
 
-    eccentricity: float = quantity(
-        0.0, unit="mm", text="distance of the axis from that of the drive", ge=0.0
-    )
+    eccentricity: float = not_negative("distance of the axis from that of the drive", "mm", 0.0)
     direction: float = quantity(
         0.0, unit="deg", text="of the eccentricity, counter-clockwise from +y"
     )
@@ -40,8 +38,8 @@ class Offset(Section):
 class TiltedOffset(Offset):
     """Eccentricity and tilt of an axis."""
 
-    tilt: float = quantity(
-        0.0, unit="deg", text="of the axis, about the middle of the face width", ge=0.0, le=1.0
+    tilt: float = not_negative(
+        "of the axis, about the middle of the face width", "deg", 0.0, le=1.0
     )
     tilt_direction: float = quantity(
         0.0, unit="deg", text="to which the axis leans at positive z, counter-clockwise from +y"
@@ -75,9 +73,7 @@ class ToothDeviations(Section):
     profile_slope: float = quantity(
         0.0, unit="µm", text="slope deviation of the profile; above 0: full at the tip"
     )
-    profile_form: float = quantity(
-        0.0, unit="µm", text="form deviation of the profile: height of a wave", ge=0.0
-    )
+    profile_form: float = not_negative("form deviation of the profile: height of a wave", "µm", 0.0)
 
     @model_validator(mode="before")
     @classmethod
@@ -109,9 +105,7 @@ class SplineDeviations(ToothDeviations, Offset):
 class RingDeviations(ToothDeviations, TiltedOffset):
     """Deviations of the ring gear."""
 
-    ovality: float = quantity(
-        0.0, unit="mm", text="of its bore: largest less smallest diameter", ge=0.0
-    )
+    ovality: float = not_negative("of its bore: largest less smallest diameter", "mm", 0.0)
     ovality_direction: float = quantity(
         0.0, unit="deg", text="of the largest diameter, counter-clockwise from +y"
     )

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from swgpar.input.quantities import Section, quantity
+from swgpar.input.quantities import Section, not_negative, positive, quantity
 from swgpar.profiles.flank_deviations import direction
 
 PER_METRE = 1000.0
@@ -14,7 +14,7 @@ PER_METRE = 1000.0
 
 
 def _stiffness(unit: str, text: str, most: float) -> Any:
-    return quantity(unit=unit, text=text, gt=0.0, le=most)
+    return positive(text, unit, le=most)
 
 
 class OutputBearing(Section):
@@ -30,16 +30,13 @@ class OutputBearing(Section):
         text="of its middle along z, from the middle of the face width towards the closed end; "
         "without it in the middle of the surface that is the output",
     )
-    radial_force: float = quantity(0.0, unit="N", text="radial force on the output", ge=0.0)
+    radial_force: float = not_negative("radial force on the output", "N", 0.0)
     radial_direction: float = quantity(
         0.0, unit="deg", text="of the radial force in space, counter-clockwise from +y"
     )
     axial_force: float = quantity(0.0, unit="N", text="axial force on the output, along +z")
-    tilting_moment: float = quantity(
-        0.0,
-        unit="N·m",
-        text="tilting moment on the output, in the middle of the bearing",
-        ge=0.0,
+    tilting_moment: float = not_negative(
+        "tilting moment on the output, in the middle of the bearing", "N·m", 0.0
     )
     tilting_direction: float = quantity(
         0.0,

@@ -3,7 +3,7 @@ few keys."""
 
 from __future__ import annotations
 
-from swgpar.input.quantities import Section, quantity
+from swgpar.input.quantities import Section, not_negative, positive, quantity
 
 
 class ProgramStage(Section):
@@ -34,21 +34,18 @@ class ProgramStage(Section):
 class Stiffness(Section):
     """Section [stiffness]: torque against rotation of the output with the wave generator locked."""
 
-    torque: float | None = quantity(
-        None, unit="N·m", text="largest torque, in both directions; default load.torque", gt=0.0
+    torque: float | None = positive(
+        "largest torque, in both directions; default load.torque", "N·m", None
     )
-    rated_torque: float | None = quantity(
-        None,
-        unit="N·m",
-        text="torque that lost_motion_share refers to; default stiffness.torque",
-        gt=0.0,
+    rated_torque: float | None = positive(
+        "torque that lost_motion_share refers to; default stiffness.torque", "N·m", None
     )
     break_points: list[float] = quantity(
         [0.2, 0.65],
         text="two shares of the largest torque, ascending: K1 ends at the first, K2 at the second",
     )
-    lost_motion_share: float = quantity(
-        0.04, text="share of the rated torque at which the lost motion is measured", gt=0.0, lt=1.0
+    lost_motion_share: float = positive(
+        "share of the rated torque at which the lost motion is measured", default=0.04, lt=1.0
     )
     points: int = quantity(
         2,
@@ -73,29 +70,19 @@ class Ratcheting(Section):
     """Section [ratcheting]: the output is rotated with the wave generator locked until its torque
     falls."""
 
-    wave_generator: float = quantity(
-        0.0, unit="deg", text="angle of the wave generator", ge=0.0, lt=360.0
-    )
-    increment: float = quantity(
-        0.02,
-        unit="pitches",
-        text="rotation of the output between two records, in pitches of the output; the steps "
+    wave_generator: float = not_negative("angle of the wave generator", "deg", 0.0, lt=360.0)
+    increment: float = positive(
+        "rotation of the output between two records, in pitches of the output; the steps "
         "between follow the torque",
-        gt=0.0,
+        "pitches",
+        0.02,
         le=0.5,
     )
-    limit: float = quantity(
-        1.5,
-        unit="pitches",
-        text="rotation of the output at which the run ends at the latest",
-        gt=0.0,
-        le=20.0,
+    limit: float = positive(
+        "rotation of the output at which the run ends at the latest", "pitches", 1.5, le=20.0
     )
-    drop: float = quantity(
-        0.1,
-        text="share of its peak by which the torque has to fall for the run to end",
-        gt=0.0,
-        lt=1.0,
+    drop: float = positive(
+        "share of its peak by which the torque has to fall for the run to end", default=0.1, lt=1.0
     )
     tolerance: float = quantity(
         0.01,

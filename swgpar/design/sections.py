@@ -9,7 +9,7 @@ import numpy as np
 from swgpar.design.linear_solvers import LINEAR_SOLVERS, LinearSolverName
 from swgpar.design.program_sections import ProgramStage
 from swgpar.design.surroundings import Frame, Housing
-from swgpar.input.quantities import Section, quantity
+from swgpar.input.quantities import Section, not_negative, positive, quantity
 from swgpar.materials import OptionalMaterial
 from swgpar.materials.temperature import temperature
 from swgpar.profiles import ExternalProfile, InternalProfile, Points, Teeth
@@ -44,15 +44,11 @@ class Drive(Section):
     )
     teeth_fs: int = quantity(text="teeth of the flexible spline", ge=8, le=2000)
     teeth_rg: int = quantity(text="teeth of the ring gear", ge=10, le=2002)
-    module: float = quantity(unit="mm", text="module", gt=0.0)
-    pressure_angle: float = quantity(20.0, unit="deg", text="pressure angle", gt=0.0, lt=45.0)
-    addendum_coef: float = quantity(
-        unit="modules", text="addendum of gears without their own", ge=0.0, le=2.0
-    )
-    dedendum_coef: float = quantity(
-        unit="modules", text="dedendum of gears without their own", gt=0.0, le=2.0
-    )
-    face_width: float = quantity(unit="mm", text="face width", gt=0.0)
+    module: float = positive("module", "mm")
+    pressure_angle: float = positive("pressure angle", "deg", 20.0, lt=45.0)
+    addendum_coef: float = not_negative("addendum of gears without their own", "modules", le=2.0)
+    dedendum_coef: float = positive("dedendum of gears without their own", "modules", le=2.0)
+    face_width: float = positive("face width", "mm")
 
     @property
     def standard_deflection(self) -> float:
@@ -83,28 +79,27 @@ class Drive(Section):
 class Gear(Section):
     """What the sections [flexible_spline] and [ring_gear] have in common."""
 
-    rim: float = quantity(unit="mm", text="rim thickness below the root circle", gt=0.0)
-    addendum_coef: float | None = quantity(
-        None, unit="modules", text="addendum; without it drive.addendum_coef", ge=0.0, le=2.0
+    rim: float = positive("rim thickness below the root circle", "mm")
+    addendum_coef: float | None = not_negative(
+        "addendum; without it drive.addendum_coef", "modules", None, le=2.0
     )
-    dedendum_coef: float | None = quantity(
-        None, unit="modules", text="dedendum; without it drive.dedendum_coef", gt=0.0, le=2.0
+    dedendum_coef: float | None = positive(
+        "dedendum; without it drive.dedendum_coef", "modules", None, le=2.0
     )
-    c_P: float = quantity(
-        1.0,
-        text="angular tooth thickness reduction: (1 - c_P) of half a pitch is the backlash that "
+    c_P: float = positive(
+        "angular tooth thickness reduction: (1 - c_P) of half a pitch is the backlash that "
         "these teeth give; 1 with conjugate profiles",
-        gt=0.0,
+        default=1.0,
         le=1.2,
     )
-    c_l: float = quantity(
-        0.5, text="share of the straight segment above the pitch point", ge=0.0, le=1.0
+    c_l: float = not_negative(
+        "share of the straight segment above the pitch point", default=0.5, le=1.0
     )
-    tip_relief: float = quantity(
-        0.0, unit="mm", text="tip relief of each flank, along the addendum circle", ge=0.0
+    tip_relief: float = not_negative(
+        "tip relief of each flank, along the addendum circle", "mm", 0.0
     )
-    tip_relief_height: float = quantity(
-        0.2, unit="modules", text="height of the relieved part of the flank", gt=0.0, le=2.0
+    tip_relief_height: float = positive(
+        "height of the relieved part of the flank", "modules", 0.2, le=2.0
     )
     temperature: float | None = temperature("the gear")
     material: OptionalMaterial = None
@@ -133,27 +128,24 @@ class DynamicSpline(Gear):
     """
 
     profile: InternalProfile
-    face_width: float | None = quantity(
-        None,
-        unit="mm",
-        text="face width; default half of what the gap leaves, the rest is the ring gear's",
-        gt=0.0,
+    face_width: float | None = positive(
+        "face width; default half of what the gap leaves, the rest is the ring gear's", "mm", None
     )
-    gap: float = quantity(unit="mm", text="axial gap between the ring gears", gt=0.0)
+    gap: float = positive("axial gap between the ring gears", "mm")
 
 
 class MicroGeometry(Section):
     """Section [micro_geometry]: crowning and slope (section 7.12)."""
 
-    wg_crowning: float = quantity(0.0, unit="mm", text="crowning of the cam at its edges", ge=0.0)
+    wg_crowning: float = not_negative("crowning of the cam at its edges", "mm", 0.0)
     wg_slope: float = quantity(
         0.0,
         unit="mm",
         text="slope of the cam: radial -s (2z/F_w) cos(lobes theta); s > 0 follows the cone of the "
         "cup",
     )
-    fs_crowning: float = quantity(
-        0.0, unit="mm", text="crowning of the flexible spline's flanks at their ends", ge=0.0
+    fs_crowning: float = not_negative(
+        "crowning of the flexible spline's flanks at their ends", "mm", 0.0
     )
     crowning_shape: Literal["parabolic", "circular"] = quantity(
         "parabolic", text="curve of the crowning"
@@ -163,12 +155,8 @@ class MicroGeometry(Section):
 class Load(Section):
     """Section [load]."""
 
-    torque: float = quantity(
-        0.0, unit="N·m", text="output torque, against the output's motion", ge=0.0
-    )
-    input_speed: float = quantity(
-        2000.0, unit="1/min", text="speed of the input, for sliding speeds", gt=0.0, le=1e6
-    )
+    torque: float = not_negative("output torque, against the output's motion", "N·m", 0.0)
+    input_speed: float = positive("speed of the input, for sliding speeds", "1/min", 2000.0, le=1e6)
     inertia: bool = quantity(
         False,
         text="forces of inertia of flexible spline and outer race, through which the wave passes "
@@ -190,17 +178,16 @@ class Load(Section):
 class ContactSection(Section):
     """Section [contact]: friction and lines of contact of the flanks, penalty of cam and pins."""
 
-    friction: float = quantity(
-        0.0, text="coefficient of friction between the flanks", ge=0.0, le=1.0
+    friction: float = not_negative(
+        "coefficient of friction between the flanks", default=0.0, le=1.0
     )
-    penalty_coef: float = quantity(
-        50.0,
-        text="over E / module, E of the softer gear: stiffness of clamped and bolted ends and of "
+    penalty_coef: float = positive(
+        "over E / module, E of the softer gear: stiffness of clamped and bolted ends and of "
         "the guide, penalty of flanks in exported jobs",
-        gt=0.0,
+        default=50.0,
     )
-    wg_penalty_coef: float = quantity(
-        5.0, text="penalty of cam and pins over E / module, E of the flexible spline", gt=0.0
+    wg_penalty_coef: float = positive(
+        "penalty of cam and pins over E / module, E of the flexible spline", default=5.0
     )
     quadrature: int = quantity(
         2, text="lines of contact on a layer of elements along the face width", ge=1, le=16
@@ -211,19 +198,15 @@ class ContactSection(Section):
     max_augmentations: int = quantity(
         3, text="largest number of augmentations of cam and pins per increment", ge=0, le=50
     )
-    penetration_tolerance: float = quantity(
-        1e-3,
-        unit="modules",
-        text="penetration of cam and pins that needs no augmentation",
-        gt=0.0,
-        le=0.1,
+    penetration_tolerance: float = positive(
+        "penetration of cam and pins that needs no augmentation", "modules", 1e-3, le=0.1
     )
 
 
 class Steps(Section):
     """Section [steps]: the load sequence and its increments."""
 
-    rotation: float = quantity(45.0, unit="deg", text="rotation of the input", ge=0.0, le=36000.0)
+    rotation: float = not_negative("rotation of the input", "deg", 45.0, le=36000.0)
     increment: float = quantity(
         5.0, unit="deg", text="increment of that rotation", ge=0.01, le=45.0
     )
@@ -269,7 +252,7 @@ class Solver(Section):
         next(iter(LINEAR_SOLVERS)),
         text=f"linear solver: {', or '.join(entry.meaning for entry in LINEAR_SOLVERS.values())}",
     )
-    rtol: float = quantity(1e-9, text="residual over contact force at convergence", gt=0.0, le=1e-3)
+    rtol: float = positive("residual over contact force at convergence", default=1e-9, le=1e-3)
     max_iterations: int = quantity(
         25, text="Newton iterations before a cut-back, unless the residual falls", ge=1, le=1000
     )
@@ -282,17 +265,13 @@ class Solver(Section):
         ge=1,
         le=1_000_000,
     )
-    time_limit: float | None = quantity(
+    time_limit: float | None = positive(
+        "wall time after which a run ends with the next Newton iteration; without it none",
+        "s",
         None,
-        unit="s",
-        text="wall time after which a run ends with the next Newton iteration; without it none",
-        gt=0.0,
     )
-    memory_limit: float | None = quantity(
-        None,
-        unit="GB",
-        text="largest memory that a run may need by its forecast; without it what is free",
-        gt=0.0,
+    memory_limit: float | None = positive(
+        "largest memory that a run may need by its forecast; without it what is free", "GB", None
     )
     symmetry: bool = quantity(
         True, text="model half of the drive when tooth numbers allow it, with three lobes a third"
@@ -331,62 +310,51 @@ class Fatigue(Section):
     (docs/theory/fatigue.md).
     """
 
-    tensile_strength: float = quantity(1250.0, unit="MPa", text="tensile strength", gt=0.0)
-    yield_strength: float = quantity(1050.0, unit="MPa", text="yield strength", gt=0.0)
-    fatigue_limit: float = quantity(
-        560.0, unit="MPa", text="fatigue limit under alternating tension", gt=0.0
+    tensile_strength: float = positive("tensile strength", "MPa", 1250.0)
+    yield_strength: float = positive("yield strength", "MPa", 1050.0)
+    fatigue_limit: float = positive("fatigue limit under alternating tension", "MPa", 560.0)
+    shear_fatigue_limit: float = positive("fatigue limit under alternating torsion", "MPa", 348.0)
+    surface_factor: float = positive(
+        "factor of the surface on the fatigue strengths", default=0.86, le=1.5
     )
-    shear_fatigue_limit: float = quantity(
-        348.0, unit="MPa", text="fatigue limit under alternating torsion", gt=0.0
+    size_factor: float = positive(
+        "factor of the size on the fatigue strengths", default=1.0, le=1.5
     )
-    surface_factor: float = quantity(
-        0.86, text="factor of the surface on the fatigue strengths", gt=0.0, le=1.5
-    )
-    size_factor: float = quantity(
-        1.0, text="factor of the size on the fatigue strengths", gt=0.0, le=1.5
-    )
-    basquin_coefficient: float = quantity(
-        1875.0, unit="MPa", text="Basquin's coefficient, of reversals", gt=0.0
-    )
+    basquin_coefficient: float = positive("Basquin's coefficient, of reversals", "MPa", 1875.0)
     basquin_exponent: float = quantity(-0.087, text="Basquin's exponent", ge=-0.5, lt=0.0)
 
 
 class Losses(Section):
     """Section [losses]: coefficients of the losses; present to compute them."""
 
-    loss_factor: float = quantity(
-        3e-4, text="loss factor of the flexible spline's material", ge=0.0, le=0.1
+    loss_factor: float = not_negative(
+        "loss factor of the flexible spline's material", default=3e-4, le=0.1
     )
-    flank_friction: float = quantity(
-        0.05,
-        text="friction between the flanks for their losses, without contact.friction",
-        ge=0.0,
+    flank_friction: float = not_negative(
+        "friction between the flanks for their losses, without contact.friction",
+        default=0.05,
         le=1.0,
     )
-    bearing_friction: float = quantity(
-        0.0015, text="friction of the wave generator's bearing", ge=0.0, le=0.1
+    bearing_friction: float = not_negative(
+        "friction of the wave generator's bearing", default=0.0015, le=0.1
     )
-    bearing_diameter: float | None = quantity(
-        None,
-        unit="mm",
-        text="diameter at which that friction acts; default that of the balls' centres, without a "
+    bearing_diameter: float | None = positive(
+        "diameter at which that friction acts; default that of the balls' centres, without a "
         "bearing of the bore",
-        gt=0.0,
+        "mm",
+        None,
     )
-    input_drag: float = quantity(
-        0.0, unit="N·m", text="torque of seals and grease at the input, at any speed", ge=0.0
+    input_drag: float = not_negative(
+        "torque of seals and grease at the input, at any speed", "N·m", 0.0
     )
-    input_viscous_drag: float = quantity(
-        0.0, unit="N·m·s/rad", text="torque of seals and grease at the input over its speed", ge=0.0
+    input_viscous_drag: float = not_negative(
+        "torque of seals and grease at the input over its speed", "N·m·s/rad", 0.0
     )
-    output_drag: float = quantity(
-        0.0, unit="N·m", text="torque of seals and grease at the output, at any speed", ge=0.0
+    output_drag: float = not_negative(
+        "torque of seals and grease at the output, at any speed", "N·m", 0.0
     )
-    output_viscous_drag: float = quantity(
-        0.0,
-        unit="N·m·s/rad",
-        text="torque of seals and grease at the output over its speed",
-        ge=0.0,
+    output_viscous_drag: float = not_negative(
+        "torque of seals and grease at the output over its speed", "N·m·s/rad", 0.0
     )
 
     def drag_at_input(self, speed: float, ratio: float) -> float:

@@ -4,25 +4,20 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from swgpar.input.quantities import Section, quantity
+from swgpar.input.quantities import Section, not_negative, positive, quantity
 from swgpar.materials import OptionalMaterial
 from swgpar.materials.temperature import temperature
 
 
 def _interference(within: str) -> Any:
-    return quantity(
-        0.0,
-        unit="mm",
-        text=f"by how much the outer diameter of {within}, before the fit",
-        ge=0.0,
-    )
+    return not_negative(f"by how much the outer diameter of {within}, before the fit", "mm", 0.0)
 
 
 class Housing(Section):
     """Section [ring_gear.housing]: an elastic ring around the ring gear and bonded to it, as wide
     as the gear."""
 
-    thickness: float = quantity(unit="mm", text="radial thickness", gt=0.0)
+    thickness: float = positive("radial thickness", "mm")
     outside: Literal["free", "held"] = quantity(
         "free", text="outer surface: free, with its mean motion held, or held by a rigid frame"
     )
@@ -36,10 +31,9 @@ class Frame(Section):
 
     interference: float = _interference("what it holds exceeds the bore of the frame")
     temperature: float | None = temperature("the frame")
-    expansion: float | None = quantity(
+    expansion: float | None = not_negative(
+        "coefficient of thermal expansion of the frame, needed with its temperature",
+        "1/K",
         None,
-        unit="1/K",
-        text="coefficient of thermal expansion of the frame, needed with its temperature",
-        ge=0.0,
         le=1e-3,
     )

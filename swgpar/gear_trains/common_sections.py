@@ -8,7 +8,7 @@ from annotated_types import Gt
 
 from swgpar.gear_trains.published import made_of_changed
 from swgpar.input.design import Design
-from swgpar.input.quantities import Section, quantity
+from swgpar.input.quantities import Section, not_negative, quantity
 from swgpar.input.require import require
 from swgpar.input.toml_file import Overrides, apply_overrides
 
@@ -33,9 +33,9 @@ class GearTrain(Section):
 
 
 class TrainDamping(Section):
-    mass: float = quantity(unit="1/s", text="damping over mass", ge=0.0)
-    stiffness: float = quantity(
-        unit="s", text="damping over stiffness, of meshes over their mean stiffness", ge=0.0
+    mass: float = not_negative("damping over mass", "1/s")
+    stiffness: float = not_negative(
+        "damping over stiffness, of meshes over their mean stiffness", "s"
     )
 
 

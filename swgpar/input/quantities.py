@@ -50,6 +50,16 @@ def quantity(default: Any = ..., *, unit: str = "", text: str, **limits: Any) ->
     return Field(default, description=description, json_schema_extra={"unit": unit}, **limits)
 
 
+def positive(text: str, unit: str = "", default: Any = ..., **limits: float) -> Any:
+    """Declare a field whose numbers are above 0, see `quantity`."""
+    return quantity(default, unit=unit, text=text, gt=0.0, **limits)
+
+
+def not_negative(text: str, unit: str = "", default: Any = ..., **limits: float) -> Any:
+    """Declare a field whose numbers are 0 or above, see `quantity`."""
+    return quantity(default, unit=unit, text=text, ge=0.0, **limits)
+
+
 def default_type(name: str) -> Callable[[Any], Any]:
     """Return a validator that gives a table without a `type` the type `name`; for fields with
     several sections."""

@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import model_validator
 
-from swgpar.input.quantities import quantity
+from swgpar.input.quantities import not_negative, positive, quantity
 from swgpar.materials.library import LIBRARY
 from swgpar.materials.material import Material
 
@@ -21,8 +21,8 @@ class Isotropic(Material):
         text="material of the library, which gives E, nu, density and expansion where they are "
         "missing",
     )
-    E: float = quantity(unit="MPa", text="modulus of elasticity", gt=0.0)
-    nu: float = quantity(text="Poisson's ratio", ge=0.0, le=0.499)
+    E: float = positive("modulus of elasticity", "MPa")
+    nu: float = not_negative("Poisson's ratio", le=0.499)
 
     @model_validator(mode="before")
     @classmethod

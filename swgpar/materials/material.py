@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import model_validator
 from pydantic_core import PydanticCustomError
 
-from swgpar.input.quantities import WHOLE_SECTION, Section, quantity
+from swgpar.input.quantities import WHOLE_SECTION, Section, not_negative, quantity
 from swgpar.materials.growth import Growth
 
 IN_PLANE = [0, 1, 3]
@@ -25,9 +25,7 @@ class Material(Section):
     """
 
     density: float | None = quantity(None, unit="kg/m³", text="density", ge=100.0, le=30e3)
-    expansion: float | None = quantity(
-        None, unit="1/K", text="coefficient of thermal expansion", ge=0.0, le=1e-3
-    )
+    expansion: float | None = not_negative("coefficient of thermal expansion", "1/K", None, le=1e-3)
 
     @model_validator(mode="after")
     def _is_stable(self) -> Self:

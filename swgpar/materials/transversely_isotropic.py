@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from swgpar.input.quantities import quantity
+from swgpar.input.quantities import not_negative, positive, quantity
 from swgpar.materials.growth import Growth
 from swgpar.materials.material import Material
 
@@ -17,21 +17,17 @@ class TransverselyIsotropic(Material):
     type: Literal["transversely_isotropic"] = quantity(
         "transversely_isotropic", text="law of the material"
     )
-    E: float = quantity(unit="MPa", text="modulus of elasticity in the plane xy", gt=0.0)
+    E: float = positive("modulus of elasticity in the plane xy", "MPa")
     nu: float = quantity(text="Poisson's ratio in the plane xy", gt=-1.0, lt=1.0)
-    E_z: float = quantity(unit="MPa", text="modulus of elasticity along z", gt=0.0)
+    E_z: float = positive("modulus of elasticity along z", "MPa")
     nu_z: float = quantity(
         text="contraction in the plane xy over the stretch along z, under a stress along z",
         gt=-1.0,
         lt=1.0,
     )
-    G_z: float = quantity(unit="MPa", text="shear modulus of the planes yz and zx", gt=0.0)
-    expansion_z: float | None = quantity(
-        None,
-        unit="1/K",
-        text="coefficient of thermal expansion along z; without it expansion",
-        ge=0.0,
-        le=1e-3,
+    G_z: float = positive("shear modulus of the planes yz and zx", "MPa")
+    expansion_z: float | None = not_negative(
+        "coefficient of thermal expansion along z; without it expansion", "1/K", None, le=1e-3
     )
 
     def thermal_growth(self, rise: float) -> Growth | None:

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field
 
-from swgpar.input.quantities import Section, default_type, quantity
+from swgpar.input.quantities import Section, default_type, not_negative, positive, quantity
 
 
 class ProfileKeys(Section):
@@ -34,11 +34,11 @@ class ProfileKeys(Section):
 
 
 def _root_arc() -> Any:
-    return quantity(unit="mm", text="radius of the root arc", gt=0.0)
+    return positive("radius of the root arc", "mm")
 
 
 def _rounded_tip() -> Any:
-    return quantity(0.0, unit="mm", text="radius of the rounded tip edge; 0: sharp", ge=0.0)
+    return not_negative("radius of the rounded tip edge; 0: sharp", "mm", 0.0)
 
 
 class QuadrupleArc(ProfileKeys):
@@ -53,10 +53,10 @@ class QuadrupleArc(ProfileKeys):
     }
 
     type: Literal["quadruple_arc"] = quantity("quadruple_arc", text="kind of profile")
-    r_tip: float = quantity(unit="mm", text="radius of the tip arc", gt=0.0)
-    r_addendum: float = quantity(unit="mm", text="radius of the addendum arc", gt=0.0)
-    straight_l: float = quantity(0.0, unit="mm", text="length of the straight segment", ge=0.0)
-    r_dedendum: float = quantity(unit="mm", text="radius of the dedendum arc", gt=0.0)
+    r_tip: float = positive("radius of the tip arc", "mm")
+    r_addendum: float = positive("radius of the addendum arc", "mm")
+    straight_l: float = not_negative("length of the straight segment", "mm", 0.0)
+    r_dedendum: float = positive("radius of the dedendum arc", "mm")
     r_root: float = _root_arc()
 
 
@@ -66,8 +66,8 @@ class DoubleArc(ProfileKeys):
     typical_lengths = {"r_addendum": 1.0, "r_dedendum": 0.6}
 
     type: Literal["double_arc"] = quantity("double_arc", text="kind of profile")
-    r_addendum: float = quantity(unit="mm", text="radius of the addendum arc", gt=0.0)
-    r_dedendum: float = quantity(unit="mm", text="radius of the dedendum arc", gt=0.0)
+    r_addendum: float = positive("radius of the addendum arc", "mm")
+    r_dedendum: float = positive("radius of the dedendum arc", "mm")
 
 
 class Trapezoid(ProfileKeys):
@@ -77,15 +77,14 @@ class Trapezoid(ProfileKeys):
     divides_straight = False
 
     type: Literal["trapezoid"] = quantity("trapezoid", text="kind of profile")
-    flank_angle: float | None = quantity(
-        None,
-        unit="deg",
-        text="angle between flank and centre line of the tooth; without it that of "
+    flank_angle: float | None = not_negative(
+        "angle between flank and centre line of the tooth; without it that of "
         "drive.pressure_angle at the pitch point",
-        ge=0.0,
+        "deg",
+        None,
         lt=60.0,
     )
-    r_tip: float = quantity(0.0, unit="mm", text="radius of the tip arc; 0: a sharp edge", ge=0.0)
+    r_tip: float = not_negative("radius of the tip arc; 0: a sharp edge", "mm", 0.0)
     r_root: float = _root_arc()
 
 
@@ -96,14 +95,14 @@ class CommonTangent(ProfileKeys):
     divides_straight = False
 
     type: Literal["common_tangent"] = quantity("common_tangent", text="kind of profile")
-    r_addendum: float = quantity(unit="mm", text="radius of the convex arc", gt=0.0)
+    r_addendum: float = positive("radius of the convex arc", "mm")
     c_addendum: float = quantity(
         unit="mm", text="centre of the convex arc, beyond the centre line of the tooth"
     )
     e_addendum: float = quantity(
         unit="mm", text="centre of the convex arc, below the pitch circle, towards the root"
     )
-    r_dedendum: float = quantity(unit="mm", text="radius of the concave arc", gt=0.0)
+    r_dedendum: float = positive("radius of the concave arc", "mm")
     c_dedendum: float = quantity(
         unit="mm", text="centre of the concave arc, beyond half a pitch from the centre line"
     )
@@ -120,11 +119,8 @@ class SShaped(ProfileKeys):
     divides_straight = False
 
     type: Literal["s_shaped"] = quantity("s_shaped", text="kind of profile")
-    deflection: float | None = quantity(
-        None,
-        unit="mm",
-        text="radial deflection of the path; without it that of the wave generator",
-        gt=0.0,
+    deflection: float | None = positive(
+        "radial deflection of the path; without it that of the wave generator", "mm", None
     )
     r_tip: float = _rounded_tip()
     r_root: float = _root_arc()
@@ -137,12 +133,10 @@ class Cycloid(ProfileKeys):
     divides_straight = False
 
     type: Literal["cycloid"] = quantity("cycloid", text="kind of profile")
-    r_epicycloid: float = quantity(
-        unit="mm", text="radius of the circle that rolls on the outside of the pitch circle", gt=0.0
+    r_epicycloid: float = positive(
+        "radius of the circle that rolls on the outside of the pitch circle", "mm"
     )
-    r_hypocycloid: float = quantity(
-        unit="mm", text="radius of the circle that rolls on its inside", gt=0.0
-    )
+    r_hypocycloid: float = positive("radius of the circle that rolls on its inside", "mm")
     r_tip: float = _rounded_tip()
     r_root: float = _root_arc()
 
@@ -162,19 +156,12 @@ class Points(ProfileKeys):
         None, text="CSV or DXF file of the points, relative to the design file"
     )
     layer: str | None = quantity(None, text="layer of a DXF file; without it the model space")
-    scale: float = quantity(1.0, text="mm over the unit of the points", gt=0.0, le=1e6)
-    tolerance: float = quantity(
-        0.0,
-        unit="mm",
-        text="mean distance of the points from the curve; 0: the curve passes through all",
-        ge=0.0,
+    scale: float = positive("mm over the unit of the points", default=1.0, le=1e6)
+    tolerance: float = not_negative(
+        "mean distance of the points from the curve; 0: the curve passes through all", "mm", 0.0
     )
-    corner: float = quantity(
-        20.0,
-        unit="deg",
-        text="least angle between the chords beside a point that is a corner",
-        gt=0.0,
-        le=90.0,
+    corner: float = positive(
+        "least angle between the chords beside a point that is a corner", "deg", 20.0, le=90.0
     )
     joints: list[float] = quantity(
         [],
@@ -193,10 +180,10 @@ class _Involute(ProfileKeys):
     divides_straight = False
 
     type: Literal["involute"] = quantity("involute", text="kind of profile")
-    pressure_angle: float | None = quantity(
-        None, unit="deg", text="pressure angle; without it drive.pressure_angle", gt=0.0, lt=45.0
+    pressure_angle: float | None = positive(
+        "pressure angle; without it drive.pressure_angle", "deg", None, lt=45.0
     )
-    cutter_radius: float = quantity(unit="mm", text="tip radius of the cutter's teeth", gt=0.0)
+    cutter_radius: float = positive("tip radius of the cutter's teeth", "mm")
     shift: float = quantity(0.0, unit="modules", text="profile shift coefficient", ge=-1.0, le=1.0)
 
 
@@ -218,8 +205,8 @@ class Conjugate(ProfileKeys):
     type: Literal["conjugate"] = quantity("conjugate", text="kind of profile")
     r_root: float = _root_arc()
     r_tip: float = _rounded_tip()
-    backlash: float = quantity(
-        0.0, unit="mm", text="backlash along the pitch circle, taken from these teeth", ge=0.0
+    backlash: float = not_negative(
+        "backlash along the pitch circle, taken from these teeth", "mm", 0.0
     )
     section: float = quantity(
         0.0, unit="mm", text="axial coordinate of the section whose motion counts; 0: mid-width"

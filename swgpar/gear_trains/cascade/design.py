@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from annotated_types import Len
 
 from swgpar.gear_trains.common_sections import GearTrain, Positive, TrainDesign, require_steps
-from swgpar.input.quantities import Section, quantity
+from swgpar.input.quantities import Section, not_negative, positive, quantity
 from swgpar.input.require import require
 
 PINIONS = 8
@@ -23,45 +23,33 @@ class CascadeTrain(GearTrain):
 
 
 class Rack(Section):
-    mass: float = quantity(unit="kg", text="mass of the rack", gt=0.0)
-    length: float = quantity(
-        unit="m", text="toothed length; the circumference in the tolerance formulas", gt=0.0
-    )
+    mass: float = positive("mass of the rack", "kg")
+    length: float = positive("toothed length; the circumference in the tolerance formulas", "m")
     pitch_grade: float = quantity(text="ISO 1328 grade of the pitch deviation", **GRADES)
     runout_grade: float = quantity(text="ISO 1328 grade of the runout", **GRADES)
 
 
 class CascadeGear(Section):
     teeth: int = quantity(text="number of teeth", ge=6, le=1000)
-    inertia: float = quantity(unit="kg·m²", text="moment of inertia", gt=0.0)
-    face_width: float = quantity(unit="mm", text="face width", gt=0.0)
+    inertia: float = positive("moment of inertia", "kg·m²")
+    face_width: float = positive("face width", "mm")
     pitch_grade: float = quantity(text="ISO 1328 grade of the pitch deviation", **GRADES)
     runout_grade: float = quantity(text="ISO 1328 grade of the runout", **GRADES)
-    position: float = quantity(
-        unit="mm", text="tolerance of the shaft position, plus or minus", ge=0.0
-    )
-    axle_angle: float = quantity(
-        unit="mrad", text="tolerance of the shaft direction, plus or minus", ge=0.0
-    )
+    position: float = not_negative("tolerance of the shaft position, plus or minus", "mm")
+    axle_angle: float = not_negative("tolerance of the shaft direction, plus or minus", "mrad")
 
 
 class CascadeMesh(Section):
-    module: float = quantity(unit="mm", text="module", gt=0.0)
-    stiffness: float = quantity(unit="N/m", text="mean mesh stiffness", gt=0.0)
-    variation: float = quantity(
-        0.0, text="amplitude of the mesh stiffness over its mean", ge=0.0, lt=1.0
+    module: float = positive("module", "mm")
+    stiffness: float = positive("mean mesh stiffness", "N/m")
+    variation: float = not_negative(
+        "amplitude of the mesh stiffness over its mean", default=0.0, lt=1.0
     )
-    gap_A: float = quantity(
-        0.0,
-        unit="mm",
-        text="backlash at the pitch line up to the flanks that carry load in direction A",
-        ge=0.0,
+    gap_A: float = not_negative(
+        "backlash at the pitch line up to the flanks that carry load in direction A", "mm", 0.0
     )
-    gap_B: float = quantity(
-        0.0,
-        unit="mm",
-        text="backlash at the pitch line up to the flanks that carry load in direction B",
-        ge=0.0,
+    gap_B: float = not_negative(
+        "backlash at the pitch line up to the flanks that carry load in direction B", "mm", 0.0
     )
 
 
@@ -69,40 +57,29 @@ class FlexUnit(Section):
     ratio: Ratios = quantity(
         text="stiffness ratios of the units of pinions 1 to 8 to their mean (Table 3), each above 0"
     )
-    stiffness: float = quantity(unit="N·m/deg", text="mean stiffness beyond `linear_above`", gt=0.0)
-    linear_above: float = quantity(
-        unit="mm", text="deformation beyond which the stiffness is constant", gt=0.0
-    )
-    initial_stiffness: float = quantity(
-        unit="N·m/deg", text="mean stiffness at zero deformation", gt=0.0
-    )
-    radius: float = quantity(unit="mm", text="radius at which the deformation is measured", gt=0.0)
+    stiffness: float = positive("mean stiffness beyond `linear_above`", "N·m/deg")
+    linear_above: float = positive("deformation beyond which the stiffness is constant", "mm")
+    initial_stiffness: float = positive("mean stiffness at zero deformation", "N·m/deg")
+    radius: float = positive("radius at which the deformation is measured", "mm")
 
 
 class Shafts(Section):
-    g2_g3: float = quantity(unit="N·m/rad", text="stiffness of a shaft between G2 and G3", gt=0.0)
-    g4_flywheel: float = quantity(
-        unit="N·m/rad", text="stiffness of the shaft between G4 and flywheel", gt=0.0
-    )
+    g2_g3: float = positive("stiffness of a shaft between G2 and G3", "N·m/rad")
+    g4_flywheel: float = positive("stiffness of the shaft between G4 and flywheel", "N·m/rad")
 
 
 class Flywheel(Section):
-    inertia: float = quantity(unit="kg·m²", text="moment of inertia with the generator", gt=0.0)
-    generator: float = quantity(
-        unit="N·m·s/rad", text="damping constant of the generator: torque over speed", gt=0.0
-    )
+    inertia: float = positive("moment of inertia with the generator", "kg·m²")
+    generator: float = positive("damping constant of the generator: torque over speed", "N·m·s/rad")
 
 
 class CascadeDamping(Section):
-    metal: float = quantity(
-        unit="s", text="damping over stiffness of meshes in contact and of shafts", ge=0.0
-    )
-    flex: float = quantity(unit="s", text="damping over stiffness of the flexible units", ge=0.0)
-    contact_ramp: float = quantity(
-        unit="µm",
-        text="penetration of the flanks over which the contact damping rises to its full value "
+    metal: float = not_negative("damping over stiffness of meshes in contact and of shafts", "s")
+    flex: float = not_negative("damping over stiffness of the flexible units", "s")
+    contact_ramp: float = positive(
+        "penetration of the flanks over which the contact damping rises to its full value "
         "(smooth step, eq. 10)",
-        gt=0.0,
+        "µm",
     )
 
 
@@ -110,27 +87,18 @@ class CascadeLoad(Section):
     forces: Forces = quantity(
         text="rack forces for which load shares are reported (kN), each above 0"
     )
-    peak: float = quantity(
-        unit="kN", text="largest rack force, of the period and the population_tasks", gt=0.0
-    )
+    peak: float = positive("largest rack force, of the period and the population_tasks", "kN")
     period: float = quantity(
         unit="s",
         text="period of the sinusoidal rack force; its first half is direction B",
         ge=0.01,
     )
-    braked: float = quantity(
-        unit="kN", text="rack force with the flywheel fixed by its brake", gt=0.0
+    braked: float = positive("rack force with the flywheel fixed by its brake", "kN")
+    braked_ramp: float = positive("rise time of the rack force against the brake", "s", 0.2)
+    braked_hold: float = positive(
+        "hold time of that force; load shares are means over its second half", "s", 0.2
     )
-    braked_ramp: float = quantity(
-        0.2, unit="s", text="rise time of the rack force against the brake", gt=0.0
-    )
-    braked_hold: float = quantity(
-        0.2,
-        unit="s",
-        text="hold time of that force; load shares are means over its second half",
-        gt=0.0,
-    )
-    overload: float = quantity(text="allowed excess of a load share over 1/8", ge=0.0, lt=0.875)
+    overload: float = not_negative("allowed excess of a load share over 1/8", lt=0.875)
 
     @property
     def largest_share(self) -> float:
@@ -140,26 +108,17 @@ class CascadeLoad(Section):
 
 class Tolerances(Section):
     samples: int = quantity(text="samples of the tolerance stack-up", ge=10, le=10_000_000)
-    pressure_angle: float = quantity(
-        20.0, unit="deg", text="pressure angle of all meshes", gt=0.0, lt=45.0
-    )
-    limit: float = quantity(
-        3.0,
-        unit="standard deviations",
-        text="distance of the tolerance limits from the mean",
-        gt=0.0,
+    pressure_angle: float = positive("pressure angle of all meshes", "deg", 20.0, lt=45.0)
+    limit: float = positive(
+        "distance of the tolerance limits from the mean", "standard deviations", 3.0
     )
 
 
 class Population(Section):
     gearboxes: int = quantity(text="gearboxes with random pitch errors", ge=1, le=1_000_000)
-    ramp: float = quantity(
-        unit="s", text="rise time of the rack force of the population in motion", gt=0.0
-    )
-    hold: float = quantity(
-        unit="s", text="hold time of that force; load shares are means over it", gt=0.0
-    )
-    step: float = quantity(unit="s", text="time step of the population in motion", gt=0.0)
+    ramp: float = positive("rise time of the rack force of the population in motion", "s")
+    hold: float = positive("hold time of that force; load shares are means over it", "s")
+    step: float = positive("time step of the population in motion", "s")
 
 
 class CascadeDesign(TrainDesign):

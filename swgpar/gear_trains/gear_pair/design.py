@@ -15,7 +15,7 @@ from swgpar.gear_trains.common_sections import (
     TrainDesign,
     require_steps,
 )
-from swgpar.input.quantities import Section, quantity
+from swgpar.input.quantities import Section, not_negative, positive, quantity
 from swgpar.input.require import require
 
 PositiveTorques = Annotated[list[Positive], Len(1)]
@@ -30,22 +30,20 @@ class PairTrain(GearTrain):
 
 
 class PairGear(Section):
-    mass: float = quantity(unit="kg", text="mass", gt=0.0)
-    inertia: float = quantity(unit="kg·m²", text="moment of inertia", gt=0.0)
-    radius: float = quantity(unit="mm", text="pitch radius", gt=0.0)
-    bearing: float = quantity(
-        unit="N/m", text="stiffness of the bearings along the line of action", gt=0.0
-    )
+    mass: float = positive("mass", "kg")
+    inertia: float = positive("moment of inertia", "kg·m²")
+    radius: float = positive("pitch radius", "mm")
+    bearing: float = positive("stiffness of the bearings along the line of action", "N/m")
 
 
 class PairMesh(Section):
-    stiffness: float = quantity(unit="N/m", text="mean mesh stiffness", gt=0.0)
-    half_backlash: float = quantity(unit="µm", text="half of the backlash", ge=0.0)
-    variation: float = quantity(
-        0.0, text="amplitude of the mesh stiffness over its mean", ge=0.0, le=0.4
+    stiffness: float = positive("mean mesh stiffness", "N/m")
+    half_backlash: float = not_negative("half of the backlash", "µm")
+    variation: float = not_negative(
+        "amplitude of the mesh stiffness over its mean", default=0.0, le=0.4
     )
     contact_ratio: float = quantity(1.5, text="contact ratio", ge=1.0, le=2.0)
-    frequency: float = quantity(0.0, unit="rad/s", text="mesh frequency", ge=0.0)
+    frequency: float = not_negative("mesh frequency", "rad/s", 0.0)
     harmonics: int = quantity(3, text="Fourier terms of the mesh stiffness", ge=1, le=100)
 
 
@@ -56,17 +54,15 @@ class PairLoad(Section):
     output: PositiveTorques = quantity(
         text="torques on the second gear, one for each case (N·m), each above 0"
     )
-    noise: float = quantity(
-        unit="N", text="amplitude of the white noise on the relative rotation", ge=0.0
-    )
-    spectral_density: float = quantity(
-        1.0, text="two-sided spectral density of the noise of amplitude 1", gt=0.0
+    noise: float = not_negative("amplitude of the white noise on the relative rotation", "N")
+    spectral_density: float = positive(
+        "two-sided spectral density of the noise of amplitude 1", default=1.0
     )
 
 
 class PairTime(Section):
-    end: float = quantity(unit="s", text="end of the simulation; densities belong to it", gt=0.0)
-    step: float = quantity(unit="s", text="time step", gt=0.0)
+    end: float = positive("end of the simulation; densities belong to it", "s")
+    step: float = positive("time step", "s")
     rows: int = quantity(100, text="moments of time that are kept", ge=1, le=100_000)
 
 

@@ -14,7 +14,7 @@ from swgpar.gear_trains.common_sections import (
     TrainDamping,
     TrainDesign,
 )
-from swgpar.input.quantities import Section, quantity
+from swgpar.input.quantities import Section, not_negative, positive, quantity
 from swgpar.input.require import require
 from swgpar.vibration.curved_beam import BeamSection, Ring, supports_restrain_ring
 from swgpar.vibration.thickness_limit import THICKEST, displacement_remark
@@ -36,58 +36,52 @@ class PlanetaryTrain(GearTrain):
 
 class Sun(Section):
     teeth: int = quantity(text="number of teeth", ge=6, le=1000)
-    mass: float = quantity(unit="kg", text="mass", gt=0.0)
-    inertia: float = quantity(unit="kg·m²", text="moment of inertia", gt=0.0)
-    pitch_diameter: float = quantity(unit="mm", text="pitch diameter", gt=0.0)
-    bearing: float = quantity(unit="N/m", text="stiffness of the bearing", ge=0.0)
-    torsional: float = quantity(unit="N·m/rad", text="torsional stiffness of the shaft", gt=0.0)
+    mass: float = positive("mass", "kg")
+    inertia: float = positive("moment of inertia", "kg·m²")
+    pitch_diameter: float = positive("pitch diameter", "mm")
+    bearing: float = not_negative("stiffness of the bearing", "N/m")
+    torsional: float = positive("torsional stiffness of the shaft", "N·m/rad")
 
 
 class Planet(Section):
     count: int = quantity(3, text="equally spaced planets", ge=2, le=12)
-    mass: float = quantity(unit="kg", text="mass of each", gt=0.0)
-    inertia: float = quantity(unit="kg·m²", text="moment of inertia of each", gt=0.0)
-    pitch_diameter: float = quantity(unit="mm", text="pitch diameter", gt=0.0)
-    bearing: float = quantity(
-        unit="N/m", text="stiffness of the bearing of each on the carrier", gt=0.0
-    )
+    mass: float = positive("mass of each", "kg")
+    inertia: float = positive("moment of inertia of each", "kg·m²")
+    pitch_diameter: float = positive("pitch diameter", "mm")
+    bearing: float = positive("stiffness of the bearing of each on the carrier", "N/m")
 
 
 class Carrier(Section):
-    mass: float = quantity(unit="kg", text="mass", gt=0.0)
-    inertia: float = quantity(unit="kg·m²", text="moment of inertia", gt=0.0)
-    bearing: float = quantity(unit="N/m", text="stiffness of the bearing", gt=0.0)
-    speed: float = quantity(unit="rad/s", text="speed", gt=0.0)
+    mass: float = positive("mass", "kg")
+    inertia: float = positive("moment of inertia", "kg·m²")
+    bearing: float = positive("stiffness of the bearing", "N/m")
+    speed: float = positive("speed", "rad/s")
 
 
 class RingGear(Section):
     teeth: int = quantity(text="number of teeth", ge=10, le=2000)
-    E: float = quantity(unit="GPa", text="modulus of elasticity", gt=0.0)
+    E: float = positive("modulus of elasticity", "GPa")
     nu: float = quantity(0.3, text="Poisson's ratio", gt=-1.0, le=0.5)
-    density: float = quantity(unit="kg/m³", text="density", gt=0.0)
-    root_radius: float = quantity(
-        unit="mm", text="root radius, the inner radius of the rim", gt=0.0
-    )
-    rim: float = quantity(unit="mm", text="rim thickness", gt=0.0)
+    density: float = positive("density", "kg/m³")
+    root_radius: float = positive("root radius, the inner radius of the rim", "mm")
+    rim: float = positive("rim thickness", "mm")
     rims: Thicknesses = quantity(
         text="rim thicknesses that are compared by linearisation (mm), each above 0"
     )
-    face_width: float = quantity(unit="mm", text="face width", gt=0.0)
+    face_width: float = positive("face width", "mm")
     elements: int = quantity(text="curved-beam elements", ge=3, le=200)
     supports: int = quantity(text="equally spaced supports; the first at angle 0", ge=1)
-    radial: float = quantity(unit="N/m", text="radial stiffness of each support", ge=0.0)
-    tangential: float = quantity(unit="N/m", text="tangential stiffness of each support", gt=0.0)
-    torsional: float = quantity(unit="N·m/rad", text="torsional stiffness of each support", ge=0.0)
+    radial: float = not_negative("radial stiffness of each support", "N/m")
+    tangential: float = positive("tangential stiffness of each support", "N/m")
+    torsional: float = not_negative("torsional stiffness of each support", "N·m/rad")
 
 
 class Meshes(Section):
-    sun_stiffness: float = quantity(unit="N/m", text="mean stiffness of sun and planet", gt=0.0)
-    ring_stiffness: float = quantity(unit="N/m", text="mean stiffness of ring and planet", gt=0.0)
-    pressure_angle: float = quantity(20.0, unit="deg", text="pressure angle", gt=0.0, lt=45.0)
-    half_backlash: float = quantity(unit="µm", text="half of the backlash of all meshes", ge=0.0)
-    variation: float = quantity(
-        text="amplitude of the mesh stiffness over its mean", ge=0.0, le=0.4
-    )
+    sun_stiffness: float = positive("mean stiffness of sun and planet", "N/m")
+    ring_stiffness: float = positive("mean stiffness of ring and planet", "N/m")
+    pressure_angle: float = positive("pressure angle", "deg", 20.0, lt=45.0)
+    half_backlash: float = not_negative("half of the backlash of all meshes", "µm")
+    variation: float = not_negative("amplitude of the mesh stiffness over its mean", le=0.4)
     sun_contact_ratio: float = quantity(text="contact ratio of sun and planet", ge=1.0, le=2.0)
     ring_contact_ratio: float = quantity(text="contact ratio of ring and planet", ge=1.0, le=2.0)
     phase: float = quantity(
@@ -97,22 +91,18 @@ class Meshes(Section):
 
 
 class Wind(Section):
-    speed: float = quantity(unit="km/h", text="mean speed", gt=0.0)
-    turbulence: float = quantity(
-        text="standard deviation over the mean of the speed", ge=0.0, le=1.0
-    )
-    length: float = quantity(unit="m", text="length of the turbulence", gt=0.0)
-    a1: float = quantity(0.4, text="constant of the turbulence filter", ge=0.0)
-    a2: float = quantity(0.25, text="constant of the turbulence filter", gt=0.0)
-    air_density: float = quantity(1.225, unit="kg/m³", text="density of the air", gt=0.0)
-    rotor_radius: float = quantity(unit="m", text="radius of the rotor", gt=0.0)
-    power_coefficient: float = quantity(text="power coefficient", gt=0.0, le=0.593)
+    speed: float = positive("mean speed", "km/h")
+    turbulence: float = not_negative("standard deviation over the mean of the speed", le=1.0)
+    length: float = positive("length of the turbulence", "m")
+    a1: float = not_negative("constant of the turbulence filter", default=0.4)
+    a2: float = positive("constant of the turbulence filter", default=0.25)
+    air_density: float = positive("density of the air", "kg/m³", 1.225)
+    rotor_radius: float = positive("radius of the rotor", "m")
+    power_coefficient: float = positive("power coefficient", le=0.593)
 
 
 class PlanetaryTime(Section):
-    revolutions: float = quantity(
-        1.0, text="carrier revolutions that are computed", gt=0.0, le=1000.0
-    )
+    revolutions: float = positive("carrier revolutions that are computed", default=1.0, le=1000.0)
     steps: int = quantity(text="time steps in all", ge=10, le=10_000_000)
     linearised_steps: int = quantity(text="time steps of the linearisation", ge=10, le=10_000_000)
     rows: int = quantity(200, text="moments of time that are kept", ge=1, le=100_000)

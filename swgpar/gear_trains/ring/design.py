@@ -8,7 +8,7 @@ from annotated_types import Len
 
 from swgpar.errors import InputError
 from swgpar.gear_trains.common_sections import GearTrain, Positive, TrainDesign
-from swgpar.input.quantities import Section, quantity
+from swgpar.input.quantities import Section, not_negative, positive, quantity
 from swgpar.input.require import require
 from swgpar.vibration.curved_beam import BeamSection, Ring, supports_restrain_ring
 from swgpar.vibration.thickness_limit import THICKEST, displacement_remark, frequency_remark
@@ -24,47 +24,46 @@ class RingTrain(GearTrain):
 
 
 class RingBody(Section):
-    E: float = quantity(unit="GPa", text="modulus of elasticity", gt=0.0)
+    E: float = positive("modulus of elasticity", "GPa")
     nu: float = quantity(0.3, text="Poisson's ratio", gt=-1.0, le=0.5)
-    density: float = quantity(unit="kg/m³", text="density", gt=0.0)
-    outer_radius: float = quantity(unit="mm", text="outer radius", gt=0.0)
-    inner_radius: float = quantity(unit="mm", text="inner radius", gt=0.0)
-    face_width: float = quantity(unit="mm", text="face width", gt=0.0)
+    density: float = positive("density", "kg/m³")
+    outer_radius: float = positive("outer radius", "mm")
+    inner_radius: float = positive("inner radius", "mm")
+    face_width: float = positive("face width", "mm")
     elements: int = quantity(text="curved-beam elements", ge=3, le=2000)
     modes: int = quantity(6, text="bending modes that are listed", ge=1, le=100)
 
 
 class RingSupports(Section):
     count: int = quantity(text="equally spaced supports; the first at angle 0", ge=1)
-    radial: float = quantity(unit="N/m", text="radial stiffness of each", ge=0.0)
-    tangential: float = quantity(unit="N/m", text="tangential stiffness of each", ge=0.0)
-    torsional: float = quantity(unit="N·m/rad", text="torsional stiffness of each", ge=0.0)
+    radial: float = not_negative("radial stiffness of each", "N/m")
+    tangential: float = not_negative("tangential stiffness of each", "N/m")
+    torsional: float = not_negative("torsional stiffness of each", "N·m/rad")
 
 
 class RingTeeth(Section):
     count: int = quantity(text="equally spaced teeth", ge=1)
-    mass: float = quantity(unit="kg", text="mass of each", ge=0.0)
-    inertia: float = quantity(unit="kg·m²", text="moment of inertia of each", ge=0.0)
+    mass: float = not_negative("mass of each", "kg")
+    inertia: float = not_negative("moment of inertia of each", "kg·m²")
 
 
 class MovingLoad(Section):
     loads: int = quantity(3, text="equally spaced loads", ge=1, le=100)
-    pressure_angle: float = quantity(20.0, unit="deg", text="pressure angle", ge=0.0, lt=90.0)
-    radius: float | None = quantity(
-        None, unit="mm", text="radius on which loads act, such as the pitch radius", gt=0.0
+    pressure_angle: float = not_negative("pressure angle", "deg", 20.0, lt=90.0)
+    radius: float | None = positive(
+        "radius on which loads act, such as the pitch radius", "mm", None
     )
-    force: float = quantity(unit="N", text="mean force of each", ge=0.0)
-    harmonic: float = quantity(0.0, unit="N", text="amplitude of its harmonic part", ge=0.0)
-    frequency: float = quantity(0.0, unit="rad/s", text="frequency of the harmonic part", ge=0.0)
-    cycles: float | None = quantity(
-        None,
-        text="cycles of the harmonic part in a revolution of the loads, in place of `frequency`",
-        gt=0.0,
+    force: float = not_negative("mean force of each", "N")
+    harmonic: float = not_negative("amplitude of its harmonic part", "N", 0.0)
+    frequency: float = not_negative("frequency of the harmonic part", "rad/s", 0.0)
+    cycles: float | None = positive(
+        "cycles of the harmonic part in a revolution of the loads, in place of `frequency`",
+        default=None,
         le=10_000.0,
     )
-    noise: float = quantity(0.0, unit="N·√s", text="amplitude of the white noise of each", ge=0.0)
-    damping_mass: float = quantity(unit="1/s", text="damping over mass", ge=0.0)
-    damping_stiffness: float = quantity(unit="s", text="damping over stiffness", ge=0.0)
+    noise: float = not_negative("amplitude of the white noise of each", "N·√s", 0.0)
+    damping_mass: float = not_negative("damping over mass", "1/s")
+    damping_stiffness: float = not_negative("damping over stiffness", "s")
     speeds: Speeds = quantity(
         text="speeds of the loads (rad/s), each above 0; the first is the reference"
     )

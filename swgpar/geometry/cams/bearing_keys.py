@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from swgpar.input.quantities import Section, quantity
+from swgpar.input.quantities import Section, not_negative, positive, quantity
 from swgpar.materials import OptionalMaterial
 from swgpar.materials.temperature import temperature
 
@@ -11,15 +11,13 @@ class Bearing(Section):
     """Section [wave_generator.bearing]: a flexible ball bearing between cam and flexible spline."""
 
     balls: int = quantity(text="number of balls", ge=3, le=2000)
-    ball_diameter: float = quantity(unit="mm", text="diameter of the balls", gt=0.0)
-    race_thickness: float = quantity(
-        unit="mm", text="thickness of the outer race, of a rectangular section", gt=0.0
+    ball_diameter: float = positive("diameter of the balls", "mm")
+    race_thickness: float = positive("thickness of the outer race, of a rectangular section", "mm")
+    race_width: float | None = positive(
+        "width of the outer race; without it that of the cam", "mm", None
     )
-    race_width: float | None = quantity(
-        None, unit="mm", text="width of the outer race; without it that of the cam", gt=0.0
-    )
-    clearance: float = quantity(
-        0.0, unit="mm", text="clearance of a ball with the outer race on the cam's curve", ge=0.0
+    clearance: float = not_negative(
+        "clearance of a ball with the outer race on the cam's curve", "mm", 0.0
     )
     inner_conformity: float = quantity(
         0.52, text="radius of the inner race's groove across over the ball diameter", gt=0.5, le=2.0
@@ -34,14 +32,13 @@ class Bearing(Section):
         ge=-180.0,
         le=180.0,
     )
-    cage_speed: float | None = quantity(
-        None,
-        text="speed of the cage over that of the wave generator; without it that of rolling balls",
-        ge=0.0,
+    cage_speed: float | None = not_negative(
+        "speed of the cage over that of the wave generator; without it that of rolling balls",
+        default=None,
         le=1.0,
     )
-    stiffness_factor: float = quantity(
-        1.0, text="factor on the stiffness of the ball contacts; 1: Hertz", gt=0.0, le=1e6
+    stiffness_factor: float = positive(
+        "factor on the stiffness of the ball contacts; 1: Hertz", default=1.0, le=1e6
     )
     race_interference: float = quantity(
         0.0,
@@ -57,6 +54,6 @@ class Bearing(Section):
     )
     temperature: float | None = temperature("outer race and balls")
     material: OptionalMaterial = None
-    load_rating: float | None = quantity(
-        None, unit="N", text="basic dynamic load rating; without it that of ISO 281", gt=0.0
+    load_rating: float | None = positive(
+        "basic dynamic load rating; without it that of ISO 281", "N", None
     )

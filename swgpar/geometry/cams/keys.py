@@ -7,24 +7,21 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, field_validator
 
 from swgpar.geometry.cams.bearing_keys import Bearing
-from swgpar.input.quantities import Section, default_type, quantity
+from swgpar.input.quantities import Section, default_type, not_negative, positive, quantity
 from swgpar.materials.temperature import temperature
 
 
 def _pins(default: float) -> float:
-    return quantity(
-        default, unit="deg", text="half of the angle a pushing pin covers", gt=0.0, le=60.0
-    )
+    return positive("half of the angle a pushing pin covers", "deg", default, le=60.0)
 
 
 class _WaveGenerator(Section):
     lobes: int = quantity(2, text="lobes of the cam, places around it where teeth mesh", ge=2, le=3)
-    deflection: float | None = quantity(
-        None,
-        unit="mm",
-        text="radial deflection w0 of the flexible spline at the tip of a lobe; without it half of "
+    deflection: float | None = positive(
+        "radial deflection w0 of the flexible spline at the tip of a lobe; without it half of "
         "the module times the difference of the teeth",
-        gt=0.0,
+        "mm",
+        None,
     )
     offset: float = quantity(
         0.0,
@@ -32,16 +29,15 @@ class _WaveGenerator(Section):
         text="distance of the surface on the spline from the curve of the cam, outwards: thickness "
         "of a bearing, less a clearance",
     )
-    face_width: float = quantity(unit="mm", text="width of the cam", gt=0.0)
+    face_width: float = positive("width of the cam", "mm")
     # Pins begin where they first touch. Flat or rotated parabolas touch beside the major axis, as
     # far as 30 degrees from it, and rollers wherever they are: the pins have to reach that far.
     pin_half_angle: float = _pins(60.0)
     temperature: float | None = temperature("the rigid cam and an inner race on it")
-    expansion: float | None = quantity(
+    expansion: float | None = not_negative(
+        "coefficient of thermal expansion of the cam; without it material.expansion",
+        "1/K",
         None,
-        unit="1/K",
-        text="coefficient of thermal expansion of the cam; without it material.expansion",
-        ge=0.0,
         le=1e-3,
     )
     bearing: Bearing | None = None
@@ -65,13 +61,11 @@ class _WaveGenerator(Section):
 class Reduced(_WaveGenerator):
     """Cams with a minor semi-axis b = C (r_fs - w0) (eq. 3.4), or with both axes given."""
 
-    C: float = quantity(1.0, text="minor axis reduction", gt=0.0, le=1.0)
-    major_axis: float | None = quantity(
-        None, unit="mm", text="size along the major axis, in place of deflection", gt=0.0
+    C: float = positive("minor axis reduction", default=1.0, le=1.0)
+    major_axis: float | None = positive(
+        "size along the major axis, in place of deflection", "mm", None
     )
-    minor_axis: float | None = quantity(
-        None, unit="mm", text="size along the minor axis, in place of C", gt=0.0
-    )
+    minor_axis: float | None = positive("size along the minor axis, in place of C", "mm", None)
 
 
 class Elliptical(Reduced):
@@ -100,19 +94,15 @@ class Arcs(Reduced):
     """Arcs of two radii."""
 
     type: Literal["arcs"] = quantity("arcs", text="kind of cam")
-    beta: float = quantity(
-        unit="deg", text="half angle of the arcs about the major axis", gt=0.0, lt=90.0
-    )
+    beta: float = positive("half angle of the arcs about the major axis", "deg", lt=90.0)
 
 
 class SideKeys(Section):
     """The parabola of a lobe, or of one side of it, and how it is led to the minor axis."""
 
-    a_p: float = quantity(unit="1/mm", text="parabola coefficient", gt=0.0)
-    C_p: float = quantity(
-        text="half length of the parabola over the minor semi-axis", gt=0.0, le=1.0
-    )
-    r_c: float = quantity(unit="mm", text="radius of the connector arc", gt=0.0)
+    a_p: float = positive("parabola coefficient", "1/mm")
+    C_p: float = positive("half length of the parabola over the minor semi-axis", le=1.0)
+    r_c: float = positive("radius of the connector arc", "mm")
 
 
 class Parabolic(Reduced, SideKeys):
@@ -180,8 +170,8 @@ class CamPoints(_WaveGenerator):
         le=360.0,
     )
     symmetric: bool = quantity(True, text="whether both sides of a lobe are mirror images")
-    tolerance: float = quantity(
-        0.0005, unit="mm", text="mean distance of the points from the smooth curve", ge=0.0
+    tolerance: float = not_negative(
+        "mean distance of the points from the smooth curve", "mm", 0.0005
     )
 
     @field_validator("points", mode="before")
@@ -209,11 +199,8 @@ class CamPoints(_WaveGenerator):
 class _Rollers(_WaveGenerator):
     """Cams of rollers, whose outermost points are w0 outside of the undeformed spline."""
 
-    centre_radius: float | None = quantity(
-        None,
-        unit="mm",
-        text="radius of the circle of the rollers' centres, in place of deflection",
-        gt=0.0,
+    centre_radius: float | None = positive(
+        "radius of the circle of the rollers' centres, in place of deflection", "mm", None
     )
 
 
@@ -221,23 +208,20 @@ class FourRoller(_Rollers):
     """Section 3.2.4."""
 
     type: Literal["four_roller"] = quantity("four_roller", text="kind of cam")
-    beta: float = quantity(
-        unit="deg", text="angle of the rollers from the major axis", gt=0.0, lt=90.0
-    )
-    r_4: float = quantity(unit="mm", text="radius of the rollers", gt=0.0)
+    beta: float = positive("angle of the rollers from the major axis", "deg", lt=90.0)
+    r_4: float = positive("radius of the rollers", "mm")
 
 
 class TwoRoller(_Rollers):
     """Two rollers on the major axis."""
 
     type: Literal["two_roller"] = quantity("two_roller", text="kind of cam")
-    r_2: float = quantity(unit="mm", text="radius of the rollers", gt=0.0)
-    distance: float = quantity(
-        0.0,
-        unit="mm",
-        text="distance of the rollers along the axis, the one on +y towards the closed end; beside "
+    r_2: float = positive("radius of the rollers", "mm")
+    distance: float = not_negative(
+        "distance of the rollers along the axis, the one on +y towards the closed end; beside "
         "each other they are discs as large as they fit",
-        ge=0.0,
+        "mm",
+        0.0,
     )
 
     @property
