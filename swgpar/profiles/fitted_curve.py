@@ -8,10 +8,14 @@ import numpy as np
 import scipy
 
 from swgpar.geometry.arrays import Floats
-from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints, points_of
+from swgpar.profiles.curved_segment import (
+    DEGREE,
+    CurvedSegment,
+    CurvePoints,
+    by_pieces,
+    points_of,
+)
 from swgpar.profiles.flank import MISMATCH
-
-DEGREE = 7
 
 INTERVALS = 16, 32, 64, 128, 256, 512, 1024
 """Of splines that are tried, one after the other: of a short curve with many of them tangents show
@@ -27,20 +31,29 @@ ends and in the middles of its intervals, at most: so that pieces still join."""
 
 @dataclass(frozen=True)
 class _Spline:
-    """point, first, second : of (n, 2) mm, by the parameter;  angle : rad, of the middle tangent"""
+    """pieces : of x, y (mm) and their first and second derivatives by the parameter, (n, 6)
+    angle : rad, of the middle tangent"""
 
-    point: scipy.interpolate.BSpline
-    first: scipy.interpolate.BSpline
-    second: scipy.interpolate.BSpline
+    pieces: scipy.interpolate.PPoly
     angle: float
+
+    @classmethod
+    def through(cls, t: Floats, points: Floats, angle: float) -> _Spline:
+        """points : (n, 2) mm at the parameters t (n,)"""
+        pieces = by_pieces(scipy.interpolate.make_interp_spline(t, points, DEGREE))
+        kinds = [pieces, pieces.derivative(1), pieces.derivative(2)]
+        # derivatives have fewer coefficients
+        c = [np.pad(one.c, ((k, 0), (0, 0), (0, 0))) for k, one in enumerate(kinds)]
+        return cls(scipy.interpolate.PPoly(np.concatenate(c, axis=2), pieces.x), angle)
 
     def evaluate(self, t: Floats) -> CurvePoints:
         """Curve at the parameters t (n,), for `CurvedSegment`."""
-        points, back = self.point(t), np.exp(-1j * self.angle)
-        first, second = (back * (of(t) @ (1.0, 1j)) for of in (self.first, self.second))
-        curve = points_of(points @ (1.0, 1j), first, second)
+        values = self.pieces(t)
+        z, first, second = (values[:, k : k + 2] @ (1.0, 1j) for k in (0, 2, 4))
+        back = np.exp(-1j * self.angle)
+        curve = points_of(z, back * first, back * second)
         # counted from the middle tangent, the angle does not jump by a turn
-        return replace(curve, point=points, angle=curve.angle + self.angle)
+        return replace(curve, angle=curve.angle + self.angle)
 
 
 def fitted(curve: CurvedSegment) -> CurvedSegment:
@@ -52,8 +65,7 @@ def fitted(curve: CurvedSegment) -> CurvedSegment:
         points = curve.evaluate(t).point
         if not np.isfinite(points).all():
             return curve
-        spline = scipy.interpolate.make_interp_spline(t, points, DEGREE)
-        known = _Spline(spline, spline.derivative(1), spline.derivative(2), angle)
+        known = _Spline.through(t, points, angle)
         between = np.array([0.0, *(t[:-1] + 0.5 * (t[1] - t[0])), 1.0])
         exact, found = (of.evaluate(between) for of in (curve, known))
         length = float(exact.speed.mean())

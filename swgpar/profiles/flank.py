@@ -20,6 +20,19 @@ OF_POINTS = 1e-3
 """rad, of tangents of a flank from points with few digits."""
 
 
+@dataclass(frozen=True)
+class NearestPoints:
+    """Points of a segment nearest to given ones.
+
+    place : (n,) where they are, for `FlankSegment.arc_length`
+    point : (n, 2) mm;  angle : (n,) rad, of the tangents there
+    """
+
+    place: Floats
+    point: Floats
+    angle: Floats
+
+
 class FlankSegment(Protocol):
     """A smooth piece of a flank, from the tip towards the root; local arc lengths s in mm."""
 
@@ -40,8 +53,11 @@ class FlankSegment(Protocol):
     def signed_curvature(self, s: Floats) -> Floats:
         """Change of that angle per arc length (n,), 1/mm, at `s` : (n,)."""
 
-    def nearest(self, points: Floats) -> Floats:
-        """Local arc lengths (n,), mm, of the points nearest to `points` (n, 2), mm."""
+    def nearest(self, points: Floats) -> NearestPoints:
+        """The nearest points to `points` (n, 2), mm."""
+
+    def arc_length(self, place: Floats) -> Floats:
+        """Local arc lengths (n,), mm, of the places (n,) of nearest points."""
 
 
 @dataclass(frozen=True)
@@ -77,8 +93,16 @@ class Segment:
         x, y = self.start
         return np.stack((x + chord * np.cos(middle), y + chord * np.sin(middle)), axis=-1)
 
-    def nearest(self, points: Floats) -> Floats:
-        """Local arc lengths (n,), mm, of the points nearest to `points` (n, 2), mm."""
+    def nearest(self, points: Floats) -> NearestPoints:
+        """The nearest points to `points` (n, 2), mm; their places are local arc lengths."""
+        s = self._nearest(points)
+        return NearestPoints(s, self.point(s), self.angle(s))
+
+    def arc_length(self, place: Floats) -> Floats:
+        """Local arc lengths (n,), mm, of the places (n,) of nearest points: these."""
+        return place
+
+    def _nearest(self, points: Floats) -> Floats:
         offset = points - np.asarray(self.start)
         tangent = np.array((np.cos(self.direction), np.sin(self.direction)))
         along = offset @ tangent
@@ -208,20 +232,24 @@ class ToothProfile:
         Returns the distance (n,) mm, positive outside the material, and s (n,) mm.
         """
         points = np.atleast_2d(np.asarray(points, dtype=np.float64))
-        best = np.full(len(points), np.inf)
-        foot = np.zeros(len(points))
-        for begin, segment in zip(self.breaks[:-1], self.segments, strict=True):
-            local = segment.nearest(points)
-            gap = np.linalg.norm(points - segment.point(local), axis=1)
-            closer = gap < best
-            best[closer] = gap[closer]
-            foot[closer] = begin + local[closer]
-        side = np.einsum("ij,ij->i", points - self.point(foot), self.normal(foot))
+        found = [segment.nearest(points) for segment in self.segments]
+        offsets = np.array([points - feet.point for feet in found])
+        gaps = np.linalg.norm(offsets, axis=2)
+        nearest = gaps.argmin(axis=0)
+        foot, angle = np.empty(len(points)), np.empty(len(points))
+        for k, (begin, segment) in enumerate(zip(self.breaks[:-1], self.segments, strict=True)):
+            here = nearest == k
+            if here.any():
+                foot[here] = begin + segment.arc_length(found[k].place[here])
+                angle[here] = found[k].angle[here]
+        every = np.arange(len(points))
+        normal = self._side * np.stack((-np.sin(angle), np.cos(angle)), axis=-1)
+        side = np.einsum("ij,ij->i", offsets[nearest, every], normal)
         # the normal of a sharp tip end does not tell a point in the tooth from one over its top
         # land
         beyond = self._side * (np.linalg.norm(points, axis=1) - self.r_tip_circle) >= 0.0
         side[(foot == 0.0) & beyond] = 1.0
-        return np.copysign(best, side), foot
+        return np.copysign(gaps[nearest, every], side), foot
 
     def polar_angle(self, s: ArrayLike) -> Floats:
         """Angle (n,), rad, between the tooth's centre line and the points at `s` : (n,) mm."""

@@ -317,4 +317,4 @@ def _farthest(piece: _Piece, points: Complex) -> float:
     """Largest distance of points x + i y (n,) from a part, mm."""
     segment = CurvedSegment("flank", piece.evaluate)
     xy = np.column_stack([points.real, points.imag])
-    return float(np.linalg.norm(segment.point(segment.nearest(xy)) - xy, axis=1).max())
+    return float(np.linalg.norm(segment.nearest(xy).point - xy, axis=1).max())

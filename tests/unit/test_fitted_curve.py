@@ -50,7 +50,7 @@ def test_a_spline_has_the_points_tangents_and_curvatures_of_its_curve() -> None:
     assert np.abs(found.angle_rate - exact.angle_rate).max() < 1e-6
     assert spline.length == pytest.approx(curve.length, rel=1e-10)
     points = exact.point + [0.02, -0.01]
-    assert spline.nearest(points) == pytest.approx(curve.nearest(points), abs=1e-9)
+    assert spline.nearest(points).place == pytest.approx(curve.nearest(points).place, abs=1e-9)
 
 
 def test_a_curve_with_a_sharp_bend_stays_as_it_is() -> None:
