@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +10,7 @@ from mpi4py import MPI
 
 from swgpar import log
 from swgpar.analysis.accuracy import require_accuracy
-from swgpar.api.runs import DesignLike, MeshLike, load_mesh
+from swgpar.api.runs import DesignLike, MeshLike, with_mesh
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.input.design import Design
@@ -112,9 +111,6 @@ def rate(
     def checked() -> tuple[DriveDesign, RunOptions]:
         if accuracy is not None:
             require_accuracy(accuracy)
-        if mesh is None:
-            return load_rated_design(design), given
-        name = str(mesh) if isinstance(mesh, (str, Path)) else ""
-        return load_rated_design(design), replace(given, recipe=load_mesh(mesh), recipe_name=name)
+        return load_rated_design(design), with_mesh(given, mesh)
 
     return rate_drive(*on_all(comm, checked))

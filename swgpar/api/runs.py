@@ -238,10 +238,15 @@ def _checked(
     checked = load_design(design)
     system = system_of_section(checked.system)
     options.require_available(system.options, system.noun, mesh=mesh is not None)
+    return checked, with_mesh(options, mesh)
+
+
+def with_mesh(options: RunOptions, mesh: MeshLike | None) -> RunOptions:
+    """The options with a mesh recipe, if one is given, and its name as the user gave it."""
     if mesh is None:
-        return checked, options
+        return options
     name = str(mesh) if isinstance(mesh, (str, Path)) else ""
-    return checked, replace(options, recipe=load_mesh(mesh), recipe_name=name)
+    return replace(options, recipe=load_mesh(mesh), recipe_name=name)
 
 
 def export(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from swgpar.checks.inertia import require_density
 from swgpar.design.drive_design import DriveDesign
-from swgpar.errors import InputError
 from swgpar.input.require import require, require_available
 
 FREQUENCIES = "[frequencies]"
@@ -24,9 +24,5 @@ def check_frequencies(design: DriveDesign) -> None:
     least = design.negligible_torque_Nm
     allowed = f"above {least:.3g} N·m with {FREQUENCIES}: without a load the teeth have play"
     require(design.load.torque > least, "load.torque", design.load.torque, allowed)
-    for body, material in design.materials.items():
-        if material.density is None:
-            raise InputError(
-                f"the density of {body} is missing: {FREQUENCIES} needs it, as material.density or "
-                f"by material.name"
-            )
+    for body in design.materials:
+        require_density(design, body, FREQUENCIES)

@@ -67,6 +67,15 @@ def inertia_remarks(rim: RimInertia | None, speeds: tuple[float, float], load: L
     return sentences
 
 
+def require_density(design: DriveDesign, body: str, what: str) -> None:
+    """Raise InputError where a body has no density, which `what` needs."""
+    if design.materials[body].density is None:
+        raise InputError(
+            f"the density of {body} is missing: {what} needs it, as material.density or by "
+            "material.name"
+        )
+
+
 def check_inertia(design: DriveDesign) -> None:
     """Raise InputError where the wave does not pass all sectors alike, a mass is missing, or the
     input is too fast for forces of inertia."""
@@ -82,11 +91,7 @@ def check_inertia(design: DriveDesign) -> None:
     require(not condensed, "solver.condensed_sectors", condensed, f"only false with {INERTIA}")
     bodies = ["flexible_spline", *(["bearing"] if design.bearing is not None else [])]
     for body in bodies:
-        if design.materials[body].density is None:
-            raise InputError(
-                f"the density of {body} is missing: {INERTIA} needs it, as material.density or by "
-                f"material.name"
-            )
+        require_density(design, body, INERTIA)
     speed, rim, (spline, wave) = design.load.input_speed, design.rim_inertia, design.speeds
     share = max(
         abs(rim.share_of_bending(spline, wave)), rim.hoop_stress(spline) / rim.bending_stress

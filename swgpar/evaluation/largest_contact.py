@@ -109,14 +109,12 @@ class LargestContact(AnswerGroup):
             "largest.shear_MPa",
         ),
     )
-    off_edges: LoadedPair | None = part_answers(
-        AnswerKind(
-            "contact.pressure_off_edges",
-            "the same of the pairs that do not lie on an edge",
-            "MPa",
-            "off_edges.pressure_MPa",
-            error="error_off_edges_MPa",
-        )
+    off_edges: LoadedPair | None = answer(
+        "contact.pressure_off_edges",
+        "the same of the pairs that do not lie on an edge",
+        "MPa",
+        "off_edges.pressure_MPa",
+        error="error_off_edges_MPa",
     )
     edge_force_N: float = answer(
         "contact.edge_force", "largest force under load of a pair on an edge", "N"

@@ -34,24 +34,19 @@ class LoadSharing(AnswerGroup):
     """
 
     pairs: Spread = part_answers(
-        AnswerKind(
-            "sharing.pairs",
-            "pairs of flanks in contact, mean over the rotation",
-            path="pairs.mean",
-            exact=True,
-        ),
-        AnswerKind(
-            "sharing.largest_pairs",
-            "pairs of flanks in contact, most over the rotation",
-            path="pairs.largest",
-            exact=True,
-        ),
-        AnswerKind(
-            "sharing.smallest_pairs",
-            "pairs of flanks in contact, fewest over the rotation",
-            path="pairs.smallest",
-            exact=True,
-        ),
+        *(
+            AnswerKind(
+                f"sharing.{name}",
+                f"pairs of flanks in contact, {words} over the rotation",
+                path=f"pairs.{part}",
+                exact=True,
+            )
+            for name, words, part in (
+                ("pairs", "mean", "mean"),
+                ("largest_pairs", "most", "largest"),
+                ("smallest_pairs", "fewest", "smallest"),
+            )
+        )
     )
     teeth_share: Spread = answer(
         "sharing.teeth_share",

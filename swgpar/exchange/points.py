@@ -6,6 +6,7 @@ from pathlib import Path
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.exchange.wall_lines import wall_lines
+from swgpar.geometry.arrays import Floats
 from swgpar.geometry.cams import cam_outlines
 
 CAM_POINTS = 1440
@@ -24,13 +25,15 @@ def write_points(design: DriveDesign, folder: Path) -> list[Path]:
     paths = []
     for number, points in enumerate(outlines, 1):
         name = "wave_generator" if len(outlines) == 1 else f"wave_generator_roller_{number}"
-        path = folder / f"{name}.csv"
-        lines = [f"{x:.9f}, {y:.9f}\n" for x, y in points]
-        path.write_text("x (mm), y (mm)\n" + "".join(lines), encoding="ascii")
-        paths.append(path)
+        paths.append(_written(folder / f"{name}.csv", "x (mm), y (mm)", points, ".9f"))
     for name, one in wall_lines(design).items():
-        path = folder / f"wall_{name}.csv"
-        lines = [", ".join(f"{value:.12g}" for value in row) + "\n" for row in one.corners()]
-        path.write_text("distance (mm), radius (mm), rounding (mm)\n" + "".join(lines), "ascii")
-        paths.append(path)
+        heading = "distance (mm), radius (mm), rounding (mm)"
+        paths.append(_written(folder / f"wall_{name}.csv", heading, one.corners(), ".12g"))
     return paths
+
+
+def _written(path: Path, heading: str, rows: Floats, form: str) -> Path:
+    """The path of a table that is written. rows : (n, m);  form : of its numbers"""
+    lines = [", ".join(f"{value:{form}}" for value in row) for row in rows]
+    path.write_text("\n".join([heading, *lines, ""]), encoding="ascii")
+    return path

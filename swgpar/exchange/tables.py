@@ -4,11 +4,13 @@ programs."""
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from swgpar.drive_results.drive_tables import DriveTables
 from swgpar.errors import InputError
 from swgpar.evaluation.stiffness import Loop, rows_by_position
 from swgpar.exchange.loaded_losses import LoadedLosses
@@ -19,10 +21,7 @@ from swgpar.results.table import as_rows, format_columns
 if TYPE_CHECKING:
     from swgpar.drive_results.drive_data import DriveData
 
-TABLES = (
-    *("history", "pairs", "contact_lines", "program"),
-    *("transmission_error", "losses", "fatigue_cycle", "balls"),
-)
+TABLES = ("history", *(one.name for one in fields(DriveTables) if one.name != "fatigue"))
 """Attributes of a `DriveData` that are tables."""
 
 ARCSEC = np.pi / 648000.0

@@ -7,7 +7,6 @@ with the shift 0 asks for nothing else.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
 
@@ -15,9 +14,7 @@ import numpy as np
 
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.petsc import PETSc
-
-Apply = Callable[[PETSc.Vec, PETSc.Vec], None]
-"""y from x: sets the second vector."""
+from swgpar.solve.factor_reuse import Operation, PythonContext
 
 TOLERANCE = 1e-8
 """Relative error of an eigenvalue at which the iteration ends."""
@@ -31,26 +28,6 @@ class Eigenmodes:
     shape: list[PETSc.Vec]
 
 
-@dataclass(frozen=True)
-class _Shell:
-    """A matrix that is a function."""
-
-    function: Apply
-
-    def mult(self, matrix: PETSc.Mat, x: PETSc.Vec, y: PETSc.Vec) -> None:
-        self.function(x, y)
-
-
-@dataclass(frozen=True)
-class _Inverse:
-    """A preconditioner that is a function: the exact inverse."""
-
-    function: Apply
-
-    def apply(self, pc: PETSc.PC, x: PETSc.Vec, y: PETSc.Vec) -> None:
-        self.function(x, y)
-
-
 def require_slepc() -> None:
     """Raise InputError where slepc4py cannot be imported."""
     if find_spec("slepc4py") is None:
@@ -61,7 +38,7 @@ def require_slepc() -> None:
 
 
 def lowest_modes(
-    template: PETSc.Vec, stiffness: Apply, inverse: Apply, mass: Apply, number: int
+    template: PETSc.Vec, stiffness: Operation, inverse: Operation, mass: Operation, number: int
 ) -> Eigenmodes:
     """The modes with the lowest frequencies; collective.
 
@@ -76,7 +53,7 @@ def lowest_modes(
     comm, sizes = template.comm, template.getSizes()
     matrices = []
     for function in (stiffness, mass):
-        matrix = PETSc.Mat().createPython((sizes, sizes), _Shell(function), comm=comm)
+        matrix = PETSc.Mat().createPython((sizes, sizes), PythonContext(function), comm=comm)
         matrix.setUp()
         matrices.append(matrix)
     eps = SLEPc.EPS().create(comm)
@@ -92,7 +69,7 @@ def lowest_modes(
     ksp = transform.getKSP()
     ksp.setType("preonly")
     ksp.getPC().setType("python")
-    ksp.getPC().setPythonContext(_Inverse(inverse))
+    ksp.getPC().setPythonContext(PythonContext(inverse))
     eps.solve()
     found = min(number, eps.getConverged())
     squares = np.array([eps.getEigenvalue(k).real for k in range(found)])

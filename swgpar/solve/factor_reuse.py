@@ -45,7 +45,7 @@ class ReusedFactor:
         self.surplus = 0
         self.last = 0
         operator = PETSc.Mat().createPython(
-            [like.getSizes()] * 2, _Context(multiply), comm=like.comm
+            [like.getSizes()] * 2, PythonContext(multiply), comm=like.comm
         )
         operator.setUp()
         self.ksp = PETSc.KSP().create(comm=like.comm)
@@ -56,7 +56,7 @@ class ReusedFactor:
         self.ksp.setGMRESRestart(MAX_ITERATIONS)
         pc = self.ksp.getPC()
         pc.setType(PETSc.PC.Type.PYTHON)
-        pc.setPythonContext(_Context(solve))
+        pc.setPythonContext(PythonContext(solve))
         with accepted_options(self.ksp.comm.tompi4py()):
             self.ksp.setFromOptions()
 
@@ -97,7 +97,7 @@ class ReusedFactor:
         return self.ksp.getConvergedReason() > 0
 
 
-class _Context:
+class PythonContext:
     """What a PETSc `Mat` or `PC` of type python computes."""
 
     def __init__(self, compute: Operation) -> None:

@@ -346,11 +346,20 @@ def test_tables_as_parquet(folder: Path, tmp_path: Path) -> None:
     parquet = pytest.importorskip("pyarrow.parquet")
     result = swgpar.open_result(folder)
     paths = swgpar.export(result, tmp_path, ["parquet"])
-    assert {"history", "pairs"} <= {path.stem for path in paths}
+    files = {path.stem for path in folder.glob("*.csv")}
+    assert {"history", "pairs"} <= files == {path.stem for path in paths}
     table = parquet.read_table(tmp_path / "history.parquet")
     assert table.column("fs_s1").to_numpy() == pytest.approx(
         result.history["fs_s1"], rel=0.0, abs=0.0
     )
+
+
+def test_loads_of_bolts_as_parquet(folder: Path, tmp_path: Path) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+    result = swgpar.open_result(folder)
+    result.bolts = {"shear_N": np.array([1.0, 2.5])}
+    swgpar.export(result, tmp_path, ["parquet"])
+    assert parquet.read_table(tmp_path / "bolts.parquet")["shear_N"].to_pylist() == [1.0, 2.5]
 
 
 def test_the_ripple_of_a_result(tmp_path: Path) -> None:
