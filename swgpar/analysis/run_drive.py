@@ -223,10 +223,12 @@ class DriveRun:
             self.recorder.record.coarse_wall = wall
         found = None
         if model.design.resolves_root_stress:
+            model.take_over_windows(self.model)
             try:
                 found = coarser_mesh(model, recipe, loaded, coarsest=not self.coarser)
             except (ConvergenceError, InputError) as error:
                 logger.info("the error by the mesh of the drive is not known: %s", error)
+            self.model.take_over_windows(model)
         if not self.coarser and ratio is not None:
             period = coarse_period(model, recipe, self.stepper, self.recipe)
             self.recorder.record.coarse_period = period

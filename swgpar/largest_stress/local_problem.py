@@ -206,7 +206,7 @@ class LocalProblem:
         model = self.model
         coarse = model.partition.layouts[self.gear]
         field = read_field(model.partition, self.gear, teeth - coarse.first_tooth, model.problem.x)
-        return self._interpolated(field, self._shared.from_drive)
+        return self._interpolated(field, self._shared.from_drive(coarse.mesh))
 
     def _interpolated(self, field: np.ndarray, matrix: csr_matrix) -> np.ndarray:
         """Displacement (n_teeth, n_node, 3) mm at the nodes of this window from that on another

@@ -96,6 +96,11 @@ class DriveModel:
             if recipe != kept:
                 shared.release()
 
+    def take_over_windows(self, other: DriveModel) -> None:
+        """Take over what windows of a model of the same drive on another mesh share."""
+        self.window_meshes |= other.window_meshes
+        other.window_meshes.clear()
+
     @property
     def copies(self) -> int:
         """How many times the model makes the whole drive: 2 where it is half of it, 3 where it is a

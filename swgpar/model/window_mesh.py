@@ -26,12 +26,14 @@ from swgpar.solve.tangent_matrix import TangentMatrix
 class WindowMesh:
     """One window at a time is on it.
 
+    It does not depend on the drive's mesh: windows of a drive on a finer one take it over.
+
     geometry : of the drive
     body : layout of the gear in the drive;  mesh : its sector in windows
     count : sectors of a window;  comm : communicator
 
     Attributes:
-    from_drive : interpolation from the drive's mesh;  partition, elements : of the present window
+    partition, elements : of the present window
     blocks : room of its tangent, with the factor
     factor_angle : rad, of the first sector of the window whose tangent is factorised; None for none
     regions : (n_node,) regions of the nodes where no contact presses
@@ -46,7 +48,6 @@ class WindowMesh:
         comm: MPI.Comm,
     ) -> None:
         self.gear, self.mesh = body.name, mesh
-        self.from_drive = interpolation(body.mesh, mesh)
         chain = BodyLayout(
             body=replace(body.body, mesh=mesh),
             first_tooth=0,
@@ -60,7 +61,7 @@ class WindowMesh:
         self.blocks = TangentMatrix(self.elements)
         self.factor_angle: float | None = None
         self.regions = regions_of(geometry, mesh, range(len(mesh.coords)), False)
-        self._from_coarser: tuple[SectorMesh, csr_matrix] | None = None
+        self._interpolations: dict[str, tuple[SectorMesh, csr_matrix]] = {}
 
     @property
     def angle(self) -> float:
@@ -75,11 +76,19 @@ class WindowMesh:
         self.elements.bodies[self.gear].rotate(layout)
         return layout
 
+    def from_drive(self, mesh: SectorMesh) -> csr_matrix:
+        """Interpolation from the mesh of the drive."""
+        return self._interpolation("drive", mesh)
+
     def from_window(self, coarser: SectorMesh) -> csr_matrix:
         """Interpolation from the mesh of a coarser window."""
-        if self._from_coarser is None or self._from_coarser[0] is not coarser:
-            self._from_coarser = coarser, interpolation(coarser, self.mesh)
-        return self._from_coarser[1]
+        return self._interpolation("window", coarser)
+
+    def _interpolation(self, kind: str, mesh: SectorMesh) -> csr_matrix:
+        """Interpolation from the last mesh of a kind is kept."""
+        if kind not in self._interpolations or self._interpolations[kind][0] is not mesh:
+            self._interpolations[kind] = mesh, interpolation(mesh, self.mesh)
+        return self._interpolations[kind][1]
 
     def release(self) -> None:
         """Release tangent and factor; collective. The next window makes them anew."""
