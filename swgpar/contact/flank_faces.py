@@ -10,6 +10,7 @@ from numpy.polynomial.chebyshev import chebvander
 from swgpar.geometry.micro_geometry import crowning
 from swgpar.geometry.rotation import MIRROR
 from swgpar.meshing.sector import FlankGrid, SectorMesh
+from swgpar.meshing.sweep import grid_quads
 
 SAMPLES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(5) + 0.5) / 5)
 """Positions per direction, in [0, 1], at which the exact surface is sampled; it is interpolated by
@@ -47,7 +48,7 @@ def flank_faces(
 
     stretch : factor of the growth of the gear, by which the heights over the facets grow
     """
-    corners = face_corners(grid.nodes)
+    corners = grid_quads(grid.nodes)
     ds, dz = np.diff(grid.s), np.diff(grid.z)
     size = np.stack(np.meshgrid(ds, dz, indexing="ij"), axis=-1).reshape(-1, 2)
     a, b = (v.ravel() for v in np.meshgrid(SAMPLES, SAMPLES, indexing="ij"))
@@ -72,12 +73,6 @@ def face_samples(grid: FlankGrid) -> tuple[np.ndarray, np.ndarray]:
     z = grid.z[:-1, None] + np.diff(grid.z)[:, None] * SAMPLES
     s, z = np.broadcast_to(s[:, None, :, None], shape), np.broadcast_to(z[None, :, None, :], shape)
     return s.reshape(-1, n, n), z.reshape(-1, n, n)
-
-
-def face_corners(n: np.ndarray) -> np.ndarray:
-    """Corners (n_face, 4) of the faces of a grid of nodes (n_s + 1, n_z + 1), as in
-    `FlankFaces`."""
-    return np.stack([n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:]], axis=-1).reshape(-1, 4)
 
 
 def bilinear(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -27,6 +27,7 @@ import numpy as np
 
 from swgpar.kernel import add_line_compliances, reference_elements
 from swgpar.meshing.sector import FlankGrid, SectorMesh
+from swgpar.meshing.sweep import grid_quads
 
 PATCH = 3
 """Facets of a patch on each side of the loaded node, and elements in depth."""
@@ -125,8 +126,7 @@ class MissingCompliance:
         x[:, 1:] = column
         x[:, 1:, 0] += x[:, :1, 0]
         number = np.arange(x.shape[0] * x.shape[1]).reshape(x.shape[:2])
-        corners = (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
-        quads = np.stack(corners, axis=-1).reshape(-1, 4)
+        quads = grid_quads(number)
         points = np.column_stack([x.reshape(-1, 2), np.zeros(number.size)])
         stiffness = reference_elements(points[quads], elasticity, 1.0, self._incompatible).stiffness
         dofs = (2 * quads[:, :, None] + np.arange(2)).reshape(len(quads), 8)

@@ -169,12 +169,7 @@ def _bend(model: JobModel, supports: JobSupports) -> Iterator[str]:
     """Step 1."""
     dependent = {terms[0][0] for terms in supports.equations}
     nodes = np.array([k for k in model.inner_nodes() if k not in dependent])
-    u = BentSpline(model.design).displacement(model.points[nodes])
-    bent = [
-        f"{node}, {axis}, {axis}, {value:.12e}"
-        for node, values in zip(nodes + 1, u[:, : 2 if model.plane else 3], strict=True)
-        for axis, value in enumerate(values, start=1)
-    ]
+    bent = model.displaced(nodes, BentSpline(model.design).displacement(model.points[nodes]))
     growth = supports.flange.forces() if supports.flange else ()
     lines = [*temperatures(model), *growth, "*BOUNDARY", *supports.frame]
     if supports.bearing or not supports.ring_fixed:  # the inner surface holds the spline

@@ -47,9 +47,4 @@ def grown_frame(model: JobModel) -> list[str]:
     if not growth:
         return []
     nodes = model.surface(model.ring, "outer").nodes
-    u = growth.of(model.points[nodes])
-    return [
-        f"{node}, {axis}, {axis}, {value:.12e}"
-        for node, values in zip(nodes + 1, u[:, : 2 if model.plane else 3], strict=True)
-        for axis, value in enumerate(values, start=1)
-    ]
+    return model.displaced(nodes, growth.of(model.points[nodes]))

@@ -22,6 +22,7 @@ from swgpar.geometry.rotation import rotated
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
 from swgpar.meshing.export import sector_numbers, whole_body, whole_drive
 from swgpar.meshing.inp import element_faces
+from swgpar.meshing.sweep import grid_quads
 from swgpar.profiles import ToothProfile
 from swgpar.profiles.flank import Segment
 from swgpar.profiles.rigid_teeth import RigidTeeth
@@ -78,7 +79,9 @@ class JobModel:
         is one."""
         surfaces, first = {}, 0
         for mesh in self.meshes.values():
-            quads = {f"{mesh.body}_{SIDES[grid.side]}": _quads(grid.nodes) for grid in mesh.flanks}
+            quads = {
+                f"{mesh.body}_{SIDES[grid.side]}": grid_quads(grid.nodes) for grid in mesh.flanks
+            }
             if mesh is self.spline:
                 quads[f"{mesh.body}_inner"] = mesh.faces["inner"]
             for name, corners in quads.items():
@@ -88,6 +91,14 @@ class JobModel:
                 surfaces[name] = copies.reshape(-1, 2)
             first += len(mesh.elements) * mesh.n_sectors
         return surfaces
+
+    def displaced(self, nodes: Ints, u: Floats) -> list[str]:
+        """Lines of a boundary with displacements (n, 3) mm of nodes (n,), from 0."""
+        return [
+            f"{node}, {axis}, {axis}, {value:.12e}"
+            for node, values in zip(nodes + 1, u[:, : 2 if self.plane else 3], strict=True)
+            for axis, value in enumerate(values, start=1)
+        ]
 
     def surface(self, mesh: SectorMesh, name: str) -> CoupledSurface:
         """The nodes of a node set of a body."""
@@ -239,11 +250,6 @@ class JobModel:
             used = np.flatnonzero(np.abs(row) > 1e-12 * np.abs(row).max())
             columns = [first_column, *np.setdiff1d(used, dependent)]
             yield [(*freedoms[c], float(row[c])) for c in columns]
-
-
-def _quads(grid: Ints) -> Ints:
-    corners = np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], axis=-1)
-    return corners.reshape(-1, 4)
 
 
 def _polygon(mesh: SectorMesh) -> ToothProfile:
