@@ -23,7 +23,7 @@ from swgpar.flank_pressure.pair_contact import (
     pair_contacts,
     touches_edges,
 )
-from swgpar.largest_stress.places import OF_REGION
+from swgpar.largest_stress.places import OF_REGION, Place
 from swgpar.largest_stress.region_stress import RegionStress
 from swgpar.largest_stress.root_stress import ENDS, RootStress, resolve_root_stress
 from swgpar.load.load_states import LoadState
@@ -95,12 +95,13 @@ class MeshComparison:
     """A mesh of the drive and the coarser ones with which it is compared.
 
     coarser : the coarsest first;  contacts : of all touching pairs on the mesh
-    before : see `drive_error`
+    ring_teeth : modelled teeth of the ring gear;  before : see `drive_error`
     """
 
     recipe: MeshRecipe
     coarser: Sequence[CoarserMesh]
     contacts: Sequence[PairContact]
+    ring_teeth: int
     before: RootStress | None = None
 
     def with_errors(self, found: RootStress) -> RootStress:
@@ -108,7 +109,9 @@ class MeshComparison:
         may find the largest stress in another part of the teeth, of another error."""
         least = least_error(self.recipe.model, self.contacts, found.part)
         error = drive_error(self.coarser, self.recipe, found, least, self.before)
-        regions = region_errors(self.coarser, self.recipe, found, least, self.contacts)
+        regions = region_errors(
+            self.coarser, self.recipe, found, least, self.contacts, self.ring_teeth
+        )
         return replace(found, drive_error=error, regions=regions)
 
 
@@ -189,14 +192,15 @@ def region_errors(
     fine: RootStress,
     least: float,
     contacts: Sequence[PairContact],
+    ring_teeth: int,
 ) -> dict[str, RegionStress]:
     """The stresses of the regions with their errors by the mesh of the drive, where the coarser
     meshes show them. Tips have none where a contact lies on an edge: the stress has no limit there.
 
-    contacts : of all touching pairs;  others : see `drive_error`
+    contacts : of all touching pairs;  ring_teeth : modelled teeth of the ring gear
+    others : see `drive_error`
     """
     found, model, on_edge = {}, recipe.model, touches_edges(contacts)
-    force_error = _force_error(coarser, recipe, contacts)
     for name, stress in fine.regions.items():
         kind, _, region = name.partition(OF_REGION)
         if on_edge and region == TIP:
@@ -206,20 +210,25 @@ def region_errors(
         if stress.place.body != FLEXIBLE_SPLINE:
             if model == "cup" or region != TOOTH_ROOT or on_edge:
                 share = LEAST_IN_RING[model]
-            share = max(share, force_error)
+            share = max(share, _force_error(coarser, recipe, contacts, stress.place, ring_teeth))
         floor = share * _largest_apart(fine.regions, kind)
         meshes = [(one.recipe, one.regions.get(name)) for one in coarser]
-        error = _region_error(meshes, recipe, stress, floor)
+        of_forces = stress.place.body != FLEXIBLE_SPLINE
+        error = _region_error(meshes, recipe, stress, floor, of_forces)
         found[name] = replace(stress, drive_error=error)
     return found
 
 
 def _force_error(
-    coarser: Sequence[CoarserMesh], recipe: MeshRecipe, contacts: Sequence[PairContact]
+    coarser: Sequence[CoarserMesh],
+    recipe: MeshRecipe,
+    contacts: Sequence[PairContact],
+    place: Place,
+    ring_teeth: int,
 ) -> float:
-    """Largest error of the force of a pair, as a share of it. Of many pairs that share the load the
-    outermost ones change most, and beside them, between a pressed and a free tooth, the tension is
-    largest. Forces below `SLIGHT` of the largest one do not count."""
+    """Largest error of the force of a pair, as a share of it, at a place of the ring gear: of the
+    pairs on its tooth and on those beside it. Forces below `SLIGHT` of the largest one of all pairs
+    do not count."""
     forces = [(one.recipe, {pair.key: pair.force_N for pair in one.contacts}) for one in coarser]
     forces.append((recipe, {pair.key: pair.force_N for pair in contacts}))
     slight = SLIGHT * max((pair.force_N for pair in contacts), default=0.0)
@@ -228,6 +237,8 @@ def _force_error(
         / pair.force_N
         for pair in contacts
         if pair.force_N > slight
+        and pair.ring in ("", place.body)
+        and (pair.ring_tooth - place.tooth + 1) % ring_teeth <= 2
     ]
     return max(shares, default=0.0)
 
@@ -246,8 +257,10 @@ def _region_error(
     recipe: MeshRecipe,
     fine: RegionStress,
     least: float,
+    of_forces: bool,
 ) -> float | None:
-    """least : MPa"""
+    """least : MPa;  of_forces : whether meshes change it by the forces of the flanks alone: the
+    flexible spline's root and rim are no part of the ring gear"""
     if fine.nodal:  # its error is far larger
         return least
     known = [(one, stress) for one, stress in coarser if stress is not None]
@@ -258,7 +271,8 @@ def _region_error(
     meshes = [(one, stress.tops[shared]) for one, stress in known]
     if not all(value > 0.0 for _, value in meshes):
         return None
-    return max(shown_error(meshes) * fine.place.value / meshes[-1][1], least)
+    shown = shown_error(meshes, of_contact=of_forces)
+    return max(shown * fine.place.value / meshes[-1][1], least)
 
 
 def shown_error(meshes: Sequence[tuple[MeshRecipe, float]], *, of_contact: bool = False) -> float:

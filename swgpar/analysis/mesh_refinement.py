@@ -27,6 +27,7 @@ from swgpar.analysis.saved_state import StartStates
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.evaluation.contact_error_shares import ContactErrorShares
+from swgpar.fem.body import RING_GEAR
 from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress
 from swgpar.largest_stress.wall_stress import CoarseWall
@@ -128,7 +129,9 @@ class Refinement:
             meshes.append(coarser_mesh(self.model, between, self.loaded, coarsest=False))
         self._replace(recipe)
         found = resolve_root_stress(self.model, self.loaded, self.levels)
-        comparison = MeshComparison(recipe, meshes, pair_contacts(self.model, self.loaded), before)
+        contacts = pair_contacts(self.model, self.loaded)
+        ring_teeth = self.model.partition.layouts[RING_GEAR].count
+        comparison = MeshComparison(recipe, meshes, contacts, ring_teeth, before)
         found = comparison.with_errors(found)
         self._log(found)
         lobes = self.design.wave_generator.lobes

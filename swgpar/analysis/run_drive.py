@@ -40,6 +40,7 @@ from swgpar.evaluation.period import continued, require_samples
 from swgpar.evaluation.ratcheting import has_fallen
 from swgpar.evaluation.result_frame import history_rows
 from swgpar.evaluation.transmission_error import period_rows
+from swgpar.fem.body import RING_GEAR
 from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress, with_angle
 from swgpar.largest_stress.wall_stress import WallStress, resolve_wall
@@ -339,7 +340,8 @@ class DriveRun:
         bearing = loaded_bearing(self.model, state)
         if bearing is not None:
             record.bearing_errors = bearing_errors(known, self.recipe, bearing)
-        return MeshComparison(self.recipe, known, contacts).with_errors(found)
+        ring_teeth = self.model.partition.layouts[RING_GEAR].count
+        return MeshComparison(self.recipe, known, contacts, ring_teeth).with_errors(found)
 
     def _wall_stress(self, state: LoadState) -> WallStress | None:
         """Largest stresses of the wall behind the teeth; None where they cannot be computed."""

@@ -8,7 +8,7 @@ loaded in another way: nodal averages stand for it, with what they may lose.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import zip_longest
@@ -17,6 +17,7 @@ import numpy as np
 
 from swgpar.answers.answer import joined_error
 from swgpar.fem.body import FLEXIBLE_SPLINE, STRESS_PREFIXES
+from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.stress import principal
 from swgpar.largest_stress.convergence import error_of
 from swgpar.largest_stress.local_problem import MARGIN, WindowStress, sectors_of
@@ -47,6 +48,10 @@ them."""
 ALIKE = 1.5
 """Ratio of the stresses of two teeth up to which the windows of one stand for those of the
 other."""
+
+BESIDE_ROOT = 0.25
+"""Distance from the root over the module within which the stress of a flank is that of the end of
+the root: an element along the flank of the first window."""
 
 LEAST_STRESS = 1e-6
 """MPa: the least stress that another is divided by."""
@@ -177,17 +182,32 @@ class WindowReadings:
                 return RegionStress(tuple(levels), tops, 1.0, average, nodal=True)
             if beyond > spread:
                 spread, tooth = beyond, elsewhere
-        error = math.inf if unrefined else _window_error(levels, ratio)
+        error = math.inf if unrefined else self._window_error(model, layout, name, main, ratio)
         error = spread * error + (spread - 1.0) * abs(levels[-1] - read)
         value = place(tooth, spread * levels[-1], error)
         return RegionStress(tuple(levels), tops, spread, value)
 
+    def _window_error(
+        self, model: DriveModel, layout: BodyLayout, name: str, tooth: int, ratio: float
+    ) -> float:
+        """Error (MPa) of the last window around a tooth.
 
-def _window_error(levels: Sequence[float], ratio: float) -> float:
-    """Error (MPa) of the last level. Two are taken to be of first order, as slices are."""
-    if len(levels) == 2:
-        return abs(levels[1] - levels[0]) / (ratio - 1.0)
-    return error_of(levels, ratio)
+        The stress of a flank beside its root is that of the end of the root. Coarser windows have
+        no node between the root and the contact, so the root shows the error.
+        """
+        levels, (stress, _, region) = self.levels[tooth][name], name.partition(OF_REGION)
+        root = self.levels[tooth].get(f"{stress}{OF_REGION}{TOOTH_ROOT}")
+        reach = BESIDE_ROOT * model.geometry.module
+        if region == FLANK and root and _to_root(layout, self.last[tooth][name].position) < reach:
+            return levels[-1] * error_of(root, ratio) / max(root[-1], LEAST_STRESS)
+        return error_of(levels, ratio)
+
+
+def _to_root(layout: BodyLayout, position: np.ndarray) -> float:
+    """Distance (mm) of a position (3,) from the end of the root on the profile of its tooth."""
+    profile = layout.mesh.profile
+    x, y = profile.point(np.array([profile.root_start]))[0]
+    return float(np.hypot(abs(position[0]) - abs(x), position[1] - y))
 
 
 def _read_and_elsewhere(

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -28,10 +27,10 @@ from swgpar.answers.answer import (
     with_no_limit,
 )
 from swgpar.design.drive_design import DriveDesign
-from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.largest_stress.candidate_teeth import candidates, followed
 from swgpar.largest_stress.convergence import error_at_ends, error_of
-from swgpar.largest_stress.local_problem import LocalProblem, WindowState, WindowStress
+from swgpar.largest_stress.local_problem import WindowState, WindowStress
 from swgpar.largest_stress.places import OF_REGION, Place, root_nodes
 from swgpar.largest_stress.region_stress import (
     RegionStress,
@@ -41,11 +40,12 @@ from swgpar.largest_stress.region_stress import (
     nodal_averages,
     nodal_by_sector,
 )
+from swgpar.largest_stress.ring_stress import ring_stresses
+from swgpar.largest_stress.solved_window import solved_window
 from swgpar.largest_stress.window_recipes import (
     LEVELS,
     PERIOD_LEVEL,
     RATIO,
-    RING_LEVELS,
     window_recipe,
 )
 from swgpar.load.load_states import LoadState
@@ -273,31 +273,9 @@ def resolve_root_stress(
     known = _place(model, found[best], PARTS[best[1]], by_part, error, float(np.max(on_mesh)))
     regions = readings.stresses(model, FLEXIBLE_SPLINE, nodal, RATIO[kind])
     if ring:
-        regions |= _ring_stresses(model, state, count, skipped)
+        regions |= ring_stresses(model, state, count, skipped)
         _release(model)
     return replace(known, regions=regions, at_corner=readings.at_corner(model, known.s1))
-
-
-def _ring_stresses(
-    model: DriveModel, state: LoadState, levels: int, skipped: int
-) -> dict[str, RegionStress]:
-    """Largest stresses of the ring gear by windows; collective.
-
-    They are around the tooth with the largest tension in its root. In the plane they are also
-    around that with the largest von Mises stress there, which may have the larger tension: nodal
-    averages lose much beside a contact near the root.
-    """
-    kind, averages = model.geometry.model, nodal_averages(model, RING_GEAR)
-    nodal = nodal_by_sector(model, state, RING_GEAR, averages)
-    stresses = ("s1", "vm") if kind == "plane" else ("s1",)
-    teeth = {int(nodal[f"rg_{stress}{OF_REGION}{TOOTH_ROOT}"].argmax()) for stress in stresses}
-    readings, states = WindowReadings(skipped), dict[int, WindowState]()
-    for tooth in sorted(teeth):
-        for level in range(skipped, min(levels, RING_LEVELS[kind])):
-            recipe = window_recipe(kind, level)
-            with _solved(model, state, tooth, recipe, states, RING_GEAR) as window:
-                readings.add(tooth, window.by_region())
-    return readings.stresses(model, RING_GEAR, nodal, RATIO[kind])
 
 
 def _release(model: DriveModel) -> None:
@@ -346,32 +324,11 @@ def _solve(
     states = {} if states is None else states
     found: dict[tuple[int, bool], WindowStress] = {}
     for tooth in dict.fromkeys(tooth for tooth, _ in places):
-        with _solved(model, state, tooth, recipe, states) as window:
+        with solved_window(model, state, tooth, recipe, states) as window:
             found |= {place: window.largest(place[1]) for place in places if place[0] == tooth}
             if readings is not None:
                 readings.add(tooth, window.by_region(), window.largest_at_corners())
     return found
-
-
-@contextmanager
-def _solved(
-    model: DriveModel,
-    state: LoadState,
-    tooth: int,
-    recipe: MeshRecipe,
-    states: dict[int, WindowState],
-    gear: str = FLEXIBLE_SPLINE,
-) -> Iterator[LocalProblem]:
-    """The window around a modelled tooth in its equilibrium, which replaces that of the coarser one
-    in `states`; collective."""
-    first = model.partition.layouts[gear].first_tooth
-    window = LocalProblem(model, state, first + tooth, recipe, gear, states.get(tooth))
-    try:
-        window.solve()
-        states[tooth] = window.equilibrium()
-        yield window
-    finally:
-        window.destroy()
 
 
 def _place(

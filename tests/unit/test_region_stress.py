@@ -13,10 +13,16 @@ import pytest
 from swgpar.analysis.drive_mesh_error import LEAST_IN_RING, SAFETY, CoarserMesh, region_errors
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.flank_pressure.pair_contact import PairContact
-from swgpar.largest_stress.convergence import error_of
+from swgpar.largest_stress.convergence import ASSUMED_ORDER, error_of
 from swgpar.largest_stress.local_problem import WindowStress
 from swgpar.largest_stress.places import OF_REGION, Place
-from swgpar.largest_stress.region_stress import ALIKE, CLOSE_IN_ROOT, RegionStress, WindowReadings
+from swgpar.largest_stress.region_stress import (
+    ALIKE,
+    BESIDE_ROOT,
+    CLOSE_IN_ROOT,
+    RegionStress,
+    WindowReadings,
+)
 from swgpar.largest_stress.root_stress import BETWEEN, RootStress
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe_counts import coarsened
@@ -24,13 +30,24 @@ from swgpar.model.drive_model import DriveModel
 
 ROOT, FLANK = "fs_vm in tooth root", "fs_vm in flank"
 RATIO = 2.0
+END_OF_ROOT = np.array([-1.0, 20.0])
+
+
+class Profile:
+    """What the readings ask a profile for: the end of the root."""
+
+    root_start = 3.0
+
+    def point(self, s: np.ndarray) -> np.ndarray:
+        assert s == [self.root_start]
+        return END_OF_ROOT[None]
 
 
 class Layout:
     """What a place asks a layout for."""
 
     name = FLEXIBLE_SPLINE
-    mesh = SimpleNamespace(n_sectors=20, plane=False)
+    mesh = SimpleNamespace(n_sectors=20, plane=False, profile=Profile())
 
     def sector_angle(self, tooth: np.ndarray) -> np.ndarray:
         return np.pi / 10.0 * tooth
@@ -39,10 +56,9 @@ class Layout:
 class Model:
     """What the readings ask a model for."""
 
-    class Geometry:
-        model = "cup"
+    def __init__(self, model: str = "cup") -> None:
+        self.geometry = SimpleNamespace(model=model, module=0.5)
 
-    geometry = Geometry()
     partition = SimpleNamespace(layouts={FLEXIBLE_SPLINE: Layout()})
 
 
@@ -77,9 +93,9 @@ def test_the_stress_is_that_of_the_finest_window() -> None:
     assert one.place.error == pytest.approx(error_of(LEVELS, RATIO))
 
 
-def test_two_windows_are_taken_to_be_of_first_order() -> None:
+def test_two_windows_have_the_order_that_is_taken_where_none_is_seen() -> None:
     one = stress(readings({3: LEVELS[:2]}), nodal(t3=70.0))
-    assert one.place.error == pytest.approx((90.0 - 80.0) / (RATIO - 1.0))
+    assert one.place.error == pytest.approx((90.0 - 80.0) / (RATIO**ASSUMED_ORDER - 1.0))
 
 
 def test_a_window_that_was_not_followed_counts_in_proportion() -> None:
@@ -121,6 +137,27 @@ def test_flanks_of_cups_are_the_same_in_all_windows() -> None:
     assert one.place.value == 94.0 and one.place.error is None
 
 
+@pytest.mark.parametrize(
+    ("distance", "side", "beside"), [(0.9, 1.0, True), (0.9, -1.0, True), (1.1, 1.0, False)]
+)
+def test_a_flank_beside_its_root_has_the_errors_of_the_root(
+    distance: float, side: float, beside: bool
+) -> None:
+    """Coarser windows have no node between the root and the contact."""
+    flank, at_root = [1.0, 2.0, 40.0], [side * END_OF_ROOT[0], END_OF_ROOT[1], 0.3]
+    position = np.array(at_root) + [0.0, distance * BESIDE_ROOT * 0.5, 0.0]
+    found = WindowReadings(0)
+    for in_root, on_flank in zip(LEVELS, flank, strict=True):
+        places = {ROOT: (in_root, np.zeros(3)), FLANK: (on_flank, position)}
+        found.add(3, {name: WindowStress(v, 3, at, "", "", 1) for name, (v, at) in places.items()})
+    model = cast(DriveModel, Model("plane"))
+    one = found.stresses(model, FLEXIBLE_SPLINE, {}, RATIO)[FLANK]
+    share = error_of(LEVELS, RATIO) / LEVELS[-1]
+    expected = 40.0 * share if beside else error_of(flank, RATIO)
+    assert one.place.value == 40.0
+    assert one.place.error == pytest.approx(expected)
+
+
 def rooted(regions: dict[str, RegionStress]) -> RootStress:
     return RootStress(
         s1=100.0,
@@ -146,15 +183,15 @@ def test_the_error_by_the_drive_is_that_of_the_compared_window() -> None:
     fine = stress(readings({3: LEVELS}), nodal(t3=70.0))
     root = rooted({ROOT: fine})
     meshes = [CoarserMesh(coarse_recipe, root.by_part, regions={ROOT: coarse})]
-    found = region_errors(meshes, fine_recipe, root, 0.001, ())[ROOT]
+    found = region_errors(meshes, fine_recipe, root, 0.001, (), 20)[ROOT]
     assert found.drive_error is not None
     share = found.drive_error / 94.0
     # of second order, by the smallest ratio of counts: four elements along the root over three
     assert share == pytest.approx(SAFETY * (5.0 / 90.0) / ((4 / 3) ** 2 - 1.0))
-    assert region_errors(meshes, fine_recipe, root, 0.5, ())[ROOT].drive_error == 47.0
+    assert region_errors(meshes, fine_recipe, root, 0.5, (), 20)[ROOT].drive_error == 47.0
     unknown = [replace(meshes[0], regions={})]
-    assert region_errors(unknown, fine_recipe, root, 0.5, ())[ROOT].drive_error is None
-    assert region_errors([], fine_recipe, root, 0.5, ())[ROOT].resolved.error is None
+    assert region_errors(unknown, fine_recipe, root, 0.5, (), 20)[ROOT].drive_error is None
+    assert region_errors([], fine_recipe, root, 0.5, (), 20)[ROOT].resolved.error is None
 
 
 def region(name: str, value: float) -> RegionStress:
@@ -180,7 +217,7 @@ def test_small_stresses_are_as_uncertain_as_the_largest_one_of_their_body(
     regions |= {"fs_s1 in flank under contact": region("fs_s1 in flank under contact", 900.0)}
     fine = load_recipe(mesh)
     meshes = [CoarserMesh(coarsened(fine), {}, [pair(0)], regions)]
-    found = region_errors(meshes, fine, rooted(regions), 0.004, [pair(0)])
+    found = region_errors(meshes, fine, rooted(regions), 0.004, [pair(0)], 20)
     assert found["rg_s1 in rim"].drive_error == pytest.approx(LEAST_IN_RING[model] * 50.0)
     root = 0.004 if model == "plane" else LEAST_IN_RING[model]
     assert found["rg_s1 in tooth root"].drive_error == pytest.approx(root * 50.0)
@@ -192,18 +229,36 @@ def test_a_contact_on_an_edge_leaves_no_estimate_in_the_tips() -> None:
     regions = {name: region(name, 50.0) for name in names}
     fine = load_recipe("plane_coarse")
     meshes = [CoarserMesh(coarsened(fine), {}, regions=regions)]
-    found = region_errors(meshes, fine, rooted(regions), 0.02, [pair(0), pair(1)])
+    found = region_errors(meshes, fine, rooted(regions), 0.02, [pair(0), pair(1)], 20)
     without = {name for name, one in found.items() if one.resolved.error is None}
     assert without == {"rg_vm in tip", "fs_vm in tip"}
 
 
-def test_the_ring_gear_is_as_uncertain_as_the_forces_of_its_pairs() -> None:
-    regions = {"rg_s1 in tooth root": region("rg_s1 in tooth root", 50.0)}
+@pytest.mark.parametrize(("tooth", "change"), [(0, 0.2), (19, 0.1), (3, 0.4), (10, 0.0)])
+def test_the_ring_gear_is_as_uncertain_as_the_forces_beside_the_stress(
+    tooth: int, change: float
+) -> None:
+    """Those on the tooth and on the teeth beside it, of 20 in a closed chain."""
+    name = "rg_s1 in tooth root"
+    known = region(name, 50.0)
+    regions = {name: replace(known, place=replace(known.place, tooth=tooth))}
     fine = load_recipe("plane_fine")
     coarse = coarsened(fine)
     # the third pair carries too little
-    before = [pair(0, 9.0), pair(0, 4.0, 1), pair(0, 0.1, 2)]
+    before = [pair(0, 9.0), pair(0, 4.0, 1), pair(0, 0.1, 18), pair(0, 7.0, 4)]
     meshes = [CoarserMesh(coarse, {}, before, regions)]
-    after = [pair(0, 10.0), pair(0, 5.0, 1), pair(0, 0.9, 2)]
-    found = region_errors(meshes, fine, rooted(regions), 0.004, after)["rg_s1 in tooth root"]
-    assert found.drive_error == pytest.approx(50.0 * SAFETY * 0.2 / (1.5**2 - 1.0))
+    after = [pair(0, 10.0), pair(0, 5.0, 1), pair(0, 0.9, 18), pair(0, 5.0, 4)]
+    found = region_errors(meshes, fine, rooted(regions), 0.004, after, 20)[name]
+    expected = max(SAFETY * change / (1.5**2 - 1.0), 0.004)
+    assert found.drive_error == pytest.approx(50.0 * expected)
+
+
+def test_stresses_of_the_ring_gear_follow_the_counts_of_the_contact() -> None:
+    """Root and rim of the flexible spline, of which four elements become three, are no part of
+    it."""
+    name = "rg_s1 in tooth root"
+    fine = load_recipe("forces")
+    meshes = [CoarserMesh(coarsened(fine), {}, [pair(0)], {name: region(name, 20.0)})]
+    regions = {name: region(name, 50.0)}
+    found = region_errors(meshes, fine, rooted(regions), 0.004, [pair(0)], 20)[name]
+    assert found.drive_error == pytest.approx(SAFETY * 30.0 / (1.5**2 - 1.0))
