@@ -221,7 +221,9 @@ def find_places(
         ring = name == RING_GEAR
         touched = np.ones(fields[name]["s3"].shape, dtype=bool) if ring else pressed
         # every sector of the ring gear is alike: one stands for all
-        near = near_contact(body.layout.mesh, touched[:1] if ring else touched, distance)
+        near = near_contact(
+            body.layout.mesh, working_flanks(body.layout.mesh)[None] if ring else pressed, distance
+        )
         near |= inside_teeth(geometry, body.layout.mesh)
         apart = np.broadcast_to(~near, touched.shape)
         regions = model.regions[name]
@@ -303,21 +305,25 @@ def pressed_nodes(model: DriveModel, state: LoadState) -> np.ndarray:
     return pressure > TOUCHED * top if top > 0.0 else np.zeros(pressure.shape, dtype=bool)
 
 
-def near_contact(mesh: SectorMesh, touched: np.ndarray, distance: float) -> np.ndarray:
-    """Nodes (n_sectors, n_node) within a distance (mm) of touched ones on the working parts of the
-    flanks."""
+def working_flanks(mesh: SectorMesh) -> np.ndarray:
+    """Nodes (n_node,) bool on the working parts of the flanks of a sector: not on its roots."""
     working = np.zeros(len(mesh.coords), dtype=bool)
     for grid in mesh.flanks:
         working[grid.nodes[grid.s < mesh.profile.root_start]] = True
+    return working
+
+
+def near_contact(mesh: SectorMesh, touched: np.ndarray, distance: float) -> np.ndarray:
+    """Nodes (n_sectors, n_node) within a distance (mm) of touched ones on flanks and roots: a tip
+    may reach the root of the other gear."""
+    flanks = np.zeros(len(mesh.coords), dtype=bool)
+    for grid in mesh.flanks:
+        flanks[grid.nodes] = True
     tree, near = cKDTree(mesh.coords), np.zeros(touched.shape, dtype=bool)
-    for sector in np.flatnonzero((touched & working).any(axis=1)):
-        nodes = np.flatnonzero(touched[sector] & working)
-        near[
-            sector,
-            np.unique(
-                np.concatenate(tree.query_ball_point(mesh.coords[nodes], distance)).astype(int)
-            ),
-        ] = True
+    for sector in np.flatnonzero((touched & flanks).any(axis=1)):
+        nodes = np.flatnonzero(touched[sector] & flanks)
+        within = tree.query_ball_point(mesh.coords[nodes], distance)
+        near[sector, np.unique(np.concatenate(within).astype(int))] = True
     return near
 
 

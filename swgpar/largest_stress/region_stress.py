@@ -27,6 +27,7 @@ from swgpar.largest_stress.places import (
     Place,
     near_contact,
     pressed_nodes,
+    working_flanks,
 )
 from swgpar.largest_stress.window_regions import tooth_nodes
 from swgpar.load.load_states import LoadState
@@ -246,8 +247,8 @@ def nodal_by_sector(
     if gear == FLEXIBLE_SPLINE:
         near = near_contact(mesh, pressed_nodes(model, state), distance)
     else:
-        touched = np.ones((1, len(mesh.coords)), dtype=bool)
-        near = np.broadcast_to(near_contact(mesh, touched, distance), s1.shape)
+        near = near_contact(mesh, working_flanks(mesh)[None], distance)
+        near = np.broadcast_to(near, s1.shape)
     found = {}
     prefix = STRESS_PREFIXES[gear][0]
     for region in np.unique(regions):

@@ -11,7 +11,14 @@ from support.small_drive import PLANE
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.rotation import GEAR_STRESSES
 from swgpar.largest_stress.local_problem import window_sector
-from swgpar.largest_stress.places import APART, OFF_CORNERS, inside_teeth, root_nodes
+from swgpar.largest_stress.places import (
+    APART,
+    OFF_CORNERS,
+    inside_teeth,
+    near_contact,
+    root_nodes,
+    working_flanks,
+)
 from swgpar.largest_stress.window_recipes import window_recipe
 from swgpar.largest_stress.window_regions import tooth_nodes
 from swgpar.meshing import SectorMesh, load_recipe
@@ -167,3 +174,20 @@ def test_roots_on_elements_of_the_wall_are_at_the_corner() -> None:
         assert set(found[on_flanks]) <= {"notch"}
         front = np.isin(found, WITHOUT_LIMIT) & (z < -0.5 * back)
         assert set(found[front]) <= {CAM_EDGE}
+
+
+def test_a_contact_on_the_root_is_a_contact_too(cup: tuple[DriveDesign, SectorMesh]) -> None:
+    """A tip may reach the root of the other gear. Nodes on other surfaces are left
+    out."""
+    design, mesh = cup
+    distance, grid = design.geometry.module, mesh.flanks[0]
+    on_root = grid.nodes[grid.s > mesh.profile.root_start][0, 0]
+    inside = int(mesh.node_sets["bore"][0])
+    touched = np.zeros((3, len(mesh.coords)), dtype=bool)
+    touched[0, on_root] = touched[1, inside] = True
+    near = near_contact(mesh, touched, distance)
+    within = np.linalg.norm(mesh.coords - mesh.coords[on_root], axis=1) <= distance
+    assert within.sum() > 1
+    np.testing.assert_array_equal(near[0], within)
+    assert not near[1:].any()
+    assert not working_flanks(mesh)[on_root]
