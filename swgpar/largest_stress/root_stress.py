@@ -40,7 +40,7 @@ from swgpar.largest_stress.region_stress import (
     nodal_averages,
     nodal_by_sector,
 )
-from swgpar.largest_stress.ring_stress import ring_stresses
+from swgpar.largest_stress.ring_gear_stress import ring_gear_stresses
 from swgpar.largest_stress.solved_window import solved_window
 from swgpar.largest_stress.window_recipes import (
     LEVELS,
@@ -273,7 +273,7 @@ def resolve_root_stress(
     known = _place(model, found[best], PARTS[best[1]], by_part, error, float(np.max(on_mesh)))
     regions = readings.stresses(model, FLEXIBLE_SPLINE, nodal, RATIO[kind])
     if ring:
-        regions |= ring_stresses(model, state, count, skipped)
+        regions |= ring_gear_stresses(model, state, count, skipped)
         _release(model)
     return replace(known, regions=regions, at_corner=readings.at_corner(model, known.s1))
 

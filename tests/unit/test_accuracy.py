@@ -230,7 +230,7 @@ def test_another_part_has_another_error() -> None:
         CoarserMesh(one, {BETWEEN: [math.nan, 280.0], ENDS: [math.nan, 250.0]})
         for one in coarser_recipes(recipe)
     ]
-    comparison = MeshComparison(recipe, coarser, [])
+    comparison = MeshComparison(recipe, coarser, [], 20)
     at_ends = comparison.with_errors(windows([270.0, 290.0], ENDS))
     assert at_ends.drive_error == pytest.approx(40.0 * shown)
     between = comparison.with_errors(windows([270.0, 285.0, 290.0]))

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from swgpar.fem.body import RING_GEAR
-from swgpar.largest_stress import ring_stress
+from swgpar.largest_stress import ring_gear_stress
 from swgpar.largest_stress.local_problem import WindowStress
 from swgpar.largest_stress.window_recipes import RING_LEVELS, window_recipe
 from swgpar.load.load_states import LoadState
@@ -46,9 +46,9 @@ def windows(monkeypatch: pytest.MonkeyPatch, largest: dict[int, float]) -> list[
 
     nodal = np.full(TEETH, 5.0)
     nodal[[0, TEETH - 1]] = 9.0
-    monkeypatch.setattr(ring_stress, "solved_window", solved_window)
-    monkeypatch.setattr(ring_stress, "nodal_averages", lambda *_: None)
-    monkeypatch.setattr(ring_stress, "nodal_by_sector", lambda *_: dict.fromkeys(NAMES, nodal))
+    monkeypatch.setattr(ring_gear_stress, "solved_window", solved_window)
+    monkeypatch.setattr(ring_gear_stress, "nodal_averages", lambda *_: None)
+    monkeypatch.setattr(ring_gear_stress, "nodal_by_sector", lambda *_: dict.fromkeys(NAMES, nodal))
     return solved
 
 
@@ -66,13 +66,13 @@ def test_the_tooth_on_the_other_side_of_the_root_may_have_the_larger_stress(
 ) -> None:
     """The root has the same nodal average in both teeth."""
     solved = windows(monkeypatch, {0: 12.0, TEETH - 1: 16.0})
-    found = ring_stress.ring_stresses(model(), cast(LoadState, None), 3, 0)[NAME]
+    found = ring_gear_stress.ring_gear_stresses(model(), cast(LoadState, None), 3, 0)[NAME]
     assert solved == [(0, 0), (1, 0), (11, 0), (11, 1), (11, 2)]
     assert found.place.tooth == TEETH - 1 and found.levels == (16.0, 17.0, 18.0)
 
 
 def test_windows_that_are_left_out_still_tell_the_tooth(monkeypatch: pytest.MonkeyPatch) -> None:
     solved = windows(monkeypatch, {0: 12.0, TEETH - 1: 16.0})
-    found = ring_stress.ring_stresses(model(), cast(LoadState, None), 2, 1)[NAME]
+    found = ring_gear_stress.ring_gear_stresses(model(), cast(LoadState, None), 2, 1)[NAME]
     assert solved == [(0, 0), (1, 0), (11, 0), (11, 1)]
     assert np.isnan(found.levels[0]) and found.levels[1:] == (17.0,)

@@ -21,7 +21,7 @@ from swgpar.model.drive_model import DriveModel
 from swgpar.model.regions import TOOTH_ROOT
 
 
-def ring_stresses(
+def ring_gear_stresses(
     model: DriveModel, state: LoadState, levels: int, skipped: int
 ) -> dict[str, RegionStress]:
     """Largest stresses of the ring gear by windows; collective.
