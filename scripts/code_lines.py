@@ -15,7 +15,7 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
-SOURCES = (".py", ".pyx", ".pxd", ".hpp", ".cpp", ".c", ".js", ".css", ".j2")
+SOURCES = (".py", ".pyx", ".pxd", ".pxi", ".hpp", ".cpp", ".c", ".js", ".css", ".j2")
 
 
 def tracked_sources(tree: Path, package: str) -> list[Path]:
