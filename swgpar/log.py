@@ -12,7 +12,7 @@ import sys
 import time
 from collections import defaultdict
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from mpi4py import MPI
@@ -62,14 +62,18 @@ console = Console(
 )
 
 
-class _RunLog(logging.FileHandler):
-    """Appends to run.log; where that fails the run goes on, without a traceback."""
+class _Ending(logging.Handler):
+    """Where it cannot write the run goes on, without a traceback."""
 
     def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802 (name given by logging)
         self.setLevel(logging.CRITICAL + 1)
 
 
-class _Plain(logging.StreamHandler):
+class _RunLog(_Ending, logging.FileHandler):
+    """Appends to run.log."""
+
+
+class _Plain(_Ending, logging.StreamHandler):
     """Writes to a file or pipe in the place of a terminal."""
 
     def emit(self, record: logging.LogRecord) -> None:
@@ -145,7 +149,8 @@ def close_file() -> None:
     """Close the log file of this process, if there is one."""
     for handler in [h for h in logger.handlers if isinstance(h, _RunLog)]:
         logger.removeHandler(handler)
-        handler.close()
+        with suppress(OSError):  # a full disk, of which the other files tell
+            handler.close()
 
 
 class IncrementProgress:

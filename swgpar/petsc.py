@@ -45,6 +45,17 @@ ABOUT_OPTIONS = (56, 62, 63, 65, 83, 86, 92)
 out of range, a file that cannot be opened, a user's error, an unknown type, no such package for a
 factor."""
 
+DECIDED = {
+    "snes_max_it": "solver.max_iterations in the design file",
+    "snes_rtol": "solver.rtol in the design file",
+    **dict.fromkeys(
+        ("snes_atol", "snes_stol", "snes_convergence_test", "snes_max_funcs"),
+        "solver.rtol and solver.max_iterations in the design file",
+    ),
+}
+"""Options without an effect, as the nonlinear solver has a convergence test of this program: what
+there is in their place."""
+
 NO_MEMORY = 55
 """Error code of PETSc for an allocation that failed."""
 
@@ -85,16 +96,28 @@ def start(arguments: Sequence[str] = ()) -> None:
     try:
         with hidden_variables(), _without_messages() as messages:
             petsc4py.init(["swgpar", *_without_files(words), NO_FILES])
+            from petsc4py import PETSc
     except RuntimeError:  # PETSc.Error is one
         raise InputError(f"options of PETSc: {messages[0]}") from None
-    from petsc4py import PETSc
+    except (ImportError, AttributeError) as error:
+        raise SwgparError(
+            f"petsc4py cannot be loaded with NumPy {np.__version__}: {str(error).splitlines()[0]}; "
+            "one that was built for NumPy 1, as Debian's, needs numpy<2"
+        ) from None
 
     with accepted_options(MPI.COMM_WORLD):
         if any(_is_one_of(word, FILES) for word in words):
             PETSc.Options().insertString(
                 " ".join(f"'{word}'" if '"' in word else f'"{word}"' for word in words)
             )
-    _given.update(PETSc.Options().getAll())
+    given = PETSc.Options().getAll()
+    for name, instead in DECIDED.items():
+        if name in given:
+            raise InputError(
+                f"options of PETSc: -{name} is not available, as the program decides when Newton's "
+                f"method ends: allowed {instead}"
+            )
+    _given.update(given)
     # ranks that import it later, and not all together, do not start it again
     globals()["PETSc"] = PETSc
 
@@ -196,8 +219,12 @@ def _without_messages() -> Iterator[list[str]]:
     terminal = os.dup(2)
     with tempfile.TemporaryFile() as file:
         os.dup2(file.fileno(), 2)
+        loads = True
         try:
             yield messages
+        except (ImportError, AttributeError):
+            loads = False  # NumPy writes a page about it
+            raise
         finally:
             os.dup2(terminal, 2)
             os.close(terminal)
@@ -205,7 +232,7 @@ def _without_messages() -> Iterator[list[str]]:
             errors = []
             for line in file.read().decode(errors="replace").splitlines():
                 _, mark, text = line.partition("PETSC ERROR: ")
-                if not mark:
+                if not mark and loads:
                     print(line, file=sys.stderr)
                 elif text and text[0] not in "-#":
                     errors.append(text)

@@ -10,6 +10,7 @@ PURPOSE = {
     "rooms": "this order",
     "version": "version of the package",
     "errors": "exceptions of one sentence, with exit codes",
+    "whole_files": "files that get their names together",
     "watch": "signals that end a command, and its signs of life",
     "log": "log of rank 0, progress, wall seconds by phase",
     "petsc": "start of PETSc and its options",

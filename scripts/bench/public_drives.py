@@ -76,7 +76,7 @@ def exported(path: Path, mesh: str, *, pancake: bool) -> str:
     jobs = (("step", "dxf"),) if pancake else (("step", "dxf"), ("inp",))
     out, words = FOLDER / f"{path.stem} export", []
     for formats in jobs:
-        command = ("export", str(path), "--out", str(out), "--format", *formats)
+        command = ("export", str(path), "--out", str(out), "--overwrite", "--format", *formats)
         code, last = called(*command, *(("--mesh", mesh) if "inp" in formats else ()))
         words.append(last.removeprefix("swgpar: error: ") if code else ", ".join(formats))
     return "; ".join(words)

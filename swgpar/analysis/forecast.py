@@ -7,15 +7,18 @@ need more or less time.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mpi4py import MPI
 
+from swgpar.analysis.shortcuts import SAMPLES, with_shortcuts
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutOfMemoryError
+from swgpar.load.load_program import program_points
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.sector_counts import sector_counts
 from swgpar.petsc import is_out_of_memory
@@ -40,6 +43,13 @@ NEEDS = {
 }
 NEEDS["pancake"] = NEEDS["cup"]
 
+START = 4.0
+"""Increments that take as long as the rest of a default run: start, windows, evaluation, report."""
+
+
+WHOLE_MESH = 7e-7
+"""Memory (GB) for each element of the whole drive while its mesh is written: up to 670 bytes."""
+
 
 @dataclass(frozen=True)
 class Forecast:
@@ -54,6 +64,8 @@ class Forecast:
 def forecast(design: DriveDesign, recipe: MeshRecipe) -> Forecast:
     """Needs of a run with the default shortcuts and the direct solver, without condensed sectors.
 
+    The time grows with the increments beyond those of a default run, among them the points of a
+    load program and the angles of [deviations], as if these were computed on the mesh of the run.
     Nothing is meshed. Raises InputError where the recipe lacks a section.
     """
     plane = design.drive.model == "plane"
@@ -66,12 +78,30 @@ def forecast(design: DriveDesign, recipe: MeshRecipe) -> Forecast:
         elements += counts.elements * counts.n_sectors
         unknowns += (2 if plane else 3) * free * (counts.n_sectors // design.copies)
     needs, size = NEEDS[design.drive.model], unknowns / 1e5
+    usual = SAMPLES[design.drive.model]
+    longer = max((START + _increments(design, recipe)) / (START + usual), 1.0)
     return Forecast(
         elements=elements,
         unknowns=unknowns,
         memory=needs.memory_base + needs.memory * size,
-        seconds=needs.seconds_base + needs.seconds * size,
+        seconds=longer * (needs.seconds_base + needs.seconds * size),
     )
+
+
+def _increments(design: DriveDesign, recipe: MeshRecipe) -> int:
+    """Increments of a run with shortcuts from the loaded state on, angles of [deviations] among
+    them."""
+    shortened = with_shortcuts(design, recipe).design
+    steps, kinematics, deviations = shortened.steps, design.kinematics, design.deviations
+    count = len(program_points(shortened))
+    if not count and steps.samples:
+        count = steps.samples * design.periods
+    elif not count:
+        count = 1 + math.ceil(steps.rotation / steps.increment)
+    if deviations is not None:
+        teeth = kinematics.teeth(kinematics.standing_gear)
+        count += deviations.turns * teeth * deviations.angles_per_pitch
+    return count
 
 
 def fits(needs: Forecast, limit: float | None = None, comm: MPI.Comm = MPI.COMM_SELF) -> bool:
@@ -93,6 +123,13 @@ def require_memory(
         f"the mesh has {needs.elements:,} elements and {needs.unknowns:,} unknowns, which need "
         f"about {needs.memory:.3g} GB of memory: allowed are meshes that need at most {allowed}"
     )
+
+
+def require_memory_of_mesh(design: DriveDesign, recipe: MeshRecipe) -> None:
+    """Refuse a mesh whose whole drive does not fit into the memory, with an InputError."""
+    needs = forecast(design, recipe)
+    whole = replace(needs, memory=WHOLE_MESH * needs.elements)
+    require_memory(whole, design.solver.memory_limit)
 
 
 def free_memory(comm: MPI.Comm = MPI.COMM_SELF) -> float:

@@ -14,7 +14,7 @@ from swgpar.analysis.mesh_refinement import ChosenMesh
 from swgpar.analysis.restart import resume_run, save_run
 from swgpar.analysis.run_record import RunRecord
 from swgpar.drive_results.drive_data import DriveData, open_fields
-from swgpar.drive_results.drive_tables import DriveTables, write_tables
+from swgpar.drive_results.drive_tables import DriveTables, table_files, write_tables
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.drive_results.summary_file import summary_from, summary_to_json
 from swgpar.evaluation.bearing_loads import ball_rows
@@ -41,7 +41,7 @@ from swgpar.results import history
 from swgpar.results.atomic import agreed, on_root, write_from_root
 from swgpar.results.field_sources import FieldParts
 from swgpar.results.fields import BodyPart, FieldWriter, FlankGrids
-from swgpar.results.folder import RECIPE, SUMMARY, StoredSummary
+from swgpar.results.folder import RECIPE, SUMMARY, StoredSummary, table_facts
 from swgpar.results.history import Row
 from swgpar.results.table import as_columns, as_rows, format_csv, read_columns
 
@@ -309,7 +309,9 @@ class FolderRecorder(Recorder):
         if len(rows) > len(self.record.rows):
             write_from_root(self.comm, self.out / history.NAME, history.format_rows(rows))
         write_tables(self.out, self.comm, tables)
-        write_from_root(self.comm, self.out / SUMMARY, summary_to_json(summary))
+        names = [history.NAME, *table_files()]
+        written = on_root(self.comm, lambda: table_facts(self.out, names))
+        write_from_root(self.comm, self.out / SUMMARY, summary_to_json(summary, written))
         folder = self.out.absolute()  # the fields are read later
         fields = open_fields(folder, self.comm)
         return DriveData(*self._shared(rows, summary, tables), fields, self.comm, folder)

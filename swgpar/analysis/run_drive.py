@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -52,7 +53,7 @@ from swgpar.meshing.recipe_counts import body_ratio
 from swgpar.model.drive_model import DriveModel, build_drive_model
 from swgpar.petsc import warn_of_unused_options
 from swgpar.results.atomic import on_all
-from swgpar.results.folder import RECIPE, open_log, prepare
+from swgpar.results.folder import DRIVE_RESULTS, RECIPE, open_log, prepare
 from swgpar.results.lock import releasing
 from swgpar.run_options import RunOptions
 from swgpar.solve.eigenmodes import require_slepc
@@ -96,7 +97,14 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
     require_samples(sequence, [name for name in ("fatigue", "losses") if getattr(design, name)])
     needs = forecast(design, recipe)
     require_memory(needs, design.solver.memory_limit, comm)
-    resumed = folder is not None and prepare(folder, comm, options.restart, options.overwrite)
+    resumed = folder is not None and prepare(
+        folder,
+        comm,
+        DRIVE_RESULTS if options.accuracy is None else (*DRIVE_RESULTS, RECIPE),
+        restart=options.restart,
+        overwrite=options.overwrite,
+        inputs=[*design.files, Path(recipe_name)],
+    )
     open_log(folder, comm)
     without_windows = design.without_windows if design.output.root_stress else ""
     _log_remarks(said, sequence, left_out, without_windows)

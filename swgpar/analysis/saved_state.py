@@ -17,7 +17,7 @@ from swgpar.fem.vectors import read_field, write_field
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.model.drive_model import DriveModel
-from swgpar.results import parallel_hdf5
+from swgpar.results import made_files, parallel_hdf5
 from swgpar.results.atomic import agreed, on_root
 from swgpar.results.checkpoint import read_checkpoint, require_undamaged, write_checkpoint
 from swgpar.results.folder import START_STATES
@@ -132,5 +132,4 @@ class StartStates:
             return
         with agreed(comm, self.folder):
             if comm.rank == 0:
-                for path in self.folder.glob(START_STATES):
-                    path.unlink()
+                made_files.remove(self.folder, [START_STATES])

@@ -98,6 +98,8 @@ def mesh(
     out: str | Path | None = None,
     formats: Sequence[str] = ("vtu",),
     comm: MPI.Comm = MPI.COMM_WORLD,
+    *,
+    overwrite: bool = False,
 ) -> DriveMesh:
     """The mesh of a whole drive; collective when it is written.
 
@@ -109,31 +111,38 @@ def mesh(
         Folder into which rank 0 writes the mesh.
     formats : sequence of str
         Files to write: "vtu" (ParaView), "msh" (Gmsh), "inp" (Abaqus, CalculiX).
+    overwrite : bool
+        Replace files of the same names in `out`.
 
     Raises
     ------
     InputError
-        The design is not that of a drive, or the recipe turns an element inside out.
+        The design is not that of a drive, or the recipe turns an element inside out, or needs more
+        memory than this machine has.
     OutputError
-        The folder cannot be written.
+        The folder cannot be written, or a file is there already.
 
     Examples
     --------
     >>> swgpar.mesh("drivers/cup_45deg.toml", "coarse").quality["ring_gear"]["min_scaled_jacobian"]
     """
 
+    from swgpar.analysis.forecast import require_memory_of_mesh
     from swgpar.meshing.drive_mesh import DriveMesh  # with what writes files of meshes
 
     def make() -> DriveMesh:
-        drive = _drive(load_design(design))
-        sectors = build_sector_meshes(drive.geometry, load_mesh(mesh))
+        drive, recipe = _drive(load_design(design)), load_mesh(mesh)
+        require_memory_of_mesh(drive, recipe)
+        sectors = build_sector_meshes(drive.geometry, recipe)
         return DriveMesh(sectors, drive.materials, drive.drive.face_width)
 
     if out is None:
         return make()
     folder = given_folder(out)
     whole = on_all(comm, make)
-    on_all(comm, lambda: whole.write(folder, formats) if comm.rank == 0 else None)
+    with agreed(comm, folder):
+        if comm.rank == 0:
+            whole.write(folder, formats, overwrite=overwrite)
     return whole
 
 

@@ -257,6 +257,7 @@ def export(
     mesh: MeshLike | None = None,
     ripple: str | Path | DriveResult | None = None,
     idle: str | Path | DriveResult | None = None,
+    overwrite: bool = False,
 ) -> list[Path]:
     """Write files of other programs and return them; collective, rank 0 writes.
 
@@ -280,6 +281,8 @@ def export(
     idle : result of a drive, or the folder of one
         For "fmu" and "lookup": run of the same drive with [losses] and load.torque = 0. With it the
         loss torque grows with the load; without it that of the run holds under any load.
+    overwrite : bool
+        Replace files of the same names in `out`.
 
     Raises
     ------
@@ -287,7 +290,7 @@ def export(
         A format that the source does not have, a source that is no drive, a package that is
         missing, or what a format does not carry.
     OutputError
-        The folder cannot be written, or a C compiler fails with the FMU.
+        The folder cannot be written, a file is there already, or a C compiler fails with the FMU.
 
     Examples
     --------
@@ -319,9 +322,16 @@ def export(
         )
     recipe = None if mesh is None else load_mesh(mesh)
     paths: list[Path] = []
-    with agreed(MPI.COMM_WORLD, Path(out)):
+    folder = given_folder(out)
+    with agreed(MPI.COMM_WORLD, folder):
         if MPI.COMM_WORLD.rank == 0:
             paths = export_files(
-                drive, Path(out), formats, recipe=recipe, ripple=periodic, idle=without_load
+                drive,
+                folder,
+                formats,
+                recipe=recipe,
+                ripple=periodic,
+                idle=without_load,
+                overwrite=overwrite,
             )
     return MPI.COMM_WORLD.bcast(paths)

@@ -22,6 +22,10 @@ LOWER = 0.1
 remark."""
 
 
+THINNEST_RACE = 0.01
+"""Thickness of the outer race, in modules: thinner ones are slips, as rims are."""
+
+
 def check_bearing(design: DriveDesign) -> None:
     """Raise InputError for the first size of the bearing that does not fit the others."""
     bearing, sizes = design.bearing, design.bearing_sizes
@@ -33,8 +37,9 @@ def check_bearing(design: DriveDesign) -> None:
     )
     depth, ball = bearing.race_thickness, bearing.ball_diameter
     radius, half = smallest_curvature_radius(design.cam()), 0.5 * design.deflection
-    allowed = f"above 0 to below {radius:.4g} mm ({RADIUS})"
-    require(depth < radius, f"{SECTION}.race_thickness", depth, allowed)
+    least = THINNEST_RACE * design.drive.module
+    allowed = f"{least:.4g} mm ({THINNEST_RACE:g} modules) to below {radius:.4g} mm ({RADIUS})"
+    require(least <= depth < radius, f"{SECTION}.race_thickness", depth, allowed)
     allowed = f"above 0 to below {radius - depth:.4g} mm ({RADIUS} less race_thickness)"
     require(ball < radius - depth, f"{SECTION}.ball_diameter", ball, allowed)
     hollow, deepest = depth_of_hollows(design.cam(), depth + ball), DEEPEST_HOLLOW * half

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
@@ -15,6 +16,11 @@ NAME = re.compile(r"[A-Za-z0-9_ +-]+")
 MOST_ROTATION = 170.0
 """Rotation (deg) of the output up to which it is prescribed: beyond half a turn its angle is
 ambiguous."""
+
+
+CLOSEST = 0.01
+"""Least share of the largest torque between two points of a loop that a stiffness is taken from:
+closer ones have the round-off of the torques between them."""
 
 
 def given_program(design: DriveDesign) -> str | None:
@@ -96,11 +102,11 @@ def _check_stiffness(design: DriveDesign) -> None:
         raise InputError("stiffness.torque is missing: give it, or load.torque, above 0 N·m")
     share, ends = program.lost_motion_torque / program.torque, section.break_points
     require(
-        len(ends) == 2 and share < ends[0] < ends[1] < 1.0,
+        len(ends) == 2 and all(b - a >= CLOSEST for a, b in pairwise([share, *ends, 1.0])),
         "stiffness.break_points",
         ends,
         f"two shares of the largest torque, ascending, above {share:.3g} (that of the lost motion) "
-        f"and below 1",
+        f"and below 1, {CLOSEST:g} apart and more",
     )
     allowed = f"above {NO_TORQUE:g} of the largest torque"
     lost = section.lost_motion_share

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import shlex
 from typing import Any
 
 from swgpar.checks.starter import Request
 from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import printable
 from swgpar.input.quantities import Section
 from swgpar.input.toml_file import toml_value
 
@@ -21,6 +23,8 @@ def as_toml(request: Request, design: DriveDesign, table: dict[str, Any], name: 
         else f"pitch diameter {request.diameter:g} mm"
     )
     drive = design.drive
+    shown = printable(name).replace("\n", "\\n")  # a comment ends with its line
+    stem, name = shown.removesuffix(".toml"), shlex.quote(shown)
     lines = [
         f"# Strain wave gear: ratio {request.ratio:g}, {size}, torque {request.torque:g} N·m.",
         "# These are given, with the kinds of profile and cam. All other values are assumptions to "
@@ -28,8 +32,8 @@ def as_toml(request: Request, design: DriveDesign, table: dict[str, Any], name: 
         f"# of the blank are shares of the pitch diameter, {drive.module * drive.teeth_fs:.5g} mm, "
         "those of the teeth multiples of the module.",
         f"#   swgpar check {name}",
-        f"#   mpirun -n 2 swgpar run {name} --out results/{name.removesuffix('.toml')}",
-        f"#   mpirun -n 2 swgpar rate {name} --out results/{name.removesuffix('.toml')}_rating",
+        f"#   mpirun -n 2 swgpar run {name} --out {shlex.quote(f'results/{stem}')}",
+        f"#   mpirun -n 2 swgpar rate {name} --out {shlex.quote(f'results/{stem}_rating')}",
     ]
     for section, content in table.items():
         lines += _section(section, getattr(design, section), content)

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import difflib
 import gc
+import io
 import os
 import sys
 import traceback
 from collections.abc import Sequence
+from contextlib import suppress
 
 from swgpar.cli.parser import parser
-from swgpar.errors import InputError, OutOfMemoryError, SwgparError, shortened
+from swgpar.errors import InputError, OutOfMemoryError, OutputError, SwgparError, shortened
 
 __all__ = ["main", "parser"]
 
@@ -41,7 +43,16 @@ def _check_rest(rest: Sequence[str], options: Sequence[str], petsc: bool) -> Non
 
 
 def _print_error(error: object) -> None:
-    print(f"swgpar: error: {error}", file=sys.stderr, flush=True)
+    with suppress(OSError):
+        print(f"swgpar: error: {error}", file=sys.stderr, flush=True)
+
+
+def _drop_output() -> None:
+    """Send what standard output still holds to nowhere: Python would try to write it at its end."""
+    with suppress(OSError, ValueError, AttributeError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -58,6 +69,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # looking for plug-ins of Pydantic takes 20 ms; designs need none
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     gc.set_threshold(GARBAGE, *gc.get_threshold()[1:])
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # letters that an encoding lacks are escaped
+            stream.reconfigure(errors="backslashreplace")
     with watch.armed():
         return _main(arguments)
 
@@ -90,6 +104,15 @@ def _main(arguments: Sequence[str] | None) -> int:
     except BrokenPipeError:  # the reader of our output has gone
         sys.stderr.close()
         return 1
+    except OSError as error:
+        _drop_output()
+        what = f"read or write {error.filename}" if error.filename else "write standard output"
+        _print_error(OutputError(f"cannot {what}: {error.strerror or error}"))
+        from mpi4py import MPI
+
+        if command in SOLVING and MPI.COMM_WORLD.size > 1:
+            _abort(OutputError.exit_code)
+        return OutputError.exit_code
     except MemoryError:
         _print_error("not enough memory: take a coarser mesh, or more memory")
         if command in SOLVING:

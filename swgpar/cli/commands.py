@@ -94,7 +94,9 @@ def _export(arguments: argparse.Namespace) -> None:
 
 
 def _mesh(arguments: argparse.Namespace) -> None:
-    mesh = api.mesh(_design(arguments), arguments.mesh, arguments.out, arguments.format)
+    given = _given(api.mesh, arguments)
+    where = arguments.out, arguments.format
+    mesh = api.mesh(_design(arguments), arguments.mesh, *where, **given)
     lines = []
     for body, values in mesh.quality.items():
         lines += [body, *(f"  {name:30s} {value:.6g}" for name, value in values.items())]

@@ -201,6 +201,7 @@ def parser() -> _Parser:
     formats = ["vtu", "msh", "inp"]
     text = "vtu for ParaView, msh for Gmsh, inp for Abaqus and CalculiX (default: all)"
     mesh.add_argument("--format", nargs="+", default=formats, choices=formats, help=text)
+    _add_overwrite(mesh, "files of the same names in --out")
     check = _add_command(commands, "check", CHECK, CHECK_EXAMPLES)
     _add_design(check)
     text = "prints elements, unknowns, memory and time to expect"
@@ -284,6 +285,7 @@ def _add_export(commands: _Commands) -> None:
     text = "for fmu and lookup: results of the same drive with [losses] and load.torque = 0"
     export.add_argument("--idle", metavar="FOLDER", help=text)
     export.add_argument("--mesh", help=f"of the format inp; {MESH_HELP}")
+    _add_overwrite(export, "files of the same names in --out")
 
 
 def _add_run(commands: _Commands) -> None:

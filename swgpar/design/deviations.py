@@ -14,6 +14,7 @@ from pydantic import model_validator
 from swgpar.errors import InputError
 from swgpar.geometry.pitch_deviations import pitch_tolerances, random_pitch_errors
 from swgpar.input.quantities import Section, not_negative, quantity, show
+from swgpar.input.regular_file import read_regular
 from swgpar.profiles import Teeth
 from swgpar.profiles.flank_deviations import GearDeviations, direction
 
@@ -136,12 +137,23 @@ class Deviations(Section):
 def read_column(path: str, column: str) -> list[float]:
     """Numbers of a column of a CSV file with a header; raises InputError of one sentence."""
     try:
-        with open(Path(path), newline="", encoding="utf-8") as file:
-            header, *rows = [row for row in csv.reader(file) if row]
-    except (OSError, ValueError) as error:
+        text = read_regular(Path(path)).decode("utf-8-sig")
+        header, *rows = [row for row in csv.reader(text.splitlines()) if row]
+    except (OSError, ValueError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or "it is no CSV file with a header"
         raise InputError(f"pitch_file = {show(path)} cannot be read: {reason}") from None
     names = [name.strip() for name in header]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(
+                f"pitch_file = {show(path)} has two columns {show(name)}: allowed is one of a name"
+            )
+    for number, row in enumerate(rows, start=2):
+        if len(row) > len(names):
+            raise InputError(
+                f"pitch_file = {show(path)}: row {number} has {len(row)} values and the header has "
+                f"{len(names)}: allowed is one for each column, with a point as decimal sign"
+            )
     if not column and len(names) == 1:
         column = names[0]
     if column not in names:

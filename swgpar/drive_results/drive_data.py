@@ -12,7 +12,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.design.sections import GearName
-from swgpar.drive_results.drive_tables import DriveTables, read_tables
+from swgpar.drive_results.drive_tables import DriveTables, read_tables, table_files
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.drive_results.summary_file import summary_from
 from swgpar.errors import InputError
@@ -304,6 +304,8 @@ def open_data(folder: Path, comm: MPI.Comm) -> DriveData:
     with agreed(comm, folder, "read"):
         stored, rows = read_summary(folder), history.read_history(folder / history.NAME)
         tables = read_tables(folder)
+        found = {file: getattr(tables, name) for file, name in table_files().items()}
+        stored.require_whole(folder, {**found, history.NAME: history.columns(rows)})
         summary = summary_from(stored, rows, tables.pairs, folder / SUMMARY)
     return DriveData(rows, summary, tables, open_fields(folder, comm), comm, folder)
 

@@ -41,9 +41,14 @@ def write_tables(folder: Path, comm: MPI.Comm, tables: DriveTables) -> None:
         write_sector(folder, comm, tables.fatigue)
 
 
+def table_files() -> dict[str, str]:
+    """Files of the tables that are read back -> their attributes."""
+    names = DRIVE_TABLES.keys() & {each.name for each in fields(DriveTables)}
+    return {f"{name}.csv": name for name in sorted(names)}
+
+
 def read_tables(folder: Path) -> DriveTables:
     """The tables in a results folder."""
-    names = DRIVE_TABLES.keys() & {each.name for each in fields(DriveTables)}
-    paths = {name: folder / f"{name}.csv" for name in names}
+    paths = {name: folder / file for file, name in table_files().items()}
     found = {name: read_columns(path) for name, path in paths.items() if path.exists()}
     return DriveTables(**found, fatigue=read_sector(folder))

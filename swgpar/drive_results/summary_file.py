@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
@@ -24,12 +25,14 @@ FORMAT = 2
 answers."""
 
 
-def summary_to_json(summary: DriveSummary) -> bytes:
-    """Text of summary.json. Its table of answers is for other programs: it is not read back."""
+def summary_to_json(summary: DriveSummary, tables: Mapping[str, Any] | None = None) -> bytes:
+    """Text of summary.json. Its table of answers is for other programs: it is not read back.
+
+    tables : facts of the tables beside it
+    """
     content = asdict(summary) | {"design": summary.design.model_dump()}
-    return to_json(
-        {"format": FORMAT, "answers": [asdict(answer) for answer in summary.values()], **content}
-    )
+    head = {"format": FORMAT, "tables": tables or {}}
+    return to_json({**head, "answers": [asdict(answer) for answer in summary.values()], **content})
 
 
 def summary_from(
@@ -52,9 +55,15 @@ def summary_from(
             content = from_first_format(content, rows, pairs)
         found: DriveSummary = _adapter().validate_python(content)
     except (ValidationError, KeyError, TypeError, ValueError):
+        found_in = f"{path} was written by swgpar {stored.written_by}"
+        if number in (1, FORMAT):
+            raise OutputError(
+                f"{found_in}, and swgpar {__version__} does not read its content: it was changed, "
+                "or that version knew other keys; open it with that one, or run again"
+            ) from None
         raise OutputError(
-            f"{path} of swgpar {stored.written_by} has the format {number}, and not a content "
-            f"that swgpar {__version__} reads: allowed are results of formats 1 to {FORMAT}"
+            f"{found_in} in the format {number}: allowed are formats 1 to {FORMAT} with swgpar "
+            f"{__version__}; open it with that version, or run again"
         ) from None
     found.design.made_by(make_drive)
     return found

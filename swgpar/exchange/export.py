@@ -19,6 +19,7 @@ from swgpar.exchange.tables import write_look_up, write_parquet
 from swgpar.exchange.vtkhdf import write_vtkhdf
 from swgpar.exchange.xdmf import write_xdmf
 from swgpar.meshing import MeshRecipe
+from swgpar.whole_files import whole_files
 
 OF_DESIGN: Mapping[str, Callable[[DriveDesign, Path], list[Path]]] = {
     "step": write_step,
@@ -49,14 +50,17 @@ def export_files(
     recipe: MeshRecipe | None = None,
     ripple: DriveData | None = None,
     idle: DriveData | None = None,
+    overwrite: bool = False,
 ) -> list[Path]:
-    """Write the files of the formats into a folder, which is made; call it on one rank.
+    """Write the files of the formats into a folder, which is made; call it on one rank. They get
+    their names when all are complete.
 
     recipe : mesh of the formats that have one;  ripple : result over a period, for the format fmu
     idle : result without a torque, for the losses in the formats fmu and lookup
+    overwrite : whether files that are there are replaced
 
-    Raises InputError for a format that the source does not have, one whose package or mesh is
-    missing, or a mesh that no format has.
+    Raises OutputError where they are there otherwise, InputError for a format that the source does
+    not have, one whose package or mesh is missing, or a mesh that no format has.
     """
     writers: dict[str, Callable[..., list[Path]]] = {**OF_RESULT}
     noun = "a result"
@@ -82,5 +86,6 @@ def export_files(
             )
     writers["fmu"] = partial(write_fmu, periodic=ripple, idle=idle)
     writers["lookup"] = partial(write_look_up, idle=idle)
-    folder.mkdir(parents=True, exist_ok=True)
-    return [path for name in formats for path in writers[name](source, folder)]
+    with whole_files(folder, overwrite=overwrite) as made:
+        paths = [path for name in formats for path in writers[name](source, made)]
+    return [folder / path.name for path in paths]

@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
@@ -21,12 +21,16 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GearName
+from swgpar.errors import OutputError
 from swgpar.exchange.outlines import Edge, gear_outline
 from swgpar.geometry.arrays import Floats
 from swgpar.geometry.cams import cam_outlines
 from swgpar.geometry.cup_wall import CupWall
 from swgpar.geometry.disc_surface import TwoDiscSurface
 from swgpar.meshing.gmsh_session import gmsh_model
+
+END = b"END-ISO-10303-21;"
+"""Last word of a STEP file."""
 
 PIECES = 32
 """Curves around a cam."""
@@ -54,8 +58,11 @@ def write_step(design: DriveDesign, folder: Path) -> list[Path]:
         with gmsh_model(name) as gmsh:
             _build(gmsh, design, name)
             gmsh.model.occ.synchronize()
-            with _quiet():
+            with _quiet(), suppress(Exception):  # Gmsh has no class for its errors
                 gmsh.write(str(path))
+        # OpenCASCADE does not always say that it cannot write
+        if not path.exists() or not path.read_bytes().rstrip().endswith(END):
+            raise OutputError(f"cannot write {path.name}: it is not complete, the disk may be full")
         paths.append(path)
     return paths
 

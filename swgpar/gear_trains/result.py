@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
@@ -17,11 +16,11 @@ from swgpar.answers.table import AnswerTable
 from swgpar.gear_trains.common_sections import TrainDesign
 from swgpar.gear_trains.published import Comparison, numbered
 from swgpar.results import history
-from swgpar.results.atomic import agreed, to_json, write_from_root
+from swgpar.results.atomic import agreed, on_root, to_json, write_from_root
 from swgpar.results.figure_set import NamedFigures
-from swgpar.results.folder import SUMMARY, TABLES, StoredSummary
+from swgpar.results.folder import SUMMARY, TABLES, StoredSummary, table_facts
 from swgpar.results.quantity import Quantity
-from swgpar.results.table import Columns, format_columns, format_csv, read_columns
+from swgpar.results.table import Columns, format_columns, format_csv, read_columns, read_rows
 from swgpar.vibration.sampling import TaskSeconds
 
 PUBLISHED = "published.csv"
@@ -133,7 +132,9 @@ def write(result: TrainResult, out: Path, comm: MPI.Comm) -> None:
         write_from_root(comm, out / PUBLISHED, format_csv([asdict(row) for row in result.compared]))
     write_from_root(comm, out / history.NAME, format_columns(result.history))
     summary = result.summary
+    names = [history.NAME, *(f"{TABLES}/{name}.csv" for name in result.tables)]
     content = {
+        "tables": on_root(comm, lambda: table_facts(out, names)),
         "answers": [asdict(answer) for answer in summary.values()],
         "quantities": summary.quantities,
         "ranks": summary.ranks,
@@ -173,16 +174,18 @@ def summary_from(
     )
 
 
-def read(out: Path, summary: TrainSummary) -> TrainResult:
+def read(out: Path, stored: StoredSummary, summary: TrainSummary) -> TrainResult:
     """Result of a finished run from its folder, without figures; every rank reads the files."""
     tables = {path.stem: read_columns(path) for path in sorted((out / TABLES).glob("*.csv"))}
+    rows = read_columns(out / history.NAME)
+    found = {f"{TABLES}/{name}.csv": columns for name, columns in tables.items()}
+    stored.require_whole(out, {**found, history.NAME: rows})
     compared = _read_compared(out / PUBLISHED) if (out / PUBLISHED).exists() else []
-    return TrainResult(read_columns(out / history.NAME), tables, summary, compared, out)
+    return TrainResult(rows, tables, summary, compared, out)
 
 
 def _read_compared(path: Path) -> list[Comparison]:
-    with open(path, newline="", encoding="utf-8") as file:
-        _, *rows = csv.reader(file)
+    _, rows = read_rows(path)
     return [
         Comparison(name, meaning, float(old), float(new), float(percent) if percent else None)
         for name, meaning, old, new, percent in rows

@@ -32,7 +32,7 @@ from swgpar.input.toml_file import validate
 from swgpar.log import logger
 from swgpar.results.atomic import agreed, reason_of
 from swgpar.results.figure_set import Drawings, NamedFigures
-from swgpar.results.folder import SUMMARY, open_log, prepare, read_summary
+from swgpar.results.folder import SUMMARY, TRAIN_RESULTS, open_log, prepare, read_summary
 from swgpar.results.lock import releasing
 from swgpar.results.quantity import Quantity
 from swgpar.run_options import RunOptions
@@ -103,7 +103,7 @@ def run_train(design: TrainDesign, options: RunOptions) -> TrainResult:
     folder, comm, model = options.out, options.comm, model_of(design)
     begin = time.perf_counter()
     if folder is not None:
-        prepare(folder, comm, False, options.overwrite)
+        prepare(folder, comm, TRAIN_RESULTS, restart=False, overwrite=options.overwrite)
     open_log(folder, comm)
     for sentence in design.remarks():
         logger.warning(sentence)
@@ -162,7 +162,7 @@ def open_train(folder: Path, comm: MPI.Comm) -> TrainResult:
                 f"{folder / SUMMARY} of swgpar {stored.written_by} is not the summary of a gear "
                 f"train that swgpar {__version__} reads"
             ) from None
-        result = read(folder.absolute(), summary)
+        result = read(folder.absolute(), stored, summary)
     return _with_figures(result, comm)
 
 

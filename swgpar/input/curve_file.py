@@ -10,7 +10,6 @@ without arcs are taken as points of the curve. Other straight lines are divided.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Sized
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.input.quantities import show
+from swgpar.input.regular_file import read_regular, require_regular
 
 MOST_POINTS = 100_000
 """Points of a file, at most."""
@@ -73,7 +73,7 @@ def read_rows(path: Path, layer: str | None, lengths: Collection[int]) -> list[l
     if layer is not None:
         raise InputError(f"layer = {show(layer)} has no meaning with {path}: allowed for DXF")
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_regular(path).decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is no UTF-8 text"
         raise InputError(f"{path} cannot be read: {reason}") from None
@@ -83,10 +83,8 @@ def read_rows(path: Path, layer: str | None, lengths: Collection[int]) -> list[l
         content = line.split("#")[0].strip()
         if not content:
             continue
-        if ";" in content:
-            content = content.replace(",", ".")
         try:
-            values = [float(part) for part in re.split(r"[;,\s]+", content.strip(";, \t"))]
+            values = numbers_of(content)
         except ValueError:
             words += 1
             if points or words > 1:
@@ -99,6 +97,18 @@ def read_rows(path: Path, layer: str | None, lengths: Collection[int]) -> list[l
         raise InputError(f"{path} has no points: allowed are lines of {_counted(lengths)}")
     _require_few(points, path)
     return points
+
+
+def numbers_of(line: str) -> list[float]:
+    """Numbers of a line, with one kind of separator: semicolons, commas, or tabs and spaces; with
+    semicolons the decimal sign may be a comma. Raises ValueError for anything else."""
+    if ";" in line:
+        parts = line.strip("; \t").replace(",", ".").split(";")
+    elif "," in line:
+        parts = line.strip(", \t").split(",")
+    else:
+        parts = line.split()
+    return [float(part) for part in parts]
 
 
 def _bad_line(path: Path, number: int, line: str, lengths: Collection[int]) -> InputError:
@@ -122,6 +132,7 @@ def dxf_entities(path: Path, layer: str | None) -> tuple[list[Any], float]:
             "a DXF file needs the package ezdxf: pip install 'swgpar[exchange]'"
         ) from None
     try:
+        require_regular(path)
         document = readfile(path)
         scale = 1.0
         if document.units:

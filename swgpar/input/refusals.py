@@ -139,10 +139,10 @@ def _bad_section(field: FieldInfo, kind: str, key: str, value: Any) -> str:
 
 def _expected(field: FieldInfo) -> tuple[str, str]:
     """Noun for the values of a field, and the words that say which are allowed."""
-    kind = field.annotation
+    kind = _required(field.annotation)
     if kind is bool:
         return "true or false", "allowed true or false"
-    if kind in (int, float, float | None):
+    if kind in (int, float):
         return "a whole number" if kind is int else "a number", allowed(field)
     if kind in NOUNS:
         return NOUNS[kind], f"allowed {field.description}"
@@ -151,6 +151,12 @@ def _expected(field: FieldInfo) -> tuple[str, str]:
     if kind is str:
         return "a text", f"allowed {field.description}"
     return "a text", f"allowed {_choices(getattr(kind, '__args__', ()))}"
+
+
+def _required(kind: Any) -> Any:
+    """The type of a key that may be left out, without None."""
+    others = [each for each in get_args(kind) if each is not type(None)]
+    return others[0] if type(None) in get_args(kind) and len(others) == 1 else kind
 
 
 def _bad_value(field: FieldInfo, kind: str, key: str, value: Any) -> str:

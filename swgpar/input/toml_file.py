@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from swgpar.errors import InputError
 from swgpar.input.quantities import Section, show, show_key
 from swgpar.input.refusals import sentence
+from swgpar.input.regular_file import read_regular
 
 SectionType = TypeVar("SectionType", bound=Section)
 
@@ -28,7 +29,7 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     """
     path = Path(path)
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        text = read_regular(path).decode("utf-8-sig")
     except FileNotFoundError:
         raise InputError(f"{path} cannot be read: there is no such file") from None
     except IsADirectoryError:

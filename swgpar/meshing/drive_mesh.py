@@ -57,21 +57,25 @@ class DriveMesh:
         """Counts and worst quality of every body, see `swgpar.meshing.export.mesh_report`."""
         return mesh_report(self.sectors)
 
-    def write(self, folder: str | Path, formats: Sequence[str] = FORMATS) -> list[Path]:
+    def write(
+        self, folder: str | Path, formats: Sequence[str] = FORMATS, *, overwrite: bool = False
+    ) -> list[Path]:
         """Write the mesh into a folder and return the files; call it on one rank.
 
         Parameters
         ----------
         formats : any of "vtu" (ParaView), "msh" (Gmsh), "inp" (Abaqus, CalculiX)
+        overwrite : whether files that are there are replaced
 
         Raises
         ------
         InputError
             An unknown format.
         OutputError
-            The folder cannot be written.
+            The folder cannot be written, or a file is there already.
         """
-        return write_mesh(self.sectors, self.materials, self.thickness, folder, formats)
+        given = self.sectors, self.materials, self.thickness, folder, formats
+        return write_mesh(*given, overwrite=overwrite)
 
     def grid(self) -> pyvista.UnstructuredGrid:
         """The mesh for PyVista; the cell data "body" counts the bodies, flexible spline first."""

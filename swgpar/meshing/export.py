@@ -18,6 +18,7 @@ from swgpar.meshing.inp import element_faces, write_inp
 from swgpar.meshing.quality import hex_volumes
 from swgpar.meshing.sector import SectorMesh
 from swgpar.meshing.sweep import grid_quads
+from swgpar.whole_files import whole_files
 
 FORMATS = ("vtu", "msh", "inp")
 
@@ -149,12 +150,15 @@ def write_mesh(
     thickness: float,
     directory: str | Path,
     formats: Sequence[str] = FORMATS,
+    *,
+    overwrite: bool = False,
 ) -> list[Path]:
     """Write all sectors of all bodies as ``drive_120_122.vtu``, ``.msh`` and ``.inp``.
 
     meshes : by gear;  materials : of every body and of a housing
     thickness : mm, of the plane model
     directory : made when it does not exist;  formats : any of ``vtu``, ``msh``, ``inp``
+    overwrite : whether files that are there are replaced
 
     Returns the files, in the order of `formats`.
     """
@@ -166,23 +170,21 @@ def write_mesh(
     drive = whole_drive(meshes)
     teeth = "_".join(str(meshes[gear].n_sectors) for gear in ("flexible_spline", "ring_gear"))
     folder = Path(directory)
-    written = []
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name in formats:
-            path = folder / f"drive_{teeth}.{name}"
-            if name == "vtu":
-                meshio.vtu.write(path, _as_vtu(drive), compression="zlib")
-            elif name == "msh":
-                meshio.gmsh.write(path, _as_msh(drive), fmt_version="2.2", binary=True)
-            else:
-                write_inp(path, drive, named_surfaces(meshes), materials, thickness)
-            written.append(path)
+        with whole_files(folder, overwrite=overwrite) as made:
+            for name in formats:
+                path = made / f"drive_{teeth}.{name}"
+                if name == "vtu":
+                    meshio.vtu.write(path, _as_vtu(drive), compression="zlib")
+                elif name == "msh":
+                    meshio.gmsh.write(path, _as_msh(drive), fmt_version="2.2", binary=True)
+                else:
+                    write_inp(path, drive, named_surfaces(meshes), materials, thickness)
     except OSError as error:
         raise OutputError(
             f"the mesh cannot be written to {folder}: {error.strerror or error}"
         ) from None
-    return written
+    return [folder / f"drive_{teeth}.{name}" for name in formats]
 
 
 def mesh_report(meshes: dict[str, SectorMesh]) -> dict[str, dict[str, float]]:

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from types import ModuleType
 
 from swgpar import watch
+from swgpar.errors import SwgparError
 from swgpar.petsc import NO_FILES, hidden_variables
 
 
@@ -30,6 +31,11 @@ def gmsh_model(name: str) -> Iterator[ModuleType]:
         gmsh.model.add(name)
         try:
             yield gmsh
+        except Exception as error:
+            if type(error) is not Exception:  # those of Gmsh have no class of their own
+                raise
+            text = " ".join(str(error).split())
+            raise SwgparError(f"Gmsh cannot make {name}: {text}") from None
         finally:
             gmsh.model.remove()
     finally:

@@ -16,7 +16,7 @@ from swgpar.errors import InputError
 from swgpar.input.quantities import unit_of_key
 from swgpar.input.toml_file import apply_overrides, read_toml, with_value
 from swgpar.meshing import MeshRecipe, load_recipe
-from swgpar.optimisation.spec import OptimiseSection, Screen, Specification
+from swgpar.optimisation.spec import OptimiseSection, Screen, Specification, Variable
 from swgpar.results.quantity import Quantity
 from swgpar.run_options import RunOptions
 from swgpar.studies.case import not_known
@@ -192,16 +192,21 @@ def _make(spec: Specification, section: OptimiseSection, screen: Screen | None) 
         derived=frozenset(derived),
     )
     for variable in section.variable:
-        value = variable.choices[0] if variable.choices else variable.low
-        _require_key(problem, variable.name, int(value) if variable.integer else value)
+        _require_keys(problem, variable)
     return problem
 
 
-def _require_key(problem: Problem, name: str, value: Any) -> None:
-    """Refuse a variable that is no key of the design; a value that does not fit the others is no
-    matter here."""
-    try:
-        problem.system.load(problem.applied(problem.run_table, {name: value}))
-    except InputError as error:
-        if "is not a key of" in str(error):
-            raise
+NO_KEY = ("is not a key of", "cannot be applied", "is not a section")
+"""Words of refusals of a key, and not of its value."""
+
+
+def _require_keys(problem: Problem, variable: Variable) -> None:
+    """Refuse a variable whose keys the design does not have, whatever their value; a value that
+    does not fit the others is no matter here."""
+    for value in variable.choices or (variable.low, variable.high):
+        tried = int(value) if variable.integer else value
+        try:
+            problem.system.load(problem.applied(problem.run_table, {variable.name: tried}))
+        except InputError as error:
+            if any(words in str(error) for words in NO_KEY):
+                raise

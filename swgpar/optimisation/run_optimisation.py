@@ -17,6 +17,7 @@ from swgpar.optimisation.result import OptimisationResult
 from swgpar.optimisation.search import JOURNAL, Search, open_storage
 from swgpar.optimisation.spec import Specification, load_specification
 from swgpar.optimisation.terminal import OptimiseProgress
+from swgpar.results import made_files
 from swgpar.results.atomic import agreed, on_all, write_from_root
 from swgpar.results.folder import given_folder
 from swgpar.results.lock import releasing
@@ -119,13 +120,12 @@ def optimise(
 
 def _claim(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
     kept = out / JOURNAL, out / TABLE
-
-    def remove() -> None:
-        for path in (*kept, out / REPORT, *(out / BEST).glob(DESIGNS)):
-            path.unlink(missing_ok=True)
-
+    written = (JOURNAL, TABLE, REPORT, f"{BEST}/{DESIGNS}")
     what = "an optimisation"
-    claim_folder(comm, out, what, kept, remove, restart=restart, overwrite=overwrite)
+    claim_folder(comm, out, what, kept, written, restart=restart, overwrite=overwrite)
+    with agreed(comm, out / JOURNAL):
+        if comm.rank == 0:
+            made_files.note(out / JOURNAL)  # Optuna makes it
 
 
 def _write(
@@ -135,8 +135,7 @@ def _write(
     with agreed(comm, result.folder):
         if comm.rank == 0:
             (result.folder / BEST).mkdir(exist_ok=True)
-            for old in (result.folder / BEST).glob(DESIGNS):
-                old.unlink()
+            made_files.remove(result.folder, [f"{BEST}/{DESIGNS}"])
     texts = {number: to_toml(table) for number, table in result.designs.items()}
     for number, text in texts.items():
         write_from_root(comm, result.folder / BEST / f"evaluation_{number}.toml", text.encode())

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from mpi4py import MPI
 
 from swgpar.errors import InputError, OutputError, SwgparError
+from swgpar.input.quantities import show
 from swgpar.optimisation.problem import Evaluation, Problem
 from swgpar.optimisation.spec import OptimiseSection, Variable
 from swgpar.results.atomic import on_all, on_root, reason_of
@@ -52,7 +53,8 @@ def _stored(comm: MPI.Comm, where: str, task: Callable[[], T]) -> T:
         except SwgparError:
             raise
         except Exception as error:
-            raise OutputError(f"the storage {where} cannot be used: {reason_of(error)}") from None
+            reason = reason_of(getattr(error, "orig", None) or error)  # that of the database
+            raise OutputError(f"the storage {where} cannot be used: {reason}") from None
 
     return on_all(comm, guarded)
 
@@ -69,9 +71,44 @@ def open_storage(url: str, folder: Path, comm: MPI.Comm) -> optuna.storages.Base
             optuna.storages.journal.JournalFileBackend(str(folder / JOURNAL))
         )
 
-    where = url.rpartition("@")[2] or str(folder / JOURNAL)  # without a password
+    where = on_all(comm, lambda: _without_password(url)) if url else str(folder / JOURNAL)
+    if comm.rank == 0 and not url:
+        _break_lock(folder)
     first = _stored(comm, where, lambda: opened() if comm.rank == 0 else None)
     return _stored(comm, where, lambda: first or opened())
+
+
+def _without_password(url: str) -> str:
+    """The URL of a database for messages. Raises InputError where it is none, or that of a database
+    in memory."""
+    import_optuna()
+    from sqlalchemy.engine import make_url
+    from sqlalchemy.exc import ArgumentError
+
+    try:
+        found = make_url(url)
+        if "@" in (found.host or ""):  # of the password
+            raise ValueError
+    except (ArgumentError, ValueError):  # their words may have a part of the password
+        raise InputError(
+            "optimise.storage is no URL of a database: allowed are sqlite:///FILE and "
+            "DIALECT://USER:PASSWORD@HOST/NAME, with %40 for @, %3A for : and %2F for / in a "
+            "password"
+        ) from None
+    if found.get_backend_name() == "sqlite" and found.database in (None, "", ":memory:"):
+        raise InputError(
+            f"optimise.storage = {show(url)} is in the memory of one process, and lost at its end: "
+            "allowed are files, sqlite:///FILE, or none for a file in the folder of the results"
+        )
+    return f"{found.drivername} {found.database}"
+
+
+def _break_lock(folder: Path) -> None:
+    """Remove Optuna's lock that a killed search has left: nobody else has the folder, and Optuna
+    would wait for 30 s without a word."""
+    for left in folder.glob(f"{JOURNAL}.lock*"):
+        if left.is_symlink():  # as Optuna makes them
+            left.unlink()
 
 
 def _sampler(section: OptimiseSection, rank: int) -> optuna.samplers.BaseSampler:
@@ -142,10 +179,15 @@ class Search:
             for values in first:
                 study.enqueue_trial(values)
         elif identity != problem.identity:
+            instead = "overwrite = true (--overwrite)"
+            if not own:
+                instead = (
+                    "another name of the file or another database, from which --overwrite removes "
+                    "nothing"
+                )
             raise InputError(
                 f"the storage holds a search {self.name} of another problem: allowed are the same "
-                "variables, objectives, constraints, design and mesh, or overwrite = true "
-                "(--overwrite)"
+                f"variables, objectives, constraints, design and mesh, or {instead}"
             )
         state = optuna.trial.TrialState
         for trial in study.get_trials(deepcopy=False, states=(state.RUNNING,)) if own else ():

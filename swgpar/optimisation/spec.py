@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from swgpar.errors import InputError
 from swgpar.input.quantities import Section, quantity, show, show_key
+from swgpar.input.regular_file import read_regular
 from swgpar.input.require import require
 from swgpar.input.toml_file import read_toml, split_override, validate
 from swgpar.studies.run_file import RunFile, RunsSection, flat, refusals_of, require_only
@@ -27,6 +28,23 @@ class Variable(Section):
     def name(self) -> str:
         """Name in tables: the first key."""
         return self.keys[0]
+
+    def takes(self, value: Any) -> bool:
+        """Whether a value is one of the choices, or within the bounds."""
+        if self.choices:
+            return any(value == one and type(value) is type(one) for one in self.choices)
+        kinds = (int,) if self.integer else (int, float)
+        if isinstance(value, bool) or not isinstance(value, kinds):
+            return False
+        return self.low is not None and self.high is not None and self.low <= value <= self.high
+
+    @property
+    def range_text(self) -> str:
+        """The values that it takes, in words."""
+        if self.choices:
+            return ", ".join(map(show, self.choices))
+        whole = " whole numbers" if self.integer else ""
+        return f"{show(self.low)} to {show(self.high)}{whole}"
 
 
 class Objective(Section):
@@ -125,7 +143,7 @@ def load_specification(path: str | Path) -> Specification:
         section = validate(_File, table).optimise
         section = section.model_copy(update={"first": [flat(entry) for entry in section.first]})
         _check(section)
-    return Specification(str(path), path.parent, path.read_text(encoding="utf-8-sig"), section)
+    return Specification(str(path), path.parent, read_regular(path).decode("utf-8-sig"), section)
 
 
 def _check(section: OptimiseSection) -> None:
@@ -143,13 +161,13 @@ def _check(section: OptimiseSection) -> None:
                 f"optimise.constraint {show(constraint.quantity)} has no limit: give at_most or "
                 "at_least"
             )
+    named = {variable.name: variable for variable in section.variable}
     for number, first in enumerate(section.first, start=1):
-        for key in first:
-            if key not in seen:
-                raise InputError(
-                    f"optimise.first {number}: {show_key(key)} is no variable: allowed "
-                    f"{', '.join(seen)}"
-                )
+        for key, value in first.items():
+            where = f"optimise.first {number}: {show_key(key)}"
+            if key not in named:
+                raise InputError(f"{where} is no variable: allowed {', '.join(named)}")
+            require(named[key].takes(value), where, value, named[key].range_text)
 
 
 def _check_variable(variable: Variable, seen: set[str]) -> None:

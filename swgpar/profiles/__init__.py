@@ -172,10 +172,18 @@ def _build(
         given = [f"{key} = {show(value)}" for key, value in keys if isinstance(value, float)]
         values = f" with {', '.join(given)}" if given else ""
         reason = f"{name}{values} cannot be built: {error}"
-        if hasattr(keys, "cutter_radius"):
-            reason += "; allowed are cutters that stay inside the tooth"
-        raise InputError(reason) from None
+        raise InputError(f"{reason}{_hint(keys, name, str(error))}") from None
     return profile
+
+
+def _hint(keys: ExternalProfile | InternalProfile, name: str, reason: str) -> str:
+    """What helps a flank that cannot be built for this reason; empty where nothing is known."""
+    if hasattr(keys, "cutter_radius"):
+        return "; allowed are cutters that stay inside the tooth"
+    if isinstance(keys, Conjugate) and "land is left" in reason:
+        change = "larger, so that its teeth are thinner" if "root" in reason else "smaller"
+        return f"; no other r_root mends it: make {name}.backlash {change}"
+    return ""
 
 
 def _refuse_other_keys(

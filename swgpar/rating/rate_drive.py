@@ -23,7 +23,7 @@ from swgpar.results.lock import releasing
 from swgpar.results.table import format_csv
 from swgpar.run_options import RunOptions
 from swgpar.studies.case import Outcome
-from swgpar.studies.job import remove_runs, run_one
+from swgpar.studies.job import run_one
 from swgpar.studies.many_runs import claim_folder, do_runs, note_ended, print_line
 from swgpar.systems.drive import DRIVE
 
@@ -168,17 +168,13 @@ def _words(index: int, count: int, run: PlannedRun, outcome: Outcome) -> list[st
 
 
 def _claim(folder: Path, options: RunOptions) -> None:
-    def remove() -> None:
-        remove_runs(folder / RUNS)
-        for name in (JSON, CSV, PAGE):
-            (folder / name).unlink(missing_ok=True)
-
     claim_folder(
         options.comm,
         folder,
         "a rating",
         [folder / RUNS],
-        remove,
+        (JSON, CSV, PAGE),
+        runs=RUNS,
         restart=options.restart,
         overwrite=options.overwrite,
     )

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import fields, is_dataclass
@@ -19,18 +20,31 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.errors import OutputError, SwgparError
+from swgpar.results import made_files
+from swgpar.whole_files import sync
 
 T = TypeVar("T")
 
-TEMPORARY = ".tmp"
+TEMPORARY = ".swgpar.tmp"
 """Suffix of files being written; left-overs of a killed run are removed by the next one."""
+
+
+FAILURES = (OSError, RuntimeError, ValueError, KeyError)
+"""Errors of files that libraries raise."""
+
+
+HDF5 = re.compile(r"^'?(Unable to|Can't) .*\(.*\)")
+"""Messages of the library HDF5, which name parts of its inside."""
 
 
 def reason_of(error: BaseException) -> str:
     """Reason of a failure without traceback, number or file name."""
-    if isinstance(error, OSError) and error.strerror:
-        return error.strerror
-    return str(error).splitlines()[0] if str(error) else type(error).__name__
+    if isinstance(error, OSError) and error.errno:
+        return os.strerror(error.errno)  # h5py has a text of its own in its place
+    text = str(error).splitlines()[0] if str(error) else type(error).__name__
+    if HDF5.search(text):
+        return "it is no HDF5 file of this program, or was cut off or changed"
+    return text
 
 
 def raise_first(comm: MPI.Comm, error: SwgparError | None) -> None:
@@ -71,7 +85,10 @@ def agreed(comm: MPI.Comm, path: Path, action: str = "write") -> Iterator[None]:
         yield
     except SwgparError as error:
         failure = error
-    except (OSError, RuntimeError, ValueError, KeyError) as error:
+    except Exception as error:
+        # what a file of anybody holds may raise anything; else it is an error of the program
+        if action != "read" and not isinstance(error, FAILURES):
+            raise
         failure = OutputError(f"cannot {action} {path}: {reason_of(error)}")
     raise_first(comm, failure)
 
@@ -88,18 +105,14 @@ def reserve(path: Path, size: int) -> None:
 
 
 def finish(temporary: Path, path: Path) -> None:
-    """Flush a finished temporary file to the disk and give it its name."""
-    _sync(temporary)
+    """Flush a finished temporary file to the disk and give it its name.
+
+    Raises OutputError where a results folder has a file of this name that no run has made.
+    """
+    made_files.note(path)
+    sync(temporary)
     os.replace(temporary, path)
-    _sync(path.parent)
-
-
-def _sync(path: Path) -> None:
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
+    sync(path.parent)
 
 
 def discard(path: Path) -> None:
@@ -111,8 +124,9 @@ def discard(path: Path) -> None:
 def write_file(path: Path, content: bytes) -> None:
     """Write a whole file atomically; call it on one rank only."""
     temporary = path.with_name(path.name + TEMPORARY)
+    discard(temporary)
     try:
-        with open(temporary, "wb") as file:
+        with open(temporary, "xb") as file:
             file.write(content)
         finish(temporary, path)
     except BaseException:

@@ -148,6 +148,7 @@ class FieldWriter:
         with agreed(self.comm, path):
             if self.comm.rank == 0:
                 temporary = path.with_name(path.name + TEMPORARY)
+                discard(temporary)
                 with h5py.File(temporary, "w") as file:
                     for part in (MESH, *(increment_name(i) for i, _ in increments)):
                         file[part] = h5py.ExternalLink(f"{FIELDS}/{part}.h5", "/")

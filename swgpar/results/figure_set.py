@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from abc import ABC, abstractmethod
@@ -13,7 +14,8 @@ from mpi4py import MPI
 
 from swgpar.errors import OutputError, SwgparError
 from swgpar.log import logger
-from swgpar.results.atomic import agreed, raise_first, reason_of
+from swgpar.results import made_files
+from swgpar.results.atomic import agreed, raise_first, reason_of, write_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -99,6 +101,8 @@ class FigureSet(ABC):
         with agreed(comm, figures):
             if comm.rank == 0:
                 figures.mkdir(parents=True, exist_ok=True)
+                for name in self.drawings:  # here, and not by the ranks that draw them
+                    made_files.note(figures / f"{name}.png")
         paths = {name: figures / f"{name}.png" for name in self.drawings}
         failure: SwgparError | None = None
         writer = self._writers()
@@ -136,7 +140,10 @@ def _write(figure: Figure, path: Path, dots_per_inch: float) -> None:
     if engine is not None:
         engine.execute(figure)
         figure.set_layout_engine(None)
-    figure.savefig(path, dpi=dots_per_inch, pil_kwargs={"compress_level": COMPRESSION})
+    png = io.BytesIO()
+    options = {"compress_level": COMPRESSION}
+    figure.savefig(png, format="png", dpi=dots_per_inch, pil_kwargs=options)
+    write_file(path, png.getvalue())
 
 
 class NamedFigures(FigureSet):

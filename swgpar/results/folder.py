@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +12,9 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from swgpar import log
 from swgpar.errors import InputError, OutputError
 from swgpar.input.quantities import show
-from swgpar.results import history, lock
-from swgpar.results.atomic import TEMPORARY, agreed, discard, on_root, reason_of, write_file
+from swgpar.results import history, lock, made_files
+from swgpar.results.atomic import TEMPORARY, agreed, discard, on_root, reason_of
+from swgpar.results.table import Columns, read_columns
 
 RECIPE = "recipe.toml"
 """The mesh recipe that was chosen for an accuracy."""
@@ -54,26 +56,28 @@ REPORT = "report.html"
 LOG = "run.log"
 """The log of the run."""
 
-RESULTS = (
-    history.NAME,
+COMMON_RESULTS = (history.NAME, SUMMARY, "figures/*.png", REPORT, LOG)
+"""Files of all systems."""
+
+DRIVE_RESULTS = (
+    *COMMON_RESULTS,
     history.DESCRIPTION,
     CHECKPOINT,
     START_STATES,
-    SUMMARY,
     *(f"{name}.csv" for name in DRIVE_TABLES),
     SECTOR,
     SECTOR_XDMF,
-    "published.csv",
-    RECIPE,
-    f"{TABLES}/*.csv",
     "fields.xdmf",
     FIELD_INDEX,
     f"{FIELDS}/*.h5",
-    "figures/*.png",
-    REPORT,
-    LOG,
 )
-"""Files that `overwrite` removes."""
+"""Files of a drive whose mesh is given."""
+
+TRAIN_RESULTS = (*COMMON_RESULTS, "published.csv", f"{TABLES}/*.csv")
+"""Files of a gear train."""
+
+RESULTS = tuple(dict.fromkeys((*DRIVE_RESULTS, RECIPE, *TRAIN_RESULTS)))
+"""Files that `overwrite` removes, as far as a run has made them."""
 
 
 def given_folder(out: str | Path) -> Path:
@@ -88,15 +92,29 @@ def open_log(out: Path | None, comm: MPI.Comm) -> None:
     log.close_file()
     if out is not None:
         with agreed(comm, out / LOG):
+            if comm.rank == 0:
+                made_files.note(out / LOG)
             log.to_file(out / LOG, comm)
 
 
-def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
+def prepare(
+    out: Path,
+    comm: MPI.Comm,
+    written: Iterable[str],
+    *,
+    restart: bool,
+    overwrite: bool,
+    inputs: Iterable[Path] = (),
+) -> bool:
     """Make the folder, lock it and try to write in it; raises OutputError on all ranks.
 
     The function that runs releases the lock: it is decorated with `lock.releasing`.
 
     Results of an earlier run are refused unless `restart` continues or `overwrite` replaces them.
+    So are links, and files that no run has made here, under names that the run will write.
+
+    written : patterns of these names;  inputs : files that the run reads, which stay
+
     Returns whether there is a checkpoint to continue from: without one a run starts again.
     """
     with agreed(comm, out):
@@ -104,8 +122,9 @@ def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
             out.mkdir(parents=True, exist_ok=True)
             lock.acquire(out)
             probe = out / f"probe{TEMPORARY}"
-            write_file(probe, b"swgpar")
-            probe.unlink()
+            discard(probe)
+            with probe.open("xb") as file:
+                file.write(b"swgpar")
             for left in out.glob(f"*{TEMPORARY}"):
                 discard(left)
     present, saved = on_root(
@@ -116,18 +135,34 @@ def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
             f"{out} already holds results: continue them with restart = true (--restart), replace "
             "them with overwrite = true (--overwrite), or choose another folder"
         )
-    if overwrite and not restart:
-        with agreed(comm, out):
-            if comm.rank == 0:
-                remove_results(out)
+    with agreed(comm, out):
+        if comm.rank == 0:
+            if restart and saved:
+                made_files.begin(out, DRIVE_RESULTS)
+            made_files.require_own(out, written)
+            made_files.begin(out)
+            if overwrite and not restart:
+                made_files.require_none_of(out, written, inputs)
+                remove_results(out, inputs)
     return restart and saved
 
 
-def remove_results(out: Path) -> None:
-    """Remove the results of an earlier run from a folder; call it on one rank."""
-    for pattern in RESULTS:
-        for old in out.glob(pattern):
-            old.unlink()
+def remove_results(out: Path, inputs: Iterable[Path] = ()) -> None:
+    """Remove what an earlier run has made in a folder; call it on one rank. inputs : that stay"""
+    made_files.remove(out, RESULTS, [path.resolve() for path in inputs])
+
+
+class TableFacts(BaseModel):
+    """Number of rows of a table, and its columns of texts."""
+
+    rows: int
+    texts: list[str]
+
+    @classmethod
+    def of(cls, columns: Columns) -> TableFacts:
+        """Those of a table."""
+        texts = [name for name, values in columns.items() if values.dtype.kind == "U"]
+        return cls(rows=max(map(len, columns.values()), default=0), texts=texts)
 
 
 class StoredSummary(BaseModel):
@@ -137,11 +172,35 @@ class StoredSummary(BaseModel):
 
     design: dict[str, Any]
     versions: dict[str, str] = {}
+    tables: dict[str, TableFacts] = {}
 
     @property
     def written_by(self) -> str:
         """Words for the version of swgpar."""
         return self.versions.get("swgpar", "of unknown number")
+
+    def require_whole(self, folder: Path, tables: Mapping[str, Columns]) -> None:
+        """Raise OutputError where a table has other rows than the run has written, or texts in a
+        column of numbers. tables : by the file's path below the folder
+        """
+        for name, written in self.tables.items():
+            found = TableFacts.of(tables.get(name, {}))
+            if found.rows != written.rows:
+                raise OutputError(
+                    f"{folder / name} has {found.rows} rows, and the run wrote {written.rows}: "
+                    "restore it from a copy, or run again"
+                )
+            if changed := sorted(set(found.texts) - set(written.texts)):
+                raise OutputError(
+                    f"{folder / name} has texts in the column {changed[0]}, and the run wrote "
+                    "numbers: restore it from a copy, or run again"
+                )
+
+
+def table_facts(folder: Path, names: Iterable[str]) -> dict[str, dict[str, Any]]:
+    """Facts of tables in a folder by the file's path, for `StoredSummary`; call it on one rank."""
+    present = [name for name in names if (folder / name).exists()]
+    return {name: TableFacts.of(read_columns(folder / name)).model_dump() for name in present}
 
 
 def read_summary(folder: Path) -> StoredSummary:

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from swgpar.errors import OutputError
+from swgpar.results.made_files import refuse_link
 
 if TYPE_CHECKING:
     from filelock import BaseFileLock
@@ -48,6 +49,8 @@ def acquire(folder: Path) -> None:
     if name in _held:
         return
     lock: BaseFileLock = FileLock(path, timeout=0.0, fallback_to_soft=False)
+    for file in (path, owner):
+        refuse_link(file)
     try:
         lock.acquire()
         path.write_text(f"{os.getpid()}\n{platform.node()}\n", encoding="utf-8")

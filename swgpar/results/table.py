@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from swgpar.errors import printable
+from swgpar.errors import OutputError, printable
 
 Columns = Mapping[str, np.ndarray]
 """Of a table, by name; all of one length."""
@@ -63,9 +63,11 @@ def as_columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
 
 
 def read_columns(path: Path) -> dict[str, np.ndarray]:
-    """Columns of a table: float64 where every value is a number, else text."""
-    with open(path, newline="", encoding="utf-8") as file:
-        header, *rows = csv.reader(file)
+    """Columns of a table: float64 where every value is a number, else text.
+
+    Raises OutputError for a file that is none that `format_csv` writes.
+    """
+    header, rows = read_rows(path)
     columns = {}
     for name, values in zip(header, zip(*rows, strict=True)):
         try:
@@ -73,6 +75,25 @@ def read_columns(path: Path) -> dict[str, np.ndarray]:
         except ValueError:
             columns[name] = np.array(values)
     return columns
+
+
+def read_rows(path: Path) -> tuple[list[str], list[list[str]]]:
+    """Header and rows of a table, which all have as many cells; raises OutputError otherwise."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            found = list(csv.reader(file))
+    except (OSError, ValueError, csv.Error) as error:
+        reason = getattr(error, "strerror", None) or "it is no table"
+        raise OutputError(f"cannot read {path}: {reason}") from None
+    if not found or len({*found[0]}) < len(found[0]):
+        raise OutputError(f"cannot read {path}: it has no header with a name for each column")
+    for number, row in enumerate(found[1:], start=2):
+        if len(row) != len(found[0]):
+            raise OutputError(
+                f"cannot read {path}: row {number} has {len(row)} cells, and the header "
+                f"{len(found[0])}: it was cut off or changed"
+            )
+    return found[0], found[1:]
 
 
 def as_rows(columns: Mapping[str, np.ndarray]) -> list[dict[str, Any]]:

@@ -15,9 +15,10 @@ from swgpar.errors import InputError, SwgparError, printable
 from swgpar.input.design import Design
 from swgpar.log import logger
 from swgpar.petsc import release_unused
+from swgpar.results import made_files
 from swgpar.results.atomic import agreed, on_root, reason_of, to_json, write_file, write_from_root
 from swgpar.results.figure_set import save_figures
-from swgpar.results.folder import SUMMARY, remove_results
+from swgpar.results.folder import RESULTS, SUMMARY, remove_results
 from swgpar.run_options import RunOptions
 from swgpar.studies.case import Outcome
 from swgpar.systems import System
@@ -92,14 +93,17 @@ def remove_runs(folder: Path) -> None:
     """Remove the results of all runs below a folder; call it on one rank."""
     for status in [*folder.glob(f"**/{STATUS}")]:
         remove_results(status.parent)
-        status.unlink()
+        made_files.remove(status.parent, [STATUS])
 
 
 def _make(folder: Path, comm: MPI.Comm) -> None:
-    """Whether the folder can be written is found out by all ranks afterwards."""
-    if comm.rank == 0:
-        with suppress(OSError):
+    """Make the folder of a run, and the list of its files; collective."""
+    with agreed(comm, folder):
+        if comm.rank == 0:
+            made_files.refuse_link(folder)
             folder.mkdir(parents=True, exist_ok=True)
+            begun = (folder / STATUS).exists()
+            made_files.begin(folder, (STATUS, *RESULTS) if begun else ())
 
 
 def _continues(old: dict[str, Any], record: dict[str, Any]) -> bool:

@@ -11,8 +11,10 @@ from mpi4py import MPI
 from swgpar import log, watch
 from swgpar.errors import OutputError
 from swgpar.log import console
+from swgpar.results import made_files
 from swgpar.results.atomic import agreed
 from swgpar.results.lock import acquire
+from swgpar.studies.job import remove_runs
 from swgpar.tasks import Send, share_tasks
 
 
@@ -21,27 +23,37 @@ def claim_folder(
     out: Path,
     what: str,
     marks: Iterable[Path],
-    remove: Callable[[], None],
+    written: Iterable[str],
     *,
+    runs: str = "",
     restart: bool,
     overwrite: bool,
 ) -> None:
     """Make and lock a folder. `releasing` must decorate the caller; collective.
 
     what : the folder holds, in messages;  marks : paths of which one is there then
-    remove : removes what the folder holds
+    written : patterns of the names of its own files;  runs : folder in it of the runs
     """
     with agreed(comm, out):
         if comm.rank == 0:
             out.mkdir(parents=True, exist_ok=True)
             acquire(out)
-            if overwrite and not restart:
-                remove()
-            elif not restart and any(mark.exists() for mark in marks):
+            if not overwrite and not restart and any(mark.exists() for mark in marks):
                 raise OutputError(
                     f"{out} already holds {what}: continue it with restart = true (--restart), "
                     "replace it with overwrite = true (--overwrite), or choose another folder"
                 )
+            if restart:
+                made_files.begin(out, written)
+            made_files.require_own(out, written)
+            made_files.begin(out)
+            if runs:
+                made_files.refuse_link(out / runs)
+                (out / runs).mkdir(exist_ok=True)
+            if overwrite and not restart:
+                if runs:
+                    remove_runs(out / runs)
+                made_files.remove(out, written)
 
 
 def do_runs(

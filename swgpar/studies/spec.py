@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 from swgpar.errors import InputError
 from swgpar.input.quantities import Section, quantity, show, show_key
+from swgpar.input.regular_file import read_regular
 from swgpar.input.require import require
 from swgpar.input.toml_file import read_toml, split_override, validate
 from swgpar.studies.run_file import RunFile, RunsSection, flat, refusals_of, require_only
@@ -95,7 +96,7 @@ def load_study(path: str | Path) -> Study:
     file."""
     path = Path(path)
     table = read_toml(path)
-    return _make_study(table, str(path), path.parent, path.read_text(encoding="utf-8-sig"))
+    return _make_study(table, str(path), path.parent, read_regular(path).decode("utf-8-sig"))
 
 
 def make_study(table: Mapping[str, Any]) -> Study:

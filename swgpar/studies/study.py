@@ -14,14 +14,14 @@ from mpi4py import MPI
 from swgpar import log, watch
 from swgpar.errors import InputError, OutputError
 from swgpar.input.toml_file import require_source
-from swgpar.results.atomic import agreed, on_root, write_from_root
+from swgpar.results.atomic import on_root, write_from_root
 from swgpar.results.folder import given_folder
 from swgpar.results.lock import releasing
 from swgpar.results.table import format_csv
 from swgpar.run_options import RunOptions
 from swgpar.studies.case import Job, Outcome
 from swgpar.studies.cases import expand
-from swgpar.studies.job import read_status, remove_runs, run_one
+from swgpar.studies.job import read_status, run_one
 from swgpar.studies.many_runs import claim_folder, do_runs, note_ended
 from swgpar.studies.report import make_report
 from swgpar.studies.spec import Study, load_study, make_study
@@ -36,7 +36,7 @@ from swgpar.studies.table import (
 from swgpar.studies.terminal import StudyProgress
 from swgpar.tasks import Send
 
-TABLE, PUBLISHED, REPORT = "study.csv", "published.csv", "study.html"
+TABLE, PUBLISHED, REPORT, CASES = "study.csv", "published.csv", "study.html", "cases"
 
 
 @dataclass(frozen=True)
@@ -223,17 +223,16 @@ def _read(source: str | Path | Mapping[str, Any]) -> tuple[Study, list[Job]]:
 
 
 def _claim(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
-    cases = out / "cases"
-
-    def remove() -> None:
-        remove_runs(cases)
-        for name in (TABLE, PUBLISHED, REPORT):
-            (out / name).unlink(missing_ok=True)
-
-    claim_folder(comm, out, "a study", [cases], remove, restart=restart, overwrite=overwrite)
-    with agreed(comm, cases):
-        if comm.rank == 0:
-            cases.mkdir(exist_ok=True)
+    claim_folder(
+        comm,
+        out,
+        "a study",
+        [out / CASES],
+        (TABLE, PUBLISHED, REPORT),
+        runs=CASES,
+        restart=restart,
+        overwrite=overwrite,
+    )
 
 
 def _statuses(jobs: Sequence[Job], folder: Path | None) -> list[str | None]:

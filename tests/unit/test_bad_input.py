@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import importlib
+import inspect
+import pkgutil
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from pydantic import ValidationError
 
+import swgpar
 from support.paths import DATA, DESIGN, REFERENCE
 from swgpar import load_design
 from swgpar.errors import InputError
@@ -299,3 +304,46 @@ def test_a_key_of_points(value: object) -> None:
         Curve.model_validate({"points": value})
     words = "is not a list of lists of numbers: allowed points [x, y] (mm)"
     assert words in sentence(Curve, refused.value)
+
+
+class _OneFinding:
+    """One finding of pydantic, as `sentence` reads them."""
+
+    def __init__(self, finding: Any) -> None:
+        self.finding = finding
+
+    def errors(self, **_: object) -> list[Any]:
+        return [self.finding]
+
+
+def _sections() -> list[type[Section]]:
+    """All kinds of sections of the package."""
+    for module in pkgutil.walk_packages(swgpar.__path__, "swgpar."):
+        if not module.name.startswith(("swgpar.watch._", "swgpar.cli.__main__")):
+            importlib.import_module(module.name)
+    found, new = [], [Section]
+    while new:
+        new = [cls for parent in new for cls in parent.__subclasses__()]
+        found += new
+    own = [cls for cls in found if cls.__module__.startswith("swgpar.")]
+    return [cls for cls in own if not inspect.isabstract(cls)]
+
+
+def test_every_key_refuses_every_value_in_a_sentence() -> None:
+    """Whatever the type of the key: also of keys that may be left out."""
+    values = [-1e300, 2, 1.5, True, "x", "", [], [[]], ["x"], {}, {"x": 1}, None, float("nan"), 1j]
+    refused = 0
+    for cls in _sections():
+        for name in cls.model_fields:
+            for value in values:
+                try:
+                    cls.model_validate({name: value})
+                except ValidationError as error:
+                    for finding in error.errors(include_url=False):
+                        if finding["loc"][:1] == (name,):
+                            text = sentence(cls, _OneFinding(finding))  # type: ignore[arg-type]
+                            refused += 1
+                            assert name in text and str(InputError(text)).isprintable()
+                except InputError:
+                    pass
+    assert refused > 3000

@@ -163,6 +163,7 @@ BAD = [
     ("ball_diameter=0", "ball_diameter", "above 0"),
     ("ball_diameter=18", "ball_diameter", "smallest radius of curvature"),
     ("race_thickness=-1", "race_thickness", "above 0"),
+    ("race_thickness=1e-6", "race_thickness", "0.01 modules"),
     ("race_thickness=17", "race_thickness", "smallest radius of curvature"),
     ("race_width=9", "race_width", "drive.face_width"),
     ("clearance=-0.1", "clearance", "0 to 1000000 mm"),

@@ -116,3 +116,22 @@ def test_a_check_with_a_mesh_prints_the_needs() -> None:
     assert found["unknowns modelled"] > 0 and set(without) < set(found)
     with pytest.raises(InputError, match="has no mesh"):
         swgpar.check(DRIVERS / "ring_supported.toml", mesh="coarse")
+
+
+def test_time_grows_with_increments_programs_and_turns() -> None:
+    recipe = load_recipe(RECIPE)
+
+    def seconds(*overrides: str) -> float:
+        return forecast(swgpar.load_design(DESIGN, [*PLANE, *overrides]), recipe).seconds
+
+    usual = seconds("steps.rotation=40", "steps.increment=2")  # one period is sampled
+    assert seconds("steps.rotation=0") == usual
+    many = seconds("steps.samples=0", "steps.rotation=3600", "steps.increment=0.01")
+    assert many == pytest.approx(360e3 / (4 + 6) * usual, rel=1e-3)
+    stages = ["{name='a', torque=0.1, points=60}", "{name='b', torque=0.2, points=36}"]
+    program = seconds("steps.rotation=0", f"load.program=[{', '.join(stages)}]")
+    assert program == pytest.approx((4 + 96) / (4 + 6) * usual)
+    loop = seconds("steps.rotation=0", "stiffness.torque=0.2", "stiffness.positions=50")
+    assert loop > 20.0 * usual
+    turns = seconds("steps.rotation=0", "deviations.turns=5")
+    assert turns == pytest.approx((4 + 1 + 5 * 42) / (4 + 6) * usual)

@@ -92,7 +92,7 @@ def test_every_writer_leaves_valid_files(value: float, tmp_path: Path) -> None:
     stored = trains.StoredTrainSummary.model_validate(strict((tmp_path / SUMMARY).read_bytes()))
     read = trains.summary_from(stored, result.summary.design, result.summary.known)
     assert read["several[1]"].value == 1.0 and read["one"].value is None
-    values = GEAR_TRAIN.measure(trains.read(tmp_path, read)).values
+    values = GEAR_TRAIN.measure(trains.read(tmp_path, stored, read)).values
     assert values == GEAR_TRAIN.measure(result).values and len(values) == 1
 
 

@@ -114,6 +114,7 @@ REFUSED = [
         {"stiffness.break_points": [0.7, 0.2]},
         r"stiffness.break_points = \[0.7, 0.2\] is out of range: allowed two",
     ),
+    ({"stiffness.break_points": [0.3, 0.300001]}, "stiffness.break_points .* 0.01 apart"),
     ({"stiffness.break_points": [0.01, 0.2]}, "stiffness.break_points .* above 0.04"),
     (
         {"stiffness.lost_motion_share": 0.0005},

@@ -90,6 +90,12 @@ def test_two_objectives_give_a_front_in_a_database(tmp_path: Path) -> None:
         ({"keys": '["mesh.stifness"]'}, "stifness"),
         ({"at_most": "'much'"}, "at_most"),
         ({"goal": '"maximize"'}, "maximize"),
+        (
+            {"first": '[{ "mesh.stiffness" = 2e12 }]'},
+            r"2e\+12 is out of range: allowed 1000000000 to 1e\+11",
+        ),
+        ({"first": '[{ "mesh.stiffness" = "2e9" }]'}, '"2e9" is out of range: allowed 1000000000'),
+        ({"first": '[{ "gear_2.mass" = 1.0 }]'}, "gear_2.mass is no variable: allowed mesh"),
     ],
 )
 def test_a_bad_file_is_refused_in_one_sentence(
@@ -98,6 +104,15 @@ def test_a_bad_file_is_refused_in_one_sentence(
     with pytest.raises(InputError, match=words) as refusal:
         swgpar.optimise(written(tmp_path, **changes), tmp_path / "out")
     assert "\n" not in str(refusal.value)
+
+
+def test_a_variable_below_a_value_is_refused(tmp_path: Path) -> None:
+    """No design would take it."""
+    path = written(tmp_path)
+    text = path.read_text(encoding="utf-8").replace('["gear_1.mass", "', '["gear_1.mass.x", "')
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=r"gear_1\.mass\.x = .* cannot be applied"):
+        swgpar.optimise(path, tmp_path / "out")
 
 
 def test_toml_that_is_written_reads_the_same() -> None:

@@ -95,7 +95,8 @@ def test_files_of_the_command_line_are_read(tmp_path: Path) -> None:
             "-stiffness_mat_mumps_icntl_7 abc",
             "-stiffness_mat_mumps_icntl_7 abc: Input string abc has no",
         ),
-        (1, "-snes_max_it 2.5x", "-snes_max_it 2.5x: Input string 2.5x has no integer value"),
+        (1, "-snes_lag_jacobian 2x", "-snes_lag_jacobian 2x: Input string 2x has no integer value"),
+        (2, "-snes_max_it 0", "-snes_max_it is not available, as the program decides when"),
         (2, "-malloc_debug maybe", "Unknown logical value: maybe"),
         (
             1,
@@ -149,8 +150,8 @@ def test_a_linear_solver_that_fails_is_named(tmp_path: Path) -> None:
 def test_options_that_nothing_uses_are_named(tmp_path: Path, ranks: int) -> None:
     words = (
         "-snes_monitorr",
-        "-snes_rtol",
-        "1e-30",
+        "-snes_lag_jacobian",
+        "1",
         "-stiffness_ksp_max_it",
         "abc",
         "-options_left",
