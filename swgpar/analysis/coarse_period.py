@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from swgpar.analysis.coarse_start import transfer
 from swgpar.analysis.drive_mesh_error import ORDER, SAFETY, smallest_ratio
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.predictor import KnownState
+from swgpar.analysis.transfer import transfer
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.period_ranges import INPUT_TORQUE, CoarsePeriod, period_curves
 from swgpar.log import logger

@@ -10,39 +10,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.bent_start import bend
 from swgpar.analysis.drive_mesh_error import coarser_recipes, with_finer_flanks
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.model_sources import NEW_MODELS, ModelSource
 from swgpar.analysis.saved_state import StartStates
+from swgpar.analysis.transfer import transfer
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError, SwgparError
-from swgpar.fem.vectors import read_field, write_field
-from swgpar.geometry.rotation import rotated
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
-from swgpar.meshing.interpolation import interpolation
 from swgpar.meshing.recipe_counts import coarser
-from swgpar.model.drive_model import DriveModel, build_drive_model
-from swgpar.petsc import PETSc
-
-
-def transfer(coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec) -> None:
-    """Set y of the fine model to x of the coarse one, sector by sector, on the same ranks."""
-    for body, layout in fine.partition.layouts.items():
-        sectors = fine.partition.owned_indices(body)
-        angle = layout.chain_angle(sectors)
-        local = rotated(read_field(coarse.partition, body, sectors, x), -angle[:, None])
-        matrix = interpolation(coarse.partition.layouts[body].mesh, layout.mesh)
-        values = np.zeros((len(local), matrix.shape[0], 3))
-        for own, sector in enumerate(local):
-            values[own] = matrix @ sector
-        write_field(fine.partition, body, rotated(values, angle[:, None]), y)
-    if fine.comm.rank == fine.comm.size - 1:
-        n = fine.partition.n_multipliers
-        y.array[-n:] = x.array_r[-n:]
+from swgpar.model.drive_model import DriveModel
 
 
 def levels(design: DriveDesign, recipe: MeshRecipe) -> list[MeshRecipe]:
@@ -66,24 +47,29 @@ def solve_to_load(
     coarse: DriveModel | None = None,
     *,
     kept: StartStates | None = None,
+    models: ModelSource = NEW_MODELS,
 ) -> DriveModel:
-    """The loaded drive on one mesh, from the loaded state of the model `coarse`, which is released.
+    """The loaded drive on one mesh, from the loaded state of the model `coarse`, which is given
+    back.
 
     kept : loaded states of an earlier run, to which this one is added
+    models : of all meshes; a state of the mesh under another load comes before that of `coarse`
 
     Raises ConvergenceError or InputError where a mesh does not allow it.
     """
     model = None
     try:
-        model = build_drive_model(design, recipe, comm=comm)
+        model = models.take(design, recipe, comm)
         stepper = LoadStepper(model)
         taken_over = kept is not None and kept.restore(model, recipe)
-        if taken_over:
+        if taken_over or (known := _from_other_load(stepper, models)) is not None:
             if coarse is not None:
-                coarse.destroy()
-            iterations = [_settle(stepper)]
+                models.give_back(coarse)
+                coarse = None
+            iterations = [_settle(stepper) if taken_over else known]
         elif coarse is not None:
-            iterations = [take_over(coarse, stepper)]
+            iterations = [take_over(coarse, stepper, models)]
+            coarse = None
         else:
             iterations = _reach_load(stepper)
         if kept is not None and not taken_over:
@@ -92,8 +78,9 @@ def solve_to_load(
     except SwgparError:
         for one in (coarse, model):
             if one is not None:
-                one.destroy()
+                models.drop(one)
         raise
+    models.keep_loaded(stepper)
     counted = " + ".join(map(str, iterations))
     logger.info(
         "loaded on a mesh of %d elements, Newton iterations %s", model.n_elements(), counted
@@ -106,6 +93,20 @@ def _settle(stepper: LoadStepper) -> int:
     loaded = stepper.sequence.loaded
     stepper.resume_at(loaded)
     stepper.advance(loaded)
+    return stepper.iterations
+
+
+def _from_other_load(stepper: LoadStepper, models: ModelSource) -> int | None:
+    """Reach the load from that of another run; Newton iterations, None where no state is known or
+    none leads there."""
+    if not models.resume(stepper):
+        return None
+    try:
+        stepper.advance(stepper.sequence.loaded)
+    except ConvergenceError as error:
+        logger.info("no start from the state under another load: %s", error)
+        stepper.reset()
+        return None
     return stepper.iterations
 
 
@@ -142,13 +143,14 @@ def start_at_load(
     recipe: MeshRecipe,
     on_coarse: Callable[[DriveModel, MeshRecipe], None],
     kept: StartStates,
+    models: ModelSource = NEW_MODELS,
 ) -> bool:
-    """Reach the loaded state on coarser meshes or from the bent shape; False if that is not asked
-    for, or fails.
+    """Reach the loaded state from that under another load, on coarser meshes or from the bent
+    shape; False if that is not asked for, or fails.
 
     recipe : of the stepper's mesh;  for the others see `start_loaded`
     """
-    coarser_ones, compares = levels(stepper.design, recipe), stepper.design.resolves_root_stress
+    coarser_ones, compares = levels(stepper.design, recipe), stepper.design.compares_meshes
     ways: list[tuple[list[MeshRecipe], list[MeshRecipe]]] = []
     if coarser_ones:
         last = coarser_ones.pop()
@@ -157,13 +159,17 @@ def start_at_load(
         if compares and not ways and (compared := coarser_recipes(recipe)):
             ways.append(([], compared))
         ways.append(([], []))
+    if ways and models.resume(stepper):
+        asked = compares or stepper.sequence.samples > 0
+        ways.insert(0, ([], ways[0][1] if asked else []))
     for recipes, compared in ways:
         try:
-            start_loaded(stepper, recipes + compared, on_coarse, kept, len(compared))
+            start_loaded(stepper, recipes + compared, on_coarse, kept, len(compared), models)
             return True
         except (ConvergenceError, InputError) as error:
+            known = stepper.load_state.is_periodic
             what = "on coarser meshes" if compared else "from the bent shape"
-            logger.info("no start %s: %s", what, error)
+            logger.info("no start %s: %s", "from another load" if known else what, error)
             stepper.reset()
     return False
 
@@ -174,37 +180,44 @@ def start_loaded(
     on_coarse: Callable[[DriveModel, MeshRecipe], None] = lambda model, recipe: None,
     kept: StartStates | None = None,
     compared: int = 0,
+    models: ModelSource = NEW_MODELS,
 ) -> None:
-    """Bring `stepper` to the loaded state by way of coarser meshes, the coarsest of `recipes`
-    first, or bent at once.
+    """Bring `stepper` to the loaded state: from that under another load where it has one, by way of
+    coarser meshes, the coarsest of `recipes` first, or bent at once.
 
     on_coarse : called with the model on each of the last `compared` ones of the coarser meshes, and
         its recipe; it raises nothing
-    kept : see `solve_to_load`
+    kept, models : see `solve_to_load`
 
     Raises ConvergenceError or InputError where a mesh does not allow it; `stepper` is then to be
     reset.
     """
     target, coarse = stepper.model, None
     with target.phases("start"):
-        if not recipes:
-            _jump(stepper)
-            return
         for left, recipe in zip(range(len(recipes), 0, -1), recipes):
-            coarse = solve_to_load(target.design, recipe, target.comm, coarse, kept=kept)
+            keys = target.design, recipe, target.comm, coarse
+            coarse = solve_to_load(*keys, kept=kept, models=models)
             if left <= compared:
                 on_coarse(coarse, recipe)
-        take_over(coarse, stepper)
+        if stepper.load_state.is_periodic:
+            if coarse is not None:
+                models.give_back(coarse)
+            stepper.advance(stepper.sequence.loaded)
+        elif coarse is not None:
+            take_over(coarse, stepper, models)
+        else:
+            _jump(stepper)
+    models.keep_loaded(stepper)
 
 
-def take_over(coarse: DriveModel, stepper: LoadStepper) -> int:
-    """Take over the loaded state of the model on another mesh, which is released, and solve;
+def take_over(coarse: DriveModel, stepper: LoadStepper, models: ModelSource = NEW_MODELS) -> int:
+    """Take over the loaded state of the model on another mesh, which is given back, and solve;
     Newton iterations."""
     loaded = stepper.sequence.loaded
     try:
         transfer(coarse, coarse.problem.x, stepper.model, stepper.problem.x)
     finally:
-        coarse.destroy()
+        models.give_back(coarse)
     stepper.load_state = loaded
     stepper.advance(loaded)
     return stepper.iterations

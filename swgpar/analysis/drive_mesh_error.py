@@ -148,8 +148,10 @@ def coarser_mesh(
 
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
-    found = resolve_root_stress(model, state, COMPARED_LEVELS, COMPARED_LEVELS - 1, ring=coarsest)
     contacts, bearing = pair_contacts(model, state), loaded_bearing(model, state)
+    if not model.design.resolves_root_stress:
+        return CoarserMesh(recipe, {}, contacts, {}, bearing)
+    found = resolve_root_stress(model, state, COMPARED_LEVELS, COMPARED_LEVELS - 1, ring=coarsest)
     return CoarserMesh(recipe, found.by_part, contacts, found.regions, bearing)
 
 

@@ -23,6 +23,7 @@ from swgpar.analysis.drive_mesh_error import (
     with_finer_flanks,
 )
 from swgpar.analysis.forecast import fits, forecast
+from swgpar.analysis.model_sources import NEW_MODELS, ModelSource
 from swgpar.analysis.saved_state import StartStates
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError, SwgparError
@@ -87,6 +88,7 @@ class Refinement:
     largest : elements of the whole drive beyond which no mesh is taken
     kept : loaded states of an earlier run, to which those of this one are added
     levels : windows on the first mesh; None for the usual ones
+    models : of all meshes
 
     Attributes
     ----------
@@ -101,8 +103,10 @@ class Refinement:
         largest: int,
         kept: StartStates | None = None,
         levels: int | None = None,
+        models: ModelSource = NEW_MODELS,
     ) -> None:
         self.design, self.comm, self.largest, self.kept = design, comm, largest, kept
+        self.models = models
         self.loaded, self.kind = load_sequence(design).loaded, design.drive.model
         self.levels = levels or LEVELS[self.kind]
         coarser = coarser_recipes(recipe)
@@ -112,7 +116,7 @@ class Refinement:
         try:
             self.known = self._refined(coarser, recipe)
         except SwgparError:
-            self.model.destroy()
+            models.drop(self.model)
             raise
 
     def _refined(
@@ -153,13 +157,14 @@ class Refinement:
 
     def _solved(self, recipe: MeshRecipe, coarse: DriveModel | None = None) -> DriveModel:
         """The loaded model on a mesh, from the state of a coarser one if it is given."""
-        return solve_to_load(self.design, recipe, self.comm, coarse, kept=self.kept)
+        keys = self.design, recipe, self.comm, coarse
+        return solve_to_load(*keys, kept=self.kept, models=self.models)
 
     def _replace(self, recipe: MeshRecipe) -> None:
         """Take the model on this mesh, from the present one's state where its path is of no
         account."""
         if self.design.contact.friction:
-            self.model.destroy()
+            self.models.give_back(self.model)
             self.model = self._solved(recipe)
             return
         try:
@@ -198,7 +203,7 @@ class Refinement:
             self.known = self._refined(coarser, finer, self.known.found)
         except (ConvergenceError, InputError) as error:
             logger.warning("no finer mesh of the drive: %s", error)
-            self.model.destroy()
+            self.models.give_back(self.model)
             self.model = self._solved(self.known.recipe)
             return False
         return True
@@ -212,19 +217,20 @@ def choose_mesh(
     *,
     largest: int | None = None,
     kept: StartStates | None = None,
+    models: ModelSource = NEW_MODELS,
 ) -> ChosenMesh:
     """Refine `recipe` and the windows until the estimated relative error of the root's stress is at
     most `accuracy`.
 
     largest : elements of the whole drive beyond which no finer mesh is taken; None for `LARGEST`
-    kept : see `Refinement`
+    kept, models : see `Refinement`
 
     Ends with the best mesh where the accuracy is out of reach, and says so. Raises ConvergenceError
     or InputError like a run on one of the first two meshes.
     """
     largest = LARGEST[design.drive.model] if largest is None else largest
     levels = FEWEST_LEVELS[design.drive.model] if accuracy >= ROUGH else None
-    drive = Refinement(design, recipe, comm, largest, kept, levels)
+    drive = Refinement(design, recipe, comm, largest, kept, levels, models)
     refine = {"windows": drive.refine_windows, "mesh": drive.refine_drive}
     while relative_error(drive.known.found) > accuracy:
         errors = {

@@ -33,7 +33,9 @@ class RotationPath:
     """Follows the torque of the output under a prescribed rotation.
 
     A step is halved until the torque at its end is nearly on the straight line through the two
-    before it. After a fall it is halved until the peak is known to `tolerance`.
+    before it. After a fall it is halved until the peak is known to `tolerance`. In a backlash,
+    where no flanks touch, it is not: a bearing has a small torque there, which no step makes
+    straight.
 
     stepper : whose states are advanced
     points : so far; those of later steps are appended
@@ -55,6 +57,7 @@ class RotationPath:
         self._step = PART_OF_PITCH
         # N·m; below it torques are round-off of the forces that bend the spline
         self._floor = stepper.design.negligible_torque_Nm
+        self._is_free = False
 
     def follow(self, target: LoadState) -> None:
         """Go to `target`, or to where the torque has fallen; the stepper's iterations are those of
@@ -69,6 +72,7 @@ class RotationPath:
         if not self.points or abs(self.points[-1].rotation_deg - here.rotation_deg) > SAME_PLACE:
             self.points[:] = [here]  # the way to here was not a prescribed rotation
         done, iterations, steps, leaps = 0.0, 0, 0, False
+        self._is_free = not stepper.problem.touching_pairs()
         while done < 1.0 and not self.has_ended():
             before, end = stepper.snapshot(), min(1.0, done + self._step / whole)
             step, failure = (end - done) * whole, None
@@ -78,8 +82,11 @@ class RotationPath:
             except ConvergenceError as error:
                 failure = error
             iterations, steps = iterations + stepper.iterations, steps + 1
-            if failure is None and (leaps or self._is_resolved(point, step)):
+            free = failure is None and not stepper.problem.touching_pairs()
+            in_backlash = free and self._is_free
+            if failure is None and (leaps or in_backlash or self._is_resolved(point, step)):
                 self.points.append(point)
+                self._is_free = free
                 # the last step of an increment may be a short one
                 done, self._step = end, min(max(self._step, 2.0 * step), PART_OF_PITCH)
                 leaps = False

@@ -27,6 +27,7 @@ from swgpar.analysis.forecast import forecast, reported_memory, require_memory
 from swgpar.analysis.identity import identity
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.mesh_refinement import choose_mesh
+from swgpar.analysis.model_sources import NEW_MODELS, ModelSource
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.saved_state import StartStates
 from swgpar.analysis.shortcuts import MESHES, with_shortcuts
@@ -50,7 +51,7 @@ from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
 from swgpar.meshing.recipe_counts import body_ratio
-from swgpar.model.drive_model import DriveModel, build_drive_model
+from swgpar.model.drive_model import DriveModel
 from swgpar.petsc import warn_of_unused_options
 from swgpar.results.atomic import on_all
 from swgpar.results.folder import DRIVE_RESULTS, RECIPE, open_log, prepare
@@ -68,8 +69,10 @@ def _require(design: DriveDesign, recipe: MeshRecipe) -> None:
 
 
 @releasing
-def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
-    """Run a design; collective.
+def run_drive(
+    design: DriveDesign, options: RunOptions, models: ModelSource = NEW_MODELS
+) -> DriveData:
+    """Run a design; collective. models : where those of all its meshes come from
 
     Raises
     ------
@@ -121,9 +124,10 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
             if resumed:
                 recipe = on_all(comm, lambda: load_recipe(folder / RECIPE))
             else:
-                chosen = choose_mesh(design, recipe, options.accuracy, comm, kept=kept)
+                asked = design, recipe, options.accuracy, comm
+                chosen = choose_mesh(*asked, kept=kept, models=models)
                 recipe = chosen.recipe
-        model = build_drive_model(design, recipe, comm=comm) if chosen is None else chosen.model
+        model = models.take(design, recipe, comm) if chosen is None else chosen.model
         stepper = LoadStepper(model)
         recorder = (
             MemoryRecorder(stepper) if folder is None else FolderRecorder(stepper, folder, what)
@@ -131,17 +135,17 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
         try:
             if chosen is not None:
                 recorder.keep_choice(chosen, options.accuracy)
-            run = DriveRun(recorder, recipe, kept, options, begin)
+            run = DriveRun(recorder, recipe, kept, options, begin, models)
             run.go_through(run.resume() if resumed else run.start())
             result = run.finish(recipe_name)
         except SwgparError as error:
             # collective: all ranks have this error, but perhaps not one of another kind
-            model.destroy()
+            models.drop(model)
             saved = len(recorder.record.rows) if folder is not None else 0
             if not saved or not isinstance(error, (ConvergenceError, TimeLimitError)):
                 raise
             raise type(error)(f"{error}; {saved} increments are saved in {folder}") from None
-        model.destroy()
+        models.give_back(model)
     return result
 
 
@@ -169,6 +173,7 @@ class DriveRun:
 
     recipe : of the model's mesh;  kept : loaded states on the meshes of the start
     begin : time.perf_counter() at the run's start
+    models : of this mesh and of the others
     """
 
     def __init__(
@@ -178,11 +183,13 @@ class DriveRun:
         kept: StartStates,
         options: RunOptions,
         begin: float,
+        models: ModelSource,
     ) -> None:
         self.recorder, self.stepper, self.model = recorder, recorder.stepper, recorder.model
         self.recipe, self.kept, self.options, self.begin = recipe, kept, options, begin
-        self.earlier_seconds, self.ended_early = 0.0, False
+        self.models, self.earlier_seconds, self.ended_early = models, 0.0, False
         self.coarser: list[CoarserMesh | None] = []
+        self.comparison: MeshComparison | None = None
         counts = self.model.counts()
         logger.info(
             "%d elements, %d nodes in the whole drive; %d unknowns modelled%s; %d ranks",
@@ -218,7 +225,7 @@ class DriveRun:
             self.stepper.resume_at(sequence.loaded)
             return sequence.from_loaded
         record.starts_loaded = start_at_load(
-            self.stepper, self.recipe, self._keep_coarse, self.kept
+            self.stepper, self.recipe, self._keep_coarse, self.kept, self.models
         )
         return sequence.from_loaded if record.starts_loaded else sequence.states
 
@@ -231,7 +238,7 @@ class DriveRun:
             wall = coarse_wall(model, loaded, recipe, self.recipe)
             self.recorder.record.coarse_wall = wall
         found = None
-        if model.design.resolves_root_stress:
+        if model.design.compares_meshes:
             model.take_over_windows(self.model)
             try:
                 found = coarser_mesh(model, recipe, loaded, coarsest=not self.coarser)
@@ -249,7 +256,7 @@ class DriveRun:
         design, comm = self.model.design, self.model.comm
         for recipe in coarser_recipes(self.recipe):
             try:
-                model = solve_to_load(design, recipe, comm)
+                model = solve_to_load(design, recipe, comm, models=self.models)
             except (ConvergenceError, InputError) as error:
                 logger.info("the error by the mesh of the drive is not known: %s", error)
                 self.coarser.append(None)
@@ -257,7 +264,7 @@ class DriveRun:
             try:
                 self._keep_coarse(model, recipe)
             finally:
-                model.destroy()
+                self.models.give_back(model)
 
     def go_through(self, states: Sequence[LoadState]) -> None:
         """Compute and record the increments that are left."""
@@ -282,6 +289,8 @@ class DriveRun:
                 if state != stepper.load_state and not self._advance(steps, state):
                     break
                 seconds = time.perf_counter() - start
+                if state == loaded and design.compares_meshes:
+                    self._compare(state)
                 if design.resolves_root_stress:
                     record.root_stress = self._root_stress(state, state == loaded)
                 if state == loaded and design.resolves_wall:
@@ -320,9 +329,6 @@ class DriveRun:
         known, sequence = self.recorder.record.root_stress, self.stepper.sequence
         # of two periods the first one settles
         further = sequence.samples and sequence.periods == 1 and state.stage == Stage.ROTATE
-        if loaded and known is None and not self.coarser:
-            with self.model.phases("coarser mesh"):
-                self._load_coarser()
         try:
             with self.model.phases("windows"):
                 if loaded:
@@ -336,20 +342,30 @@ class DriveRun:
             )
         return known
 
-    def _resolve_loaded(self, state: LoadState) -> RootStress:
-        found = resolve_root_stress(self.model, state)
-        known, record = [one for one in self.coarser if one is not None], self.recorder.record
+    def _compare(self, state: LoadState) -> None:
+        """Compare contacts and bearing of the loaded state with those on coarser meshes, where
+        these are not known before."""
+        record = self.recorder.record
+        if record.root_stress is not None:  # the choice of the mesh has compared it
+            return
+        if not self.coarser:
+            with self.model.phases("coarser mesh"):
+                self._load_coarser()
+        known = [one for one in self.coarser if one is not None]
         if len(known) < len(self.coarser):
-            return found
+            return
         contacts = pair_contacts(self.model, state)
-        record.contact_errors = contact_errors(
-            known, self.recipe, contacts, self.model.design.wave_generator.lobes
-        )
+        lobes = self.model.design.wave_generator.lobes
+        record.contact_errors = contact_errors(known, self.recipe, contacts, lobes)
         bearing = loaded_bearing(self.model, state)
         if bearing is not None:
             record.bearing_errors = bearing_errors(known, self.recipe, bearing)
         ring_teeth = self.model.partition.layouts[RING_GEAR].count
-        return MeshComparison(self.recipe, known, contacts, ring_teeth).with_errors(found)
+        self.comparison = MeshComparison(self.recipe, known, contacts, ring_teeth)
+
+    def _resolve_loaded(self, state: LoadState) -> RootStress:
+        found = resolve_root_stress(self.model, state)
+        return found if self.comparison is None else self.comparison.with_errors(found)
 
     def _wall_stress(self, state: LoadState) -> WallStress | None:
         """Largest stresses of the wall behind the teeth; None where they cannot be computed."""
@@ -368,12 +384,14 @@ class DriveRun:
         design, rows, error = model.design, recorder.record.rows, None
         if design.stiffness is not None and design.stiffness.mesh_error:
             with model.phases("coarser mesh"):
-                error = stiffness_error(design, self.recipe, recorder.program_rows(), model.comm)
+                keys = design, self.recipe, recorder.program_rows(), model.comm
+                error = stiffness_error(*keys, self.models)
         if design.deviations is not None:
             follow_turns(self.recipe, recorder)
         else:
             recorder.keep_turns(period_rows(sequence, rows))
         if sequence.samples and rows:
+            self.models.keep_period(self.stepper)
             rows = continued(sequence, rows)
         rows = history_rows(sequence.kinematics, rows)
         summary, tables = evaluate_run(

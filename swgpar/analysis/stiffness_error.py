@@ -14,6 +14,7 @@ from mpi4py import MPI
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.drive_mesh_error import ORDER, SAFETY, coarser_recipes, smallest_ratio
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.model_sources import ModelSource
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.evaluation.program_results import PointRow, point_rows
@@ -32,11 +33,15 @@ DOUBLED = 1.0 / (1.0 - 2.0**-ORDER)
 
 
 def stiffness_error(
-    design: DriveDesign, recipe: MeshRecipe, rows: Sequence[PointRow], comm: MPI.Comm
+    design: DriveDesign,
+    recipe: MeshRecipe,
+    rows: Sequence[PointRow],
+    comm: MPI.Comm,
+    models: ModelSource,
 ) -> dict[str, float] | None:
     """Error of every value of `StiffnessValues` on the mesh of `recipe`; None where there is none.
 
-    rows : of program.csv on that mesh. Collective.
+    rows : of program.csv on that mesh;  models : of other meshes. Collective.
     """
     coarser = coarser_recipes(recipe)
     if not coarser or body_ratio(coarser[0], recipe) is None:
@@ -49,10 +54,11 @@ def stiffness_error(
     coarse, ratio = coarser[0], smallest_ratio(coarser[0], recipe)
     fine = by_position(stiffness_program(first), rows)[0.0]
     try:
-        found = _stiffness_on(first, coarse, comm)
+        found = _stiffness_on(first, coarse, comm, models)
         changes = [_changes(found, fine, 1.0 / (ratio**ORDER - 1.0))]
         if design.drive.model == "plane":
-            doubled = _stiffness_on(first, with_equal_doubled(recipe, coarse), comm)
+            finer = with_equal_doubled(recipe, coarse)
+            doubled = _stiffness_on(first, finer, comm, models)
             changes.append(_changes(fine, doubled, DOUBLED))
     except (ConvergenceError, InputError) as error:
         logger.info("the error of the stiffness by the mesh is not known: %s", error)
@@ -84,9 +90,11 @@ def _first_position(design: DriveDesign) -> DriveDesign:
     return design.model_copy(update={"stiffness": section})
 
 
-def _stiffness_on(design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> StiffnessValues:
+def _stiffness_on(
+    design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm, models: ModelSource
+) -> StiffnessValues:
     """The stiffness at the only position of a design, on another mesh."""
-    model = solve_to_load(design, recipe, comm)
+    model = solve_to_load(design, recipe, comm, models=models)
     try:
         stepper = LoadStepper(model)
         sequence = stepper.sequence
@@ -96,6 +104,6 @@ def _stiffness_on(design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> St
             stepper.advance(state)
             rows.append(stepper.row())
     finally:
-        model.destroy()
+        models.give_back(model)
     points = point_rows(sequence.points, sequence.kinematics, rows)
     return by_position(stiffness_program(design), points)[0.0]

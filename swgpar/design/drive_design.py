@@ -47,6 +47,21 @@ SOLVER_CHOICES = {
 """Keys of [solver] that a restart may change: they are about how systems are solved, and limits."""
 
 
+OF_STATES = (
+    "steps",
+    "stiffness",
+    "ratcheting",
+    "output",
+    "fatigue",
+    "losses",
+    "deviations",
+    "frequencies",
+    "rating",
+)
+"""Sections that say which states are computed and what is asked of them. Of deviations and
+frequencies only whether they are there changes the model."""
+
+
 class DriveDesign(DriveSections):
     """A drive, its load and how it is computed. Attributes are the keys of the design file."""
 
@@ -336,3 +351,26 @@ class DriveDesign(DriveSections):
         if self.bearing is not None:
             content["cage_speed"] = self.cage_speed  # follows from steps.samples
         return content
+
+    @property
+    def model_keys(self) -> dict[str, Any]:
+        """The keys that determine the model on a mesh, by section: without the load, and without
+        what is asked of the states under it."""
+        load = set() if self.load.inertia else {"input_speed"}
+        content = self.model_dump(
+            exclude={
+                **dict.fromkeys(OF_STATES, True),
+                "load": {"torque", "program", *load},
+                "solver": {"iteration_limit", "time_limit"},
+            }
+        )
+        content["deviates"] = self.deviations is not None
+        return content
+
+    @property
+    def modelled_part(self) -> tuple[int, bool, bool, float]:
+        """What of the drive the model has: copies that make the whole of it, whether teeth out of
+        reach are left out or one element each, and the speed of the cage, which moves the balls
+        where the wave generator has turned."""
+        cage = 0.0 if self.bearing is None else self.cage_speed
+        return self.copies, self.leaves_out_far_teeth, self.condenses_teeth, cage

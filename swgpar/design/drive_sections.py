@@ -185,6 +185,12 @@ class DriveSections(Design):
         return self.output.root_stress and not self.has_program and not self.without_windows
 
     @property
+    def compares_meshes(self) -> bool:
+        """Whether the drive is loaded on coarser meshes for errors by the mesh."""
+        compares = self.output.contact_errors and not self.has_program and not self.without_windows
+        return self.resolves_root_stress or compares
+
+    @property
     def resolves_wall(self) -> bool:
         """Whether rings resolve the stress of the wall of a cup."""
         return self.output.root_stress and self.has_cup

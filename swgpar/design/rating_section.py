@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 from swgpar.input.quantities import Section, positive, quantity
 
@@ -56,6 +56,20 @@ class RatingSection(Section):
         None,
     )
     flank_pressure_source: str = quantity("", text="where this pressure comes from")
+    flank_treatment: (
+        Literal["through_hardened", "induction_hardened", "nitrided", "case_hardened"] | None
+    ) = quantity(
+        None,
+        text="instead of flank_pressure: treatment of the softer flank, of steel, whose pressure "
+        "follows from flank_hardness",
+    )
+    flank_hardness: float | None = positive("hardness of the softer flank", "HV", None)
+    ring_yield_strength: float | None = positive(
+        "yield strength of the ring gear; default fatigue.yield_strength where both gears are of "
+        "one material",
+        "MPa",
+        None,
+    )
     K1: float | None = positive("least stiffness up to the first break point", "N·m/rad", None)
     K2: float | None = positive("least stiffness between the break points", "N·m/rad", None)
     K3: float | None = positive("least stiffness above the second break point", "N·m/rad", None)

@@ -300,6 +300,11 @@ class Output(Section):
         text="resolve the largest stresses of teeth and wall of the flexible spline under load by "
         "windows on finer meshes",
     )
+    contact_errors: bool = quantity(
+        False,
+        text="without root_stress: load the drive on a coarser mesh too, for the errors of "
+        "contacts and bearing",
+    )
 
 
 class Fatigue(Section):

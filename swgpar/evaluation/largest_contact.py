@@ -131,7 +131,7 @@ class LargestContact(AnswerGroup):
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
-        return super().kinds(design) if design.resolves_root_stress else ()
+        return super().kinds(design) if design.compares_meshes else ()
 
     def answers(self) -> Iterator[Answer]:
         pairs = {"contact.pressure": self.largest, "contact.pressure_off_edges": self.off_edges}

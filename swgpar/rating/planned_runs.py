@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from math import gcd
 from typing import Any
 
 import numpy as np
 
 from swgpar.analysis.shortcuts import SAMPLES
 from swgpar.checks.design_file import make_drive, with_points
+from swgpar.checks.rating_checks import check_rating
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.input.toml_file import validate
@@ -122,14 +124,15 @@ class _UnderTorque:
     """What a run under one torque is for.
 
     period : whether it goes through one
-    windows : whether stresses are resolved and the mesh is compared with coarser ones, from which
-    the errors follow
+    windows : whether stresses are resolved
+    errors : whether the mesh is compared with coarser ones; with windows it is
     """
 
     cases: tuple[LoadCase, ...]
     sections: tuple[str, ...] = ()
     period: bool = False
     windows: bool = False
+    errors: bool = False
 
     def __add__(self, other: _UnderTorque) -> _UnderTorque:
         return _UnderTorque(
@@ -137,6 +140,7 @@ class _UnderTorque:
             self.sections + other.sections,
             self.period or other.period,
             self.windows or other.windows,
+            self.errors or other.errors,
         )
 
 
@@ -146,6 +150,7 @@ def make_rated_drive(table: dict[str, Any]) -> DriveDesign:
     design = validate(DriveDesign, with_points(table)).made_by(make_rated_drive)
     loads = rating_loads(design)
     make_drive(_content(design, loads, loads.rated, ()))
+    check_rating(design)
     return design
 
 
@@ -161,7 +166,7 @@ def plan_runs(design: DriveDesign) -> RatingPlan:
     given = tuple(name for name in ("losses", "deviations") if getattr(design, name) is not None)
     apart = friction and "deviations" in given
     beside = tuple(name for name in given if name != "deviations" or not friction)
-    want(loads.rated, _UnderTorque((LoadCase.RATED,), beside, period=True, windows=True))
+    want(loads.rated, _UnderTorque((LoadCase.RATED,), beside, period=True, errors=True))
     if design.fatigue is None:
         missing[LoadCase.REPEATED_PEAK] = NO_STRENGTHS
     else:
@@ -170,7 +175,7 @@ def plan_runs(design: DriveDesign) -> RatingPlan:
     if design.bearing is None:
         missing[LoadCase.AVERAGE] = NO_BEARING
     else:
-        want(loads.average, _UnderTorque((LoadCase.AVERAGE,), windows=True))
+        want(loads.average, _UnderTorque((LoadCase.AVERAGE,), errors=True))
     want(loads.largest, _UnderTorque((LoadCase.LARGEST,), windows=True))
     runs = [_under_torque(design, loads, torque, run) for torque, run in wanted.items()]
     if "losses" in given:
@@ -224,17 +229,19 @@ def _under_torque(
     *,
     without_friction: bool = False,
 ) -> PlannedRun:
-    """A run under one torque (N·m). Where it is refused, a run with stresses leaves out its
-    sections, and then its period."""
+    """A run under one torque (N·m). Where it is refused, a run with errors leaves out its sections,
+    and then its period."""
     content, said = _content(design, loads, torque, run.sections), ""
     if without_friction:
         content["contact"] = {**content.get("contact", {}), "friction": 0.0}
         said = "friction of the flanks, which it cannot have"
+    compared = run.windows or run.errors
     if not run.windows:
-        content["output"] = {**content["output"], "root_stress": False}
+        asked = {"root_stress": False, "contact_errors": run.errors}
+        content["output"] = {**content["output"], **asked}
     alone = {key: value for key, value in content.items() if key not in APART}
     ways = [_with_period(design, content, run)]
-    if run.windows:
+    if compared:
         ways += [_with_period(design, alone, run), alone]
     refusals: list[str] = []
     for way in ways:
@@ -252,9 +259,22 @@ def _with_period(design: DriveDesign, content: dict[str, Any], run: _UnderTorque
     if not run.period:
         return content
     periods = 2 if content.get("contact", {}).get("friction") else 1
-    samples = design.steps.samples or design.kinematics.apart(SAMPLES[design.drive.model])
+    cycle = any(content.get(name) is not None for name in ("fatigue", "losses"))
+    samples = design.steps.samples or _samples(design, cycle=cycle)
     rotation = float(np.degrees(design.kinematics.period_angle)) * periods
     return content | {"steps": {**content["steps"], "rotation": rotation, "samples": samples}}
+
+
+def _samples(design: DriveDesign, *, cycle: bool) -> int:
+    """Angles in a period. cycle : whether a stress cycle is asked for, which needs one at every
+    pitch of a period of teeth and bolts"""
+    kinematics, fewest = design.kinematics, SAMPLES[design.drive.model]
+    if kinematics.pitches == 1:
+        return kinematics.apart(fewest)
+    samples = max(fewest, kinematics.pitches) if cycle else fewest
+    while kinematics.states(samples) < samples or gcd(samples, kinematics.pitches) > 1:
+        samples += 1
+    return samples
 
 
 def _program(design: DriveDesign, loads: RatingLoads, case: LoadCase) -> PlannedRun:
@@ -265,6 +285,7 @@ def _program(design: DriveDesign, loads: RatingLoads, case: LoadCase) -> Planned
     if case == LoadCase.STIFFNESS:
         keys = {"torque": loads.rated, "rated_torque": loads.rated} | keys
     content = _content(design, loads, loads.rated, ()) | {name: keys}
+    content["output"] = {**content["output"], "root_stress": False}
     try:
         return PlannedRun((case,), make_drive(content))
     except InputError as error:

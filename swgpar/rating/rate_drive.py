@@ -9,6 +9,7 @@ from mpi4py import MPI
 
 from swgpar import watch
 from swgpar.analysis.accuracy import not_refinable
+from swgpar.analysis.model_sources import LoadedDrives
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.summary import DriveSummary
@@ -25,7 +26,7 @@ from swgpar.run_options import RunOptions
 from swgpar.studies.case import Outcome
 from swgpar.studies.job import run_one
 from swgpar.studies.many_runs import claim_folder, do_runs, note_ended, print_line
-from swgpar.systems.drive import DRIVE
+from swgpar.systems.drive import DRIVE, Drives
 
 JSON, CSV, PAGE = "rating.json", "rating.csv", "rating.html"
 """Names of the sheet in its folder."""
@@ -124,6 +125,8 @@ def rate_drive(design: DriveDesign, options: RunOptions) -> RatingSheet:
         options = replace(options, recipe=recipe, recipe_name=name)
     _claim(folder, options)
     book, count = _Book(design, plan, rows, recipe, folder), len(plan.runs)
+    drives = LoadedDrives()
+    system = Drives(drives)
     watch.saved("runs", 0, count)
 
     def run(index: int, own: MPI.Comm, _: object) -> None:
@@ -136,7 +139,7 @@ def rate_drive(design: DriveDesign, options: RunOptions) -> RatingSheet:
             comm=own,
             terminal=False,
         )
-        outcome = run_one(DRIVE, planned.design, given, planned.refusal)
+        outcome = run_one(system, planned.design, given, planned.refusal)
         book.note(planned, outcome, own)
         _write(book.sheet(), own)
         if own.rank == 0:
@@ -145,6 +148,7 @@ def rate_drive(design: DriveDesign, options: RunOptions) -> RatingSheet:
                 print_line(_words(index, count, planned, outcome))
 
     do_runs(comm, "ranks", count, run, None)
+    drives.destroy()
     return book.sheet()
 
 

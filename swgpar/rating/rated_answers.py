@@ -11,13 +11,25 @@ from swgpar.answers.answer import Answer, with_error, with_no_limit
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.evaluation.safety_and_life import CRITERIA, RegionSafety
 from swgpar.largest_stress.places import OF_REGION
-from swgpar.model.regions import ATTACHED, BACK, RIM_INSIDE, TOOTH_END, TOOTH_ROOT, WALL
+from swgpar.model.regions import (
+    ATTACHED,
+    BACK,
+    OUTER,
+    RIM,
+    RIM_INSIDE,
+    TOOTH_END,
+    TOOTH_ROOT,
+    WALL,
+)
 
 AT_TEETH = (TOOTH_ROOT, TOOTH_END, RIM_INSIDE)
 """Regions of the toothed part of the flexible spline away from contacts of flanks."""
 
 BEHIND_TEETH = (*WALL, BACK, ATTACHED)
 """Regions of its wall."""
+
+IN_RING = (TOOTH_ROOT, TOOTH_END, RIM, OUTER)
+"""Regions of the ring gear away from contacts of flanks."""
 
 STATIC_PRESSURE = 4200.0
 """Pressure (MPa) between ball and race under the basic static load rating of a radial ball bearing
@@ -26,9 +38,12 @@ STATIC_PRESSURE = 4200.0
 AGAINST_FATIGUE = ("goodman", "crossland")
 
 
-def largest_mises(summary: DriveSummary, regions: Collection[str]) -> Answer | None:
-    """Largest von Mises stress of the flexible spline in these regions."""
-    every = (summary.get(f"largest.fs_vm{OF_REGION}{region}") for region in regions)
+def largest_mises(
+    summary: DriveSummary, regions: Collection[str], gear: str = "fs"
+) -> Answer | None:
+    """Largest von Mises stress of a gear in these regions: "fs" the flexible spline, "rg" the ring
+    gear."""
+    every = (summary.get(f"largest.{gear}_vm{OF_REGION}{region}") for region in regions)
     found = [one for one in every if one is not None and one.value is not None]
     return max(found, key=lambda one: one.value or 0.0, default=None)
 

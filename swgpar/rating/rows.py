@@ -14,6 +14,7 @@ from swgpar.design.rating_section import RatingSection
 from swgpar.drive_results.report_checks import RESOLUTION
 from swgpar.drive_results.strength_checks import FIRST_YIELD
 from swgpar.drive_results.summary import DriveSummary
+from swgpar.materials.pitting import PITTING_LIMITS, SOURCE
 from swgpar.rating.planned_runs import (
     NO_BEARING,
     NO_LOSSES,
@@ -25,6 +26,7 @@ from swgpar.rating.planned_runs import (
 from swgpar.rating.rated_answers import (
     AT_TEETH,
     BEHIND_TEETH,
+    IN_RING,
     largest_mises,
     least_fatigue_safety,
     resolution,
@@ -38,6 +40,12 @@ AnswerSource = Callable[[DriveSummary], Answer | None]
 IDEAL = "a lower bound, that of the ideal drive: [deviations] is not given"
 NO_FRICTION = "a lower bound: contact.friction = 0, and the loop has no area"
 ALWAYS_AT_PEAK = "a lower bound, of the repeated peak torque at all times"
+NO_FLANK_PRESSURE = (
+    "no limit of the material pair is known: rating.flank_pressure, or for steels "
+    "rating.flank_treatment and flank_hardness"
+)
+NO_RING_STRENGTH = "the strength of the ring gear is not known: rating.ring_yield_strength"
+NO_PRELOAD = "cup.bolt_preload and cup.joint_friction are not given"
 NO_WALL = 'drive.model = "plane" has no wall'
 
 
@@ -133,6 +141,7 @@ def _strength(
             wall,
             of_strength=not wall,
         )
+    yield _yield_of_ring(design, section)
     often = loads.repeated_peak > loads.average
     yield RatingRow(
         "life of the flexible spline",
@@ -141,14 +150,14 @@ def _strength(
         _required(section.life, Sense.AT_LEAST, "life"),
         lower_bound=lambda _: ALWAYS_AT_PEAK if often else "",
     )
-    pressure, given = _named("contact.pressure"), section.flank_pressure
-    source = section.flank_pressure_source or "rating.flank_pressure"
+    pressure, most = _named("contact.pressure"), _flank_pressure(section)
     yield RatingRow(
         "pressure of the flanks",
         LoadCase.RATED,
         pressure,
-        None if given is None else Limit(given, Sense.AT_MOST, source),
-        of_strength=given is not None,
+        most,
+        "" if most else NO_FLANK_PRESSURE,
+        of_strength=most is not None,
     )
     first = None
     if strengths is not None:
@@ -163,6 +172,40 @@ def _strength(
         "" if first else NO_STRENGTHS,
         of_strength=True,
     )
+
+
+def _yield_of_ring(design: DriveDesign, section: RatingSection) -> RatingRow:
+    """The row of the ring gear, whose strength is that of the flexible spline where both are of one
+    material."""
+    strength, source = section.ring_yield_strength, "rating.ring_yield_strength"
+    alike = design.materials["ring_gear"] == design.materials["flexible_spline"]
+    if strength is None and design.fatigue is not None and alike:
+        strength, source = design.fatigue.yield_strength, "fatigue.yield_strength"
+    limit = None
+    if strength is not None:
+        source += " over rating.yield_safety"
+        limit = Limit(strength / section.yield_safety, Sense.AT_MOST, source)
+    return RatingRow(
+        "yield of the ring gear",
+        LoadCase.LARGEST,
+        partial(largest_mises, regions=IN_RING, gear="rg"),
+        limit,
+        "" if limit else NO_RING_STRENGTH,
+        of_strength=True,
+    )
+
+
+def _flank_pressure(section: RatingSection) -> Limit | None:
+    """The pressure that the flanks bear; None where it is not known."""
+    if section.flank_pressure is not None:
+        source = section.flank_pressure_source or "rating.flank_pressure"
+        return Limit(section.flank_pressure, Sense.AT_MOST, source)
+    if section.flank_treatment is None or section.flank_hardness is None:
+        return None
+    limit = PITTING_LIMITS[section.flank_treatment]
+    hardness = section.flank_hardness
+    source = f"pitting of {limit.text} of {hardness:g} HV [{SOURCE}]"
+    return Limit(limit.pressure(hardness), Sense.AT_MOST, source)
 
 
 def _bearing(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
@@ -181,10 +224,13 @@ def _bearing(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]
 def _bolts(design: DriveDesign) -> Iterator[RatingRow]:
     if not design.is_bolted:
         return
-    limit = Limit(1.0, Sense.AT_LEAST, "VDI 2230")
+    preloaded = design.cup.bolt_preload is not None
+    limit = Limit(1.0, Sense.AT_LEAST, "VDI 2230") if preloaded else None
+    lacks = "" if preloaded else NO_PRELOAD
     for name in ("sliding", "gaping"):
         answer = _named(f"bolts.{name}_safety")
-        yield RatingRow(f"{name} of bolts", LoadCase.LARGEST, answer, limit, of_strength=True)
+        case = LoadCase.LARGEST
+        yield RatingRow(f"{name} of bolts", case, answer, limit, lacks, of_strength=True)
 
 
 def _without_peak(summary: DriveSummary) -> str:

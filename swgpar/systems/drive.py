@@ -26,6 +26,7 @@ from swgpar.run_options import RunOptions
 from swgpar.systems.protocol import Measured, System
 
 if TYPE_CHECKING:
+    from swgpar.analysis.model_sources import ModelSource
     from swgpar.presentation.drive_result import DriveResult
 
 MAIN = ("mean.fs_s1", "mean.fs_s3", "mean.fs_vm", "mean.rg_vm", "mean.wg_torque_Nmm")
@@ -33,10 +34,16 @@ MAIN = ("mean.fs_s1", "mean.fs_s3", "mean.fs_vm", "mean.rg_vm", "mean.wg_torque_
 
 
 class Drives(System[DriveDesign, "DriveResult"]):
-    """The drive's adapter to the names that all systems share."""
+    """The drive's adapter to the names that all systems share.
+
+    models : that its runs share; None where each builds its own
+    """
 
     noun = "a drive"
     options = frozenset({"mesh", "accuracy", "restart", "plain"})
+
+    def __init__(self, models: ModelSource | None = None) -> None:
+        self.models = models
 
     def load(self, table: dict[str, Any], overrides: Overrides = ()) -> DriveDesign:
         return make_drive(apply_overrides(table, overrides))
@@ -48,10 +55,11 @@ class Drives(System[DriveDesign, "DriveResult"]):
         return remarks(design)
 
     def run(self, design: DriveDesign, options: RunOptions) -> DriveResult:
+        from swgpar.analysis.model_sources import NEW_MODELS
         from swgpar.analysis.run_drive import run_drive
         from swgpar.presentation.drive_result import DriveResult
 
-        return DriveResult.of(run_drive(design, options))
+        return DriveResult.of(run_drive(design, options, self.models or NEW_MODELS))
 
     def open(self, folder: Path, comm: MPI.Comm) -> DriveResult:
         from swgpar.drive_results.drive_data import open_data
@@ -119,7 +127,8 @@ class Drives(System[DriveDesign, "DriveResult"]):
             "identity": identity(design.decisive_keys, recipe, None),
             "rotation": design.steps.rotation,
         }
-        return found | ({"root_stress": True} if design.output.root_stress else {})
+        asked = {name: getattr(design.output, name) for name in ("root_stress", "contact_errors")}
+        return found | {name: True for name, is_asked in asked.items() if is_asked}
 
     def measure(self, result: DriveResult) -> Measured:
         summary = result.summary

@@ -14,6 +14,7 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stepping import WORLD, load_stepper, small
 from swgpar.analysis.deviating_drive import DeviatingDrive, TurnPoint
+from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.evaluation.fatigue import evaluate_fatigue
 from swgpar.evaluation.safety_and_life import SafetyAndLife
@@ -137,6 +138,18 @@ def test_stiffness_with_a_bearing() -> None:
     print(share, soft.summary.stiffness.K3, rigid.summary.stiffness.K3)
     assert 0.1 < share < 0.5
     assert (1.0 - share) / soft.summary.stiffness.K3 > 1.0 / rigid.summary.stiffness.K3
+
+
+@pytest.mark.parallel(1)
+def test_ratcheting_crosses_a_backlash_with_a_bearing_in_whole_steps() -> None:
+    """Two steps of 0.02 pitches end before flanks touch. The bearing has a torque there that is
+    larger than the one up to which a drive counts as unloaded."""
+    values = ("ratcheting.limit=0.04", *(f"{gear}.c_P=0.9" for gear in GEARS))
+    result = run(*BEARING, *values)
+    torque = np.abs(result.history["output_torque_Nmm"][-1])
+    assert result.history["pairs_in_contact"][-1] == 0
+    assert torque > result.summary.design.negligible_torque
+    assert result.summary.ratcheting.states == 3
 
 
 def turn_points(*overrides: str, indices: tuple[int, ...] = (0, 1)) -> dict[int, TurnPoint]:

@@ -1,0 +1,171 @@
+"""Where a run has its models from: built for it alone, or shared by runs of one drive under several
+loads."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field, replace
+
+from mpi4py import MPI
+
+from swgpar.analysis.identity import identity
+from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.predictor import KnownState
+from swgpar.analysis.transfer import transfer
+from swgpar.design.drive_design import DriveDesign
+from swgpar.load.load_states import LoadState
+from swgpar.meshing import MeshRecipe
+from swgpar.model.drive_model import DriveModel, build_drive_model
+from swgpar.petsc import PETSc
+from swgpar.results.atomic import to_json
+
+
+class ModelSource(ABC):
+    """Gives models of drives on meshes, and takes them back. All calls are collective."""
+
+    @abstractmethod
+    def take(self, design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> DriveModel:
+        """The model of a design on the mesh of a recipe. Raises InputError where the recipe gives
+        no mesh of it."""
+
+    @abstractmethod
+    def give_back(self, model: DriveModel) -> None:
+        """Nobody uses the model any more."""
+
+    @abstractmethod
+    def drop(self, model: DriveModel) -> None:
+        """Release a model in which a solve has failed."""
+
+    @abstractmethod
+    def keep_loaded(self, stepper: LoadStepper) -> None:
+        """The stepper has reached the loaded state of its run."""
+
+    @abstractmethod
+    def keep_period(self, stepper: LoadStepper) -> None:
+        """The stepper has gone through a sampled period."""
+
+    @abstractmethod
+    def resume(self, stepper: LoadStepper) -> bool:
+        """Set the stepper to a loaded state of its model under another load; False where none is
+        known, or where friction makes it depend on the path."""
+
+
+class NewModels(ModelSource):
+    """Builds every model anew."""
+
+    def take(self, design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> DriveModel:
+        return build_drive_model(design, recipe, comm=comm)
+
+    def give_back(self, model: DriveModel) -> None:
+        model.destroy()
+
+    def drop(self, model: DriveModel) -> None:
+        model.destroy()
+
+    def keep_loaded(self, stepper: LoadStepper) -> None:
+        pass
+
+    def keep_period(self, stepper: LoadStepper) -> None:
+        pass
+
+    def resume(self, stepper: LoadStepper) -> bool:
+        return False
+
+
+NEW_MODELS = NewModels()
+"""Of a run that shares none."""
+
+
+@dataclass
+class LoadedDrive:
+    """A model that several runs use, and what it has reached.
+
+    drive : identity of the drive, without its mesh and what of it is modelled
+    model : with the factor of its last tangent
+    loaded, x : load state and its vector; None before the first one
+    period : states over a sampled period, from the loaded one on; empty without one
+    """
+
+    drive: str
+    model: DriveModel
+    loaded: LoadState | None = None
+    x: PETSc.Vec | None = None
+    period: list[KnownState] = field(default_factory=list)
+
+
+class LoadedDrives(ModelSource):
+    """The models of one drive on several meshes, with the loaded states that they have reached.
+
+    Designs share a model where they differ in the load and in what is asked of the states under it
+    only (`DriveDesign.model_keys`). Without friction an equilibrium does not depend on the path to
+    it: the next run starts with that of the one before.
+    """
+
+    def __init__(self) -> None:
+        self._free: dict[str, LoadedDrive] = {}
+        self._taken: dict[str, LoadedDrive] = {}
+
+    def take(self, design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> DriveModel:
+        key = identity({**design.model_keys, "modelled": design.modelled_part}, recipe, None)
+        drive = self._free.pop(key, None)
+        if drive is None:
+            model = build_drive_model(design, recipe, comm=comm)
+            drive = LoadedDrive(to_json(design.model_keys).decode(), model)
+        else:
+            drive.model = replace(drive.model, design=design)
+            drive.model.phases.seconds.clear()
+            drive.model.solver.monitor = None
+            LoadStepper(drive.model).reset()
+        self._taken[key] = drive
+        return drive.model
+
+    def give_back(self, model: DriveModel) -> None:
+        model.release_windows()
+        key = self._key(model)
+        self._free[key] = self._taken.pop(key)
+
+    def drop(self, model: DriveModel) -> None:
+        self._taken.pop(self._key(model))
+        model.destroy()
+
+    def keep_loaded(self, stepper: LoadStepper) -> None:
+        if not stepper.design.contact.friction:
+            drive = self._taken[self._key(stepper.model)]
+            drive.loaded, drive.x = stepper.load_state, stepper.problem.x.copy()
+
+    def keep_period(self, stepper: LoadStepper) -> None:
+        if not stepper.design.contact.friction:
+            self._taken[self._key(stepper.model)].period = list(stepper.known_states)
+
+    def resume(self, stepper: LoadStepper) -> bool:
+        drive = self._taken[self._key(stepper.model)]
+        known = [one for one in self._all() if self._leads_to(one, drive, stepper)]
+        if not known or stepper.design.contact.friction:
+            return False
+        nearest = max(known, key=lambda one: (one is drive, one.model.n_elements()))
+        if nearest is drive:
+            nearest.x.copy(stepper.problem.x)
+            stepper.guides = drive.period
+        else:
+            transfer(nearest.model, nearest.x, stepper.model, stepper.problem.x)
+        stepper.load_state = nearest.loaded
+        return True
+
+    @staticmethod
+    def _leads_to(known: LoadedDrive, drive: LoadedDrive, stepper: LoadStepper) -> bool:
+        # where the wave generator has turned balls are elsewhere at another speed of the cage
+        if known.loaded is None or known.loaded.angle or stepper.sequence.loaded.angle:
+            return False
+        return known.drive == drive.drive
+
+    def destroy(self) -> None:
+        """Release all models."""
+        for drive in self._all():
+            drive.model.destroy()
+        self._free, self._taken = {}, {}
+
+    def _all(self) -> list[LoadedDrive]:
+        return [*self._free.values(), *self._taken.values()]
+
+    def _key(self, model: DriveModel) -> str:
+        return next(key for key, drive in self._taken.items() if drive.model is model)

@@ -1,0 +1,30 @@
+"""A state of a drive on another mesh, or of another part of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from swgpar.fem.vectors import read_field, write_field
+from swgpar.geometry.rotation import rotated
+from swgpar.meshing.interpolation import interpolation
+from swgpar.model.drive_model import DriveModel
+from swgpar.petsc import PETSc
+
+
+def transfer(coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec) -> None:
+    """Set y of the fine model to x of the coarse one, sector by sector; collective.
+
+    One may model a part of the drive, and the other all of it: images of sectors are rotated.
+    """
+    for body, layout in fine.partition.layouts.items():
+        sectors = fine.partition.owned_indices(body)
+        angle = layout.chain_angle(sectors)
+        local = rotated(read_field(coarse.partition, body, sectors, x), -angle[:, None])
+        matrix = interpolation(coarse.partition.layouts[body].mesh, layout.mesh)
+        values = np.zeros((len(local), matrix.shape[0], 3))
+        for own, sector in enumerate(local):
+            values[own] = matrix @ sector
+        write_field(fine.partition, body, rotated(values, angle[:, None]), y)
+    if fine.comm.rank == fine.comm.size - 1:
+        n = fine.partition.n_multipliers
+        y.array[-n:] = x.array_r[-n:]

@@ -1,0 +1,35 @@
+"""Checks of what [rating] says of the flanks. Each refusal names the key, its value and what is
+allowed."""
+
+from __future__ import annotations
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import InputError
+from swgpar.input.require import require, require_available
+from swgpar.materials.pitting import PITTING_LIMITS, STEEL_MODULUS
+
+
+def check_rating(design: DriveDesign) -> None:
+    """Raise InputError where treatment and hardness of the flanks give no limit."""
+    section = design.rating
+    if section is None:
+        return
+    treatment, hardness = section.flank_treatment, section.flank_hardness
+    if treatment is None:
+        allowed = "only with rating.flank_treatment"
+        require(hardness is None, "rating.flank_hardness", hardness, allowed)
+        return
+    key = f'rating.flank_treatment = "{treatment}"'
+    if hardness is None:
+        raise InputError(f"rating.flank_hardness is missing: {key} needs it")
+    given = f"rating.flank_pressure = {section.flank_pressure}"
+    require_available(section.flank_pressure is None, key, given, "one of them")
+    limit = PITTING_LIMITS[treatment]
+    allowed = f"{limit.softest:g} to {limit.hardest:g} HV with {key}"
+    require(limit.softest <= hardness <= limit.hardest, "rating.flank_hardness", hardness, allowed)
+    low, high = STEEL_MODULUS
+    for gear in design.gears:
+        modulus = design.materials[gear].modulus
+        steels = f"steels, {1e-3 * low:g} to {1e-3 * high:g} GPa"
+        beside = f"a {gear.replace('_', ' ')} of {1e-3 * modulus:.4g} GPa"
+        require_available(low <= modulus <= high, key, beside, steels)

@@ -1,0 +1,71 @@
+"""Runs of one drive under several loads share models and loaded states, and find what each finds
+alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from pytest_mpi import parallel_assert
+
+from support.paths import RECIPE
+from support.stepping import small
+from swgpar.analysis import model_sources
+from swgpar.analysis.model_sources import LoadedDrives
+from swgpar.analysis.run_drive import run_drive
+from swgpar.design.drive_design import DriveDesign
+from swgpar.meshing import load_recipe
+from swgpar.run_options import RunOptions
+
+WORLD = MPI.COMM_WORLD
+SAMPLED = ("steps.samples=2", "steps.rotation=9.0")
+WITHOUT = ("output.root_stress=false", "output.fields=false")
+DENSE = ("material.density=7850", "frequencies.number=1", "frequencies.output_inertia=1e-5")
+LOADS = [
+    (*SAMPLED, "load.torque=0.2"),
+    (*SAMPLED, "load.torque=0.3"),
+    (*SAMPLED, "load.torque=0.0"),
+    (*DENSE, "load.torque=0.2", "steps.rotation=0"),
+    ("stiffness.positions=1", "stiffness.points=1", "stiffness.torque=0.2"),
+]
+"""Overrides of the loads; a period without a torque and modes of the whole drive among them."""
+
+
+def runs(friction: float) -> list[DriveDesign]:
+    loads = LOADS[:3] if friction else LOADS
+    rubbed = (f"contact.friction={friction}", "steps.rotation=18.0") if friction else ()
+    return [small("plane", *WITHOUT, *load, *rubbed) for load in loads]
+
+
+@pytest.mark.parallel([1, 2])
+@pytest.mark.parametrize("friction", [0.0, 0.1])
+def test_shared_models_give_the_results_of_each_run_alone(
+    friction: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With friction a loaded state depends on the path to it: only the model is shared."""
+    options = RunOptions(recipe=load_recipe(RECIPE), comm=WORLD)
+    build, built = model_sources.build_drive_model, []
+    monkeypatch.setattr(
+        model_sources,
+        "build_drive_model",
+        lambda *keys, **more: built.append(None) or build(*keys, **more),
+    )
+    drives = LoadedDrives()
+    for design in runs(friction):
+        shared = run_drive(design, options, drives)
+        count = len(built)
+        alone = run_drive(design, options)
+        del built[count:]
+        for name in ("wg_torque_Nmm", "output_torque_Nmm", "output_angle_deg"):
+            a, b = shared.history[name][-1], alone.history[name][-1]
+            near = np.isclose(a, b, rtol=1e-4, atol=1e-4)  # N·mm, deg: what solves leave
+            parallel_assert(bool(near), f"{name} of {design.load.torque:g} N·m: {a} and {b}")
+        for name in ("stiffness.K1", "stiffness.lost_motion", "frequency.1"):
+            if name in alone.summary:
+                a, b = (one.summary[name] for one in (shared, alone))
+                parallel_assert(a.value == pytest.approx(b.value, rel=1e-4), name)
+                if b.error is not None:
+                    parallel_assert(a.error == pytest.approx(b.error, rel=0.02), name)
+    drives.destroy()
+    expected = 1 if friction else 2  # half of the drive, and with its modes the whole
+    parallel_assert(len(built) == expected, str(len(built)))
