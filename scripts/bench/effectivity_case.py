@@ -27,9 +27,9 @@ from mpi4py import MPI
 
 import swgpar
 from swgpar.analysis import run_drive
-from swgpar.analysis.coarse_start import transfer
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.shortcuts import SAMPLES
+from swgpar.analysis.transfer import transfer
 from swgpar.answers.answer import Answer
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.drive_data import DriveData
