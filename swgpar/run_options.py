@@ -10,6 +10,8 @@ from pathlib import Path
 from mpi4py import MPI
 
 from swgpar.errors import InputError
+from swgpar.input.arguments import require_number
+from swgpar.input.quantities import show
 from swgpar.meshing import MeshRecipe
 
 
@@ -46,6 +48,16 @@ class RunOptions:
     comm: MPI.Comm = field(default_factory=lambda: MPI.COMM_WORLD)
     terminal: bool = False
     on_increment: Callable[[], None] = _nothing
+
+    def __post_init__(self) -> None:
+        if self.accuracy is not None:
+            require_number("accuracy", self.accuracy)
+        if not isinstance(self.comm, MPI.Comm):
+            raise InputError(f"comm = {show(self.comm)} is no communicator of mpi4py")
+        for name in ("plain", "restart", "overwrite"):
+            value = getattr(self, name)
+            if not isinstance(value, bool):
+                raise InputError(f"{name} = {show(value)} is no choice: allowed true or false")
 
     def require_available(self, available: frozenset[str], noun: str, *, mesh: bool) -> None:
         """Refuse what a kind of systems does not have, and a restart without a folder.

@@ -4,21 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from mpi4py import MPI
 
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.api.runs import DesignLike, MeshLike, load_design, load_mesh
-from swgpar.checks.starter import CamType, Model, Profile, Request, Shape, starter_design
+from swgpar.checks.starter import (
+    CamType,
+    Layout,
+    Lobes,
+    Model,
+    Profile,
+    Request,
+    Shape,
+    starter_design,
+)
 from swgpar.checks.starter_file import as_toml
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
+from swgpar.input.arguments import given_path, given_texts
 from swgpar.input.design import Design
 from swgpar.input.toml_file import Overrides
 from swgpar.meshing import MeshRecipe, build_sector_meshes
 from swgpar.results.atomic import agreed, on_all, write_from_root
-from swgpar.results.folder import given_folder
 from swgpar.systems import system_of_section
 
 if TYPE_CHECKING:
@@ -34,10 +43,10 @@ def new(
     bore: float | None = None,
     profile: Profile = "quadruple_arc",
     cam: CamType | None = None,
-    layout: Literal["ring_fixed", "spline_fixed"] = "ring_fixed",
+    layout: Layout = "ring_fixed",
     model: Model = "cup",
     shape: Shape = "cup",
-    lobes: Literal[2, 3] = 2,
+    lobes: Lobes = 2,
     overwrite: bool = False,
 ) -> DriveDesign:
     """A checked design to start from; collective when it is written.
@@ -81,7 +90,7 @@ def new(
     design, table = starter_design(request)
     build_sector_meshes(design.geometry, load_mesh(MESHES[model]))
     if out is not None:
-        path, comm = Path(out), MPI.COMM_WORLD
+        path, comm = given_path("out", out), MPI.COMM_WORLD
         with agreed(comm, path):
             if comm.rank == 0 and path.exists() and not overwrite:
                 raise OutputError(
@@ -138,11 +147,11 @@ def mesh(
 
     if out is None:
         return make()
-    folder = given_folder(out)
+    folder, names = given_path("out", out), given_texts("formats", formats)
     whole = on_all(comm, make)
     with agreed(comm, folder):
         if comm.rank == 0:
-            whole.write(folder, formats, overwrite=overwrite)
+            whole.write(folder, names, overwrite=overwrite)
     return whole
 
 

@@ -13,11 +13,11 @@ from swgpar.analysis.accuracy import require_accuracy
 from swgpar.api.runs import DesignLike, MeshLike, with_mesh
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
+from swgpar.input.arguments import given_path
 from swgpar.input.design import Design
 from swgpar.input.toml_file import Overrides, apply_overrides, read_toml, require_source
 from swgpar.rating.planned_runs import make_rated_drive
 from swgpar.results.atomic import on_all
-from swgpar.results.folder import given_folder
 from swgpar.run_options import RunOptions
 from swgpar.systems import system_of_table
 
@@ -100,7 +100,7 @@ def rate(
 
     terminal = log.console.is_terminal if progress is None else progress
     given = RunOptions(
-        given_folder(out),
+        given_path("out", out),
         accuracy=accuracy,
         restart=restart,
         overwrite=overwrite,

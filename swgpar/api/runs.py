@@ -12,6 +12,7 @@ from mpi4py import MPI
 from swgpar import log
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError, SwgparError
+from swgpar.input.arguments import given_path, given_texts
 from swgpar.input.design import Design
 from swgpar.input.toml_file import Overrides, read_toml, require_source
 from swgpar.meshing import MeshRecipe, load_recipe
@@ -19,7 +20,7 @@ from swgpar.meshing.recipe import make_recipe
 from swgpar.petsc import release_unused
 from swgpar.results.atomic import agreed, on_all, raise_first, reason_of, write_file
 from swgpar.results.figure_set import save_figures
-from swgpar.results.folder import REPORT, given_folder, read_summary
+from swgpar.results.folder import REPORT, read_summary
 from swgpar.run_options import RunOptions
 from swgpar.systems import Result, system_of_section, system_of_table
 
@@ -157,7 +158,7 @@ def run(
     >>> result = swgpar.run("drivers/plane_half_turn.toml")
     >>> result.summary["root.s1"].value, result.history["fs_s1"].max()
     """
-    folder = None if out is None else given_folder(out)
+    folder = None if out is None else given_path("out", out)
     terminal = log.console.is_terminal if progress is None else progress
     given = RunOptions(
         folder,
@@ -224,7 +225,7 @@ def open_result(folder: str | Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Result:
     --------
     >>> swgpar.open_result("results/plane").summary["mean.fs_s1"].value
     """
-    folder = Path(folder)
+    folder = given_path("folder", folder)
     with agreed(comm, folder, "read"):
         system = system_of_table(read_summary(folder).design)
     return system.open(folder, comm)
@@ -322,13 +323,13 @@ def export(
         )
     recipe = None if mesh is None else load_mesh(mesh)
     paths: list[Path] = []
-    folder = given_folder(out)
+    folder, names = given_path("out", out), given_texts("formats", formats)
     with agreed(MPI.COMM_WORLD, folder):
         if MPI.COMM_WORLD.rank == 0:
             paths = export_files(
                 drive,
                 folder,
-                formats,
+                names,
                 recipe=recipe,
                 ripple=periodic,
                 idle=without_load,

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from swgpar.errors import InputError
 from swgpar.geometry.bracketed_root import root_between
 from swgpar.geometry.cams import make_cam, taut_length
 from swgpar.geometry.cams.keys import Harmonic, Parabolic, Simplified
+from swgpar.input.arguments import require_choice, require_number
 from swgpar.input.quantities import show
 from swgpar.input.require import require, require_available
 from swgpar.input.toml_file import with_value
@@ -35,6 +36,12 @@ CamType = Literal["elliptical", "parabolic", "simplified", "four_roller", "harmo
 
 Model = Literal["cup", "plane", "pancake"]
 """Kinds of drives of a starter design."""
+
+Layout = Literal["ring_fixed", "spline_fixed"]
+"""Layouts of which the ratio gives the numbers of teeth."""
+
+Lobes = Literal[2, 3]
+"""Lobes of the cam of a starter design."""
 
 Shape = Literal["cup", "short", "hat"]
 """Shapes of the flexible spline: a usual cup, one of half the length, a silk hat with a flange
@@ -128,14 +135,21 @@ class Request:
     bore: float | None = None
     profile: Profile = "quadruple_arc"
     cam: CamType = "elliptical"
-    layout: Literal["ring_fixed", "spline_fixed"] = "ring_fixed"
+    layout: Layout = "ring_fixed"
     model: Model = "cup"
     shape: Shape = "cup"
-    lobes: Literal[2, 3] = 2
+    lobes: Lobes = 2
 
 
-LAYOUTS = ("ring_fixed", "spline_fixed")
-"""Layouts of which the ratio gives the numbers of teeth."""
+CHOICES = {
+    "profile": Profile,
+    "cam": CamType,
+    "layout": Layout,
+    "model": Model,
+    "shape": Shape,
+    "lobes": Lobes,
+}
+"""Attributes of a `Request` that are one of several -> their types."""
 
 
 def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
@@ -186,7 +200,12 @@ def _thin_teeth(table: dict[str, Any]) -> tuple[DriveDesign, dict[str, Any]]:
 
 
 def _check(request: Request) -> None:
-    """Refuse numbers from which no drive can be made."""
+    """Refuse numbers from which no drive can be made, and names that no parser has refused."""
+    for name, kind in CHOICES.items():
+        require_choice(name, getattr(request, name), get_args(kind))
+    for name in ("ratio", "torque", "diameter", "bore"):
+        if getattr(request, name) is not None or name in ("ratio", "torque"):
+            require_number(name, getattr(request, name))
     model, shape, lobes = (
         f"{key} = {show(getattr(request, key))}" for key in ("model", "shape", "lobes")
     )
@@ -199,12 +218,6 @@ def _check(request: Request) -> None:
             "give either diameter (pitch diameter of the flexible spline, mm) or bore (its inner "
             "diameter)"
         )
-    if request.layout not in LAYOUTS:  # from Python, where no parser has refused it
-        raise InputError(
-            f'layout = "{request.layout}" is not available for a start: allowed '
-            f"{' or '.join(LAYOUTS)}"
-        )
-    require(request.lobes in RIM, "lobes", request.lobes, "2 or 3")
     require_available(request.lobes == 2 or request.model != "pancake", lobes, model, "2")
     fits = request.lobes == 2 or request.cam == "harmonic"
     require_available(fits, lobes, f'cam = "{request.cam}"', 'with "harmonic"')

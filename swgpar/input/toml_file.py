@@ -12,6 +12,7 @@ import tomli_w
 from pydantic import ValidationError
 
 from swgpar.errors import InputError
+from swgpar.input.arguments import given_texts
 from swgpar.input.quantities import Section, show, show_key
 from swgpar.input.refusals import sentence
 from swgpar.input.regular_file import read_regular
@@ -83,10 +84,10 @@ Overrides = Sequence[str] | Mapping[str, Any]
 def apply_overrides(table: dict[str, Any], overrides: Overrides) -> dict[str, Any]:
     """Return a copy of `table` with the keys of `overrides` set, in order."""
     if isinstance(overrides, Mapping):
-        for key, value in overrides.items():
-            table = with_value(table, key, _plain(value))
+        for key in given_texts("overrides", list(overrides)):
+            table = with_value(table, key, _plain(overrides[key]))
         return table
-    for override in overrides:
+    for override in given_texts("overrides", overrides):
         key, text = split_override(override)
         table = with_value(table, key, parse_value(text))
     return table

@@ -10,6 +10,7 @@ from typing import Any
 from mpi4py import MPI
 
 from swgpar import log, watch
+from swgpar.input.arguments import given_path
 from swgpar.input.toml_file import to_toml
 from swgpar.optimisation.problem import Problem, make_problem
 from swgpar.optimisation.report import make_report
@@ -19,7 +20,6 @@ from swgpar.optimisation.spec import Specification, load_specification
 from swgpar.optimisation.terminal import OptimiseProgress
 from swgpar.results import made_files
 from swgpar.results.atomic import agreed, on_all, write_from_root
-from swgpar.results.folder import given_folder
 from swgpar.results.lock import releasing
 from swgpar.results.table import format_csv
 from swgpar.studies.many_runs import claim_folder
@@ -78,7 +78,7 @@ def optimise(
     >>> found.evaluations[found.best[0]].values
     """
     terminal = log.console.is_terminal if progress is None else progress
-    begin, folder = time.perf_counter(), given_folder(out)
+    begin, folder = time.perf_counter(), given_path("out", out)
     spec = on_all(comm, lambda: load_specification(optimisation))
     problem = on_all(comm, lambda: make_problem(spec))
     section, screen = spec.section, spec.section.screen

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from swgpar.errors import InputError
+from swgpar.input.arguments import given_path
 from swgpar.input.quantities import Section, quantity, show, show_key
 from swgpar.input.regular_file import read_regular
 from swgpar.input.require import require
@@ -136,7 +137,7 @@ Specification = RunFile[OptimiseSection]
 def load_specification(path: str | Path) -> Specification:
     """Read and check an optimisation file; every problem is an `InputError` of one sentence that
     names the file."""
-    path = Path(path)
+    path = given_path("optimisation", path)
     table = read_toml(path)
     with refusals_of(str(path)):
         require_only("optimise", table, "an optimisation file")

@@ -10,8 +10,7 @@ from mpi4py import MPI
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from swgpar import log
-from swgpar.errors import InputError, OutputError
-from swgpar.input.quantities import show
+from swgpar.errors import OutputError
 from swgpar.results import history, lock, made_files
 from swgpar.results.atomic import TEMPORARY, agreed, discard, on_root, reason_of
 from swgpar.results.table import Columns, read_columns
@@ -78,13 +77,6 @@ TRAIN_RESULTS = (*COMMON_RESULTS, "published.csv", f"{TABLES}/*.csv")
 
 RESULTS = tuple(dict.fromkeys((*DRIVE_RESULTS, RECIPE, *TRAIN_RESULTS)))
 """Files that `overwrite` removes, as far as a run has made them."""
-
-
-def given_folder(out: str | Path) -> Path:
-    """The folder that a user has given; an empty text, the working directory, is an InputError."""
-    if isinstance(out, str) and not out.strip():
-        raise InputError(f"out = {show(out)} names no folder: give the path of one")
-    return Path(out)
 
 
 def open_log(out: Path | None, comm: MPI.Comm) -> None:

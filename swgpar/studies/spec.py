@@ -101,7 +101,8 @@ def load_study(path: str | Path) -> Study:
 
 def make_study(table: Mapping[str, Any]) -> Study:
     """Check the content of a study file; its paths are relative to the working directory."""
-    return _make_study(table, "study", Path(), json.dumps(table, indent=2, ensure_ascii=False))
+    text = json.dumps(table, indent=2, ensure_ascii=False, default=repr)
+    return _make_study(table, "study", Path(), text)
 
 
 def _make_study(table: Mapping[str, Any], name: str, folder: Path, text: str) -> Study:

@@ -13,9 +13,9 @@ from mpi4py import MPI
 
 from swgpar import log, watch
 from swgpar.errors import InputError, OutputError
+from swgpar.input.arguments import given_path
 from swgpar.input.toml_file import require_source
 from swgpar.results.atomic import on_root, write_from_root
-from swgpar.results.folder import given_folder
 from swgpar.results.lock import releasing
 from swgpar.results.table import format_csv
 from swgpar.run_options import RunOptions
@@ -179,7 +179,7 @@ def study(
     """
     require_source("study", study)
     terminal = log.console.is_terminal if progress is None else progress
-    folder = None if out is None else given_folder(out)
+    folder = None if out is None else given_path("out", out)
     file, jobs = on_root(comm, lambda: _read(study))  # whatever happens to the file meanwhile
     if folder is not None:
         _claim(folder, comm, restart, overwrite)

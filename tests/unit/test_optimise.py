@@ -3,6 +3,7 @@ files."""
 
 from __future__ import annotations
 
+import time
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -11,8 +12,9 @@ import pytest
 
 import swgpar
 from support.optimisation import FREQUENCY, OPTIMISATION
-from swgpar.errors import InputError, OutputError
+from swgpar.errors import InputError, OutputError, SwgparError
 from swgpar.input.toml_file import to_toml
+from swgpar.optimisation.search import JOURNAL
 
 pytest.importorskip("optuna")
 
@@ -129,3 +131,51 @@ def test_toml_that_is_written_reads_the_same() -> None:
     assert tomllib.loads(to_toml(table)) == table
     assert tomllib.loads(to_toml({**table, "left_out": None})) == table
     assert "y = [1, 2]\n" in to_toml(table)
+
+
+@pytest.mark.parametrize(
+    ("url", "words"),
+    [
+        ("sqlite:///:memory:", "is in the memory of one process, and lost at its end"),
+        ("sqlite://", "is in the memory of one process, and lost at its end"),
+        ("postgresql://me:se@cret@host/name", "is no URL of a database"),
+        ("postgresql://me:secret@host:12cret/name", "is no URL of a database"),
+        ("secret", "is no URL of a database"),
+        ("nothing://me:secret@host/name", "the storage nothing name cannot be used"),
+    ],
+)
+def test_a_storage_that_cannot_be_used_keeps_its_password(
+    tmp_path: Path, url: str, words: str
+) -> None:
+    path = written(tmp_path)
+    text = path.read_text(encoding="utf-8").replace(
+        "evaluations = 12", f'evaluations = 2\nstorage = "{url}"'
+    )
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(SwgparError, match=words) as caught:
+        swgpar.optimise(path, tmp_path / "out")
+    assert "cret" not in str(caught.value)
+
+
+def test_a_name_that_is_taken_in_a_database_is_not_overwritten(tmp_path: Path) -> None:
+    url = f"sqlite:///{tmp_path / 'search.db'}"
+    for high in ("1e11", "1e12"):
+        path = written(tmp_path, high=high)
+        text = path.read_text(encoding="utf-8").replace(
+            "evaluations = 12", f'evaluations = 2\nstorage = "{url}"'
+        )
+        path.write_text(text, encoding="utf-8")
+        if high == "1e11":
+            swgpar.optimise(path, tmp_path / "out")
+    with pytest.raises(InputError, match="another database, from which --overwrite removes noth"):
+        swgpar.optimise(path, tmp_path / "out", overwrite=True)
+
+
+def test_a_lock_that_a_killed_search_has_left_is_none(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    swgpar.optimise(written(tmp_path, evaluations="2"), out)
+    (out / f"{JOURNAL}.lock").symlink_to(out / JOURNAL)
+    begin = time.monotonic()
+    found = swgpar.optimise(written(tmp_path, evaluations="3"), out, restart=True)
+    # Optuna takes such a lock over after 30 s
+    assert len(found.evaluations) == 3 and time.monotonic() - begin < 25.0
