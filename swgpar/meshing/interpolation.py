@@ -57,8 +57,9 @@ def _cells(mesh: Delaunay, known: np.ndarray, sought: np.ndarray) -> np.ndarray:
     at_node = np.repeat(np.flatnonzero(usable), of_cells.shape[1])[order]
     start = np.searchsorted(of_cells.ravel()[order], np.arange(len(known) + 1))
     outside = np.flatnonzero((cell < 0) | ~usable[cell])
-    _, nearest = cKDTree(known).query(sought[outside], k=NEIGHBOURS)
-    for k, neighbours in zip(outside, nearest):
+    with_cells = np.unique(of_cells)
+    _, nearest = cKDTree(known[with_cells]).query(sought[outside], k=NEIGHBOURS)
+    for k, neighbours in zip(outside, with_cells[nearest]):
         choice = np.unique(
             np.concatenate([at_node[start[node] : start[node + 1]] for node in neighbours])
         )

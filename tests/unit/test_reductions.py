@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from support.paths import DESIGN, RECIPE
+from support.paths import DATA, DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar import load_design
 from swgpar.analysis.coarse_start import levels
@@ -60,6 +60,17 @@ def test_linear_fields_survive_the_interpolation(gear: str, overrides: tuple[str
 
     assert np.abs(matrix @ fields(coarse.coords) - fields(fine.coords)).max() < 1e-9
     assert 0.0 > matrix.min() > -0.5 and matrix.max() < 1.5  # how far this extrapolates
+
+
+def test_points_beside_flat_cells_alone_are_interpolated() -> None:
+    """Nodes on conjugate flanks of a pancake nearest to a point have flat cells only."""
+    geometry = load_design(DATA / "public" / "sw50_pancake_conj.toml").geometry
+    recipe = load_recipe("forces")
+    coarse, fine = (build_sector_meshes(geometry, one) for one in (coarser(recipe), recipe))
+    for gear in coarse:
+        weights = interpolation(coarse[gear], fine[gear])
+        assert weights.sum(axis=1) == pytest.approx(1.0, abs=1e-9)
+        assert np.abs(weights).max() < 1.5
 
 
 def test_nodes_without_tetrahedra_are_refused() -> None:

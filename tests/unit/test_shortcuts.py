@@ -31,12 +31,17 @@ def test_a_design_without_the_keys_takes_all() -> None:
 
 @pytest.mark.parametrize(
     ("recipe", "levels"),
-    [("coarse", 0), ("medium", 0), ("full", 2), ("plane_coarse", 0), ("plane", 2)],
+    [("coarse", 0), ("forces", 0), ("medium", 0), ("full", 2), ("plane_coarse", 0), ("plane", 2)],
 )
 def test_a_start_uses_meshes_that_find_the_contacts(recipe: str, levels: int) -> None:
     name = "plane_half_turn.toml" if recipe.startswith("plane") else "cup_45deg.toml"
     found = with_shortcuts(swgpar.load_design(DRIVERS / name), load_recipe(recipe))
     assert found.design.steps.start_levels == levels
+
+
+def test_a_pancake_starts_on_a_coarser_mesh() -> None:
+    found = with_shortcuts(swgpar.load_design(DRIVERS / "pancake.toml"), load_recipe("forces"))
+    assert found.design.steps.start_levels == 1
 
 
 def test_very_fine_recipes_start_on_four_meshes_at_most() -> None:
