@@ -246,18 +246,14 @@ class BallContact:
         derivatives by the place."""
         value, rate, second = np.zeros((3, len(place), len(self.angle)))
         ball = np.arange(len(place))
-        for weight, away in zip(self.kernel_weight, self.kernel_angle):
-            at = place + away
-            piece = np.clip(
-                np.searchsorted(self.angle, at, side="right") - 1, 1, len(self.angle) - 3
-            )
-            length = self.angle[piece + 1] - self.angle[piece]
-            at_place = shape_functions(
-                self.polynomials[piece - 1], (at - self.angle[piece]) / length
-            )
-            for order, (total, weights) in enumerate(zip((value, rate, second), at_place)):
-                for k in range(NODES):
-                    total[ball, piece - 1 + k] += weight * weights[:, k] / length**order
+        at = place + self.kernel_angle[:, None]
+        piece = np.clip(np.searchsorted(self.angle, at, side="right") - 1, 1, len(self.angle) - 3)
+        length = self.angle[piece + 1] - self.angle[piece]
+        at_place = shape_functions(self.polynomials[piece - 1], (at - self.angle[piece]) / length)
+        for order, (total, weights) in enumerate(zip((value, rate, second), at_place)):
+            weights = weights * (self.kernel_weight[:, None] / length**order)[..., None]
+            for k in range(NODES):
+                np.add.at(total, (ball, piece - 1 + k), weights[..., k])
         return value, rate, second
 
     def _nodes(self, touch: _Touch, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

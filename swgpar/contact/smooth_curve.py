@@ -102,13 +102,14 @@ def foot_points(
     polynomials : (..., 4, 4);  nodes : (..., 4, 2) mm, deformed;  points : (..., 2) mm
     place : (...) lambda, first guess
     """
+    curve = np.einsum("...np,...ni->...pi", polynomials, nodes)
+    c0, c1, c2, c3 = (curve[..., power, :] for power in range(4))
     for step in range(STEPS + 1):  # the last evaluation is at the foot point
-        value, rate, second = shape_functions(polynomials, place)
-        away = points - np.einsum("...n,...ni->...i", value, nodes)
-        tangent, bend = (
-            np.einsum("...n,...ni->...i", weights, nodes) for weights in (rate, second)
-        )
+        t = place[..., None]
+        away = points - (c0 + t * (c1 + t * (c2 + t * c3)))
+        tangent, bend = c1 + t * (2.0 * c2 + t * (3.0 * c3)), 2.0 * c2 + 6.0 * t * c3
         if step < STEPS:
             steepness = np.sum(tangent * tangent - away * bend, axis=-1)
             place = place + np.sum(away * tangent, axis=-1) / steepness
+    value, rate, _ = shape_functions(polynomials, place)
     return FootPoints(value, rate, away, tangent, bend)
