@@ -68,9 +68,10 @@ def turn_mesh(recipe: MeshRecipe) -> MeshRecipe:
 
 
 def turn_design(design: DriveDesign) -> DriveDesign:
-    """The design as its turns are computed: condensed sectors, half of it if deviations allow."""
-    deviations, solver, contact = design.deviations, design.solver, design.contact
-    wave = design.wave_generator
+    """The design as its turns are computed: without friction, whose states depend on the path to
+    them, with condensed sectors, half of it if deviations allow."""
+    deviations, solver, wave = design.deviations, design.solver, design.wave_generator
+    contact = design.contact.model_copy(update={"friction": 0.0})
     changes = {
         "symmetry": solver.symmetry and _is_twofold(design, deviations),
         "condensed_sectors": design.can_condense,

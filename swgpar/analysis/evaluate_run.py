@@ -113,6 +113,7 @@ def evaluate_run(
             sequence.samples,
             record.turns,
             rotation.range_errors,
+            friction=design.contact.friction > 0.0,
         ),
         stiffness=torsional_stiffness(stiffness_program(design), program, stiffness_error)
         if design.stiffness

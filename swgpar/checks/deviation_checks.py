@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.checks.program_checks import given_program
+from swgpar.checks.program_checks import given_program, in_rating
 from swgpar.design.deviations import MICRO, Deviations
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS, GearName
@@ -34,10 +34,9 @@ def check_deviations(design: DriveDesign, deviations: Deviations) -> None:
     require_available(design.wave_generator.lobes == 2, "[deviations]", lobes, "with two")
     if design.load.torque == 0.0:
         raise InputError("load.torque = 0 holds the output: allowed above 0 N·m with [deviations]")
-    program, friction = given_program(design), design.contact.friction
-    allowed = "under one torque, load.torque"
-    require_available(program is None, "[deviations]", str(program), allowed)
-    require(friction == 0.0, "contact.friction", friction, "0 with [deviations]")
+    program = given_program(design) or ""
+    allowed = f"under one torque, load.torque{in_rating(program)}"
+    require_available(not program, "[deviations]", program, allowed)
     for gear in GEARS:
         _check_pitch(design, deviations, gear)
     if design.bearing is not None:

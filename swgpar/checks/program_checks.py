@@ -28,6 +28,12 @@ def given_program(design: DriveDesign) -> str | None:
     return next((name for name, section in _programs(design).items() if section), None)
 
 
+def in_rating(program: str) -> str:
+    """What ends the sentence that refuses a section beside a generated program: a run has one path
+    of loads, and a rating several runs. Empty for the program of a design file."""
+    return "" if program == "load.program" else "; swgpar rate has a run for each"
+
+
 def check_program(design: DriveDesign) -> None:
     """Raise InputError for the first thing that does not fit in a load program."""
     programs = _programs(design)
@@ -35,13 +41,15 @@ def check_program(design: DriveDesign) -> None:
     if len(given) > 1:
         raise InputError(
             f"{given[0]} and {given[1]} are both given: allowed one of {', '.join(programs)}"
+            f"{in_rating(given[-1])}"
         )
     if given:
         samples = design.steps.samples
-        require(samples == 0, "steps.samples", samples, f"only 0 with {given[0]}")
-        allowed = "under one torque, with steps.samples"
+        own = in_rating(given[0])
+        require(samples == 0, "steps.samples", samples, f"only 0 with {given[0]}{own}")
+        allowed = f"under one torque, with steps.samples{own}"
         require_available(not design.losses, "[losses]", given[0], allowed)
-        allowed = "with load.program, or with steps.samples"
+        allowed = f"with load.program, or with steps.samples{own}"
         judged = not design.fatigue or bool(design.load.program)
         require_available(judged, "[fatigue]", given[0], allowed)
     if design.load.program:

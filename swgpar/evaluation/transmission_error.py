@@ -92,6 +92,7 @@ class TransmissionError(AnswerGroup):
     turns, angles : turns of the wave generator, and angles that stand for them
     spectrum : its largest orders, arc seconds
     error_arcsec : of peak to peak, None where it is not known
+    without_friction : whether friction that the run has is left out
     """
 
     turns: float
@@ -114,6 +115,7 @@ class TransmissionError(AnswerGroup):
     spectrum: tuple[SpectrumLine, ...]
     torque: TorqueOverTurns
     error_arcsec: float | None = None
+    without_friction: bool = False
 
     TITLE = "transmission error over a period, or with deviations over whole turns"
     ASKED_BY = "steps.samples or [deviations]"
@@ -125,6 +127,8 @@ class TransmissionError(AnswerGroup):
             if self.turns >= 1.0
             else "one period of the ideal drive"
         )
+        if self.without_friction:
+            yield "without contact.friction: over whole turns flanks have none"
         for line in self.spectrum[:SHOWN]:
             yield f"order {line.order:.3f}: {line.amplitude:.3g} arc seconds, {line.cause}"
 
@@ -257,11 +261,14 @@ def evaluate_turns(
     samples: int,
     rows: Sequence[Row],
     errors: PeriodRanges | None = None,
+    *,
+    friction: bool = False,
 ) -> TransmissionError | None:
     """The transmission error from the rows of transmission_error.csv; None without rows.
 
     samples : rows of a period without deviations
     errors : of the ranges of the ideal drive, where they are known
+    friction : whether the flanks of the run have it
     """
     if not rows:
         return None
@@ -288,6 +295,7 @@ def evaluate_turns(
             error_Nmm=known.torque if known else None,
         ),
         error_arcsec=known.transmission_error if known else None,
+        without_friction=friction and deviations is not None,
     )
 
 

@@ -30,7 +30,6 @@ class LoadCase(StrEnum):
     AVERAGE = "average torque"
     LARGEST = "largest torque"
     NO_LOAD = "no load"
-    DEVIATIONS = "deviations"
     STIFFNESS = "stiffness"
     RATCHETING = "ratcheting"
     MODES = "natural frequencies"
@@ -156,7 +155,7 @@ def make_rated_drive(table: dict[str, Any]) -> DriveDesign:
 
 def plan_runs(design: DriveDesign) -> RatingPlan:
     """The runs of the rating sheet of a design. Raises InputError without [rating] or a torque."""
-    loads, friction = rating_loads(design), design.contact.friction > 0.0
+    loads = rating_loads(design)
     missing: dict[LoadCase, str] = {}
     wanted: dict[float, _UnderTorque] = {}
 
@@ -164,9 +163,7 @@ def plan_runs(design: DriveDesign) -> RatingPlan:
         wanted[torque] = wanted[torque] + run if torque in wanted else run
 
     given = tuple(name for name in ("losses", "deviations") if getattr(design, name) is not None)
-    apart = friction and "deviations" in given
-    beside = tuple(name for name in given if name != "deviations" or not friction)
-    want(loads.rated, _UnderTorque((LoadCase.RATED,), beside, period=True, errors=True))
+    want(loads.rated, _UnderTorque((LoadCase.RATED,), given, period=True, errors=True))
     if design.fatigue is None:
         missing[LoadCase.REPEATED_PEAK] = NO_STRENGTHS
     else:
@@ -183,14 +180,12 @@ def plan_runs(design: DriveDesign) -> RatingPlan:
         runs.append(_under_torque(design, loads, 0.0, idle))
     else:
         missing[LoadCase.NO_LOAD] = NO_LOSSES
-    if apart:
-        turns = _UnderTorque((LoadCase.DEVIATIONS,), ("deviations",), period=True)
-        runs.append(_under_torque(design, loads, loads.rated, turns, without_friction=True))
     runs.append(_program(design, loads, LoadCase.STIFFNESS))
     if lacks := _without_modes(design):
         missing[LoadCase.MODES] = lacks
     else:
         modes = _UnderTorque((LoadCase.MODES,), ("frequencies",))
+        friction = design.contact.friction > 0.0
         runs.append(_under_torque(design, loads, loads.rated, modes, without_friction=friction))
     if loads.momentary is None:
         missing[LoadCase.RATCHETING] = "rating.momentary_torque is not given"

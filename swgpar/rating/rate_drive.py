@@ -40,7 +40,7 @@ WAITS = "the run waits"
 class _Book:
     """What has become of the runs, and the sheet that follows.
 
-    plan : the runs;  rows : of the sheet;  recipe : of the meshes;  folder : of the files
+    plan : the runs;  rows : of the sheet;  recipe : of the meshes;  options : of the rating
     places : folders of the runs, by their names. A run that is changed has another one, so that
     those that are done are found again
     outcomes : of the runs that have ended, by their names
@@ -52,9 +52,10 @@ class _Book:
         plan: RatingPlan,
         rows: list[RatingRow],
         recipe: MeshRecipe,
-        folder: Path,
+        options: RunOptions,
     ) -> None:
-        self.design, self.plan, self.rows, self.folder = design, plan, rows, folder
+        self.design, self.plan, self.rows = design, plan, rows
+        self.folder, self.accuracy = options.out or Path(), options.accuracy
         self.places = {
             run.name: f"{RUNS}/{run.folder(_identity(run, recipe))}" for run in plan.runs
         }
@@ -89,7 +90,7 @@ class _Book:
             status="refused" if run.refusal else status,
             folder=self.places[run.name],
             reason=run.refusal or ("" if outcome is None else outcome.reason),
-            left_out=run.left_out,
+            left_out=", ".join(filter(None, (run.left_out, without_accuracy(run, self.accuracy)))),
             wall_s=None if outcome is None else outcome.wall_s,
         )
 
@@ -124,7 +125,7 @@ def rate_drive(design: DriveDesign, options: RunOptions) -> RatingSheet:
         recipe = load_recipe(name)
         options = replace(options, recipe=recipe, recipe_name=name)
     _claim(folder, options)
-    book, count = _Book(design, plan, rows, recipe, folder), len(plan.runs)
+    book, count = _Book(design, plan, rows, recipe, options), len(plan.runs)
     drives = LoadedDrives()
     system = Drives(drives)
     watch.saved("runs", 0, count)
@@ -161,6 +162,15 @@ def accuracy_of(run: PlannedRun, accuracy: float | None) -> float | None:
     if accuracy is None or run.design is None or not run.windows:
         return None
     return accuracy if not_refinable(run.design) is None else None
+
+
+def without_accuracy(run: PlannedRun, accuracy: float | None) -> str:
+    """Why a run whose stresses are resolved has the mesh of the recipe; empty where its mesh is
+    chosen by the accuracy, or none is asked for."""
+    if accuracy is None or run.design is None or not run.windows:
+        return ""
+    found = not_refinable(run.design)
+    return "" if found is None else f"--accuracy, which is not available with {found[0]}"
 
 
 def _words(index: int, count: int, run: PlannedRun, outcome: Outcome) -> list[str]:

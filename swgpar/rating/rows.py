@@ -275,10 +275,9 @@ def _stiffness(design: DriveDesign, section: RatingSection) -> Iterator[RatingRo
 
 def _motion(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
     ideal = design.deviations is None
-    apart = design.contact.friction > 0.0 and not ideal
     yield RatingRow(
         "transmission error",
-        LoadCase.DEVIATIONS if apart else LoadCase.RATED,
+        LoadCase.RATED,
         _named("transmission_error.peak_to_peak"),
         _required(section.transmission_error, Sense.AT_MOST, "transmission_error"),
         lower_bound=lambda _: IDEAL if ideal else "",

@@ -177,16 +177,28 @@ def test_deviations_with_a_bearing() -> None:
     assert errors[0] != errors[1]
 
 
+@pytest.mark.parallel(1)
+def test_deviations_with_friction() -> None:
+    """Over whole turns the transmission error is that of the run without friction, and says so; the
+    history is that of the run with friction and without deviations."""
+    turned = (*SAMPLED, "steps.rotation=18.0")
+    deviations = (DEVIATIONS, 'deviations.mesh="same"', "deviations.angles_per_pitch=1")
+    rough = run(*turned, *deviations, "contact.friction=0.1")
+    found, smooth = rough.summary.transmission_error, run(*turned, *deviations)
+    expected = smooth.summary.transmission_error
+    assert found.peak_to_peak == pytest.approx(expected.peak_to_peak, rel=1e-3)
+    assert found.angles == expected.angles
+    assert any("without contact.friction" in words for words in found.remarks())
+    assert not any("without contact.friction" in words for words in expected.remarks())
+    assert rough.history["wg_torque_Nmm"][-1] > 1.01 * smooth.history["wg_torque_Nmm"][-1]
+
+
 DEVIATIONS = "deviations.ring_gear.eccentricity=0.01"
 PROGRAM = f"load.program=[{UP}]"
 REFUSED = [
     ((DEVIATIONS, PROGRAM), "[deviations] is not available with load.program"),
-    ((DEVIATIONS, "stiffness.positions=1"), "[deviations] is not available with [stiffness]"),
+    ((DEVIATIONS, "stiffness.positions=1"), "swgpar rate has a run for each"),
     ((DEVIATIONS, "ratcheting.limit=0.2"), "[deviations] is not available with [ratcheting]"),
-    (
-        (DEVIATIONS, "contact.friction=0.1"),
-        "contact.friction = 0.1 is out of range: allowed 0 with [deviations]",
-    ),
     (
         (*BEARING, "deviations.wave_generator.eccentricity=0.01"),
         "deviations.wave_generator.eccentricity = 0.01 is out of range: allowed only 0 with "
@@ -206,6 +218,11 @@ REFUSED = [
         "[fatigue] is not available with [ratcheting]",
     ),
     (("stiffness.positions=1", PROGRAM), "load.program and [stiffness] are both given"),
+    (
+        ("stiffness.positions=1", "ratcheting.limit=0.2"),
+        "[stiffness] and [ratcheting] are both given: allowed one of load.program, [stiffness], "
+        "[ratcheting]; swgpar rate has a run for each",
+    ),
     ((*SAMPLED, PROGRAM), "steps.samples = 2 is out of range: allowed only 0 with load.program"),
 ]
 

@@ -21,7 +21,7 @@ from swgpar.drive_results.summary import DriveSummary
 from swgpar.errors import InputError
 from swgpar.input.toml_file import read_toml
 from swgpar.rating.planned_runs import LoadCase, plan_runs
-from swgpar.rating.rate_drive import accuracy_of
+from swgpar.rating.rate_drive import accuracy_of, without_accuracy
 from swgpar.rating.rated_answers import STATIC_PRESSURE
 from swgpar.rating.rows import (
     NO_FLANK_PRESSURE,
@@ -429,12 +429,11 @@ def test_loads_of_one_torque_share_a_run() -> None:
 def test_with_friction_what_cannot_have_it_runs_without() -> None:
     plan = plan_runs(rated(contact={"friction": 0.1}))
     runs = {run.name: run for run in plan.runs}
-    for name in ("deviations", "natural frequencies"):
-        run = runs[name]
-        assert run.design is not None and run.design.contact.friction == 0.0
-        assert "friction" in run.left_out
+    run = runs["natural frequencies"]
+    assert run.design is not None and run.design.contact.friction == 0.0
+    assert "friction" in run.left_out
     design = runs["rated torque"].design
-    assert design is not None and design.contact.friction == 0.1 and design.deviations is None
+    assert design is not None and design.contact.friction == 0.1 and design.deviations
     assert design.steps.samples
 
 
@@ -474,7 +473,11 @@ def test_an_accuracy_is_for_runs_with_stresses() -> None:
     runs = {run.name: run for run in plan_runs(rated()).runs}
     refined = {name for name, run in runs.items() if accuracy_of(run, 0.02)}
     assert refined == {"repeated peak torque", "largest torque"}
-    assert accuracy_of(plan_runs(rated(**with_bearing())).runs[0], 0.02) is None
+    first = plan_runs(rated(**with_bearing())).runs[1]
+    assert first.windows and accuracy_of(first, 0.02) is None
+    assert "not available with wave_generator.bearing" in without_accuracy(first, 0.02)
+    assert without_accuracy(first, None) == ""
+    assert not any(without_accuracy(run, 0.02) for run in runs.values())
     assert all(accuracy_of(run, None) is None for run in runs.values())
     with pytest.raises(InputError, match="--accuracy = 0.5 is out of range"):
         swgpar.rate(rated(), "results", accuracy=0.5)
