@@ -26,7 +26,6 @@ def not_refinable(design: DriveDesign) -> tuple[str, str] | None:
     """What keeps the mesh from being chosen by an accuracy, and what is allowed; None without."""
     for given, what, allowed in (
         (design.has_program, "a load program", "a mesh recipe"),
-        (design.bearing is not None, "wave_generator.bearing", "without it"),
         (design.is_loaded_sideways, SIDEWAYS, "without them"),
         (design.dynamic_spline is not None, 'drive.model = "pancake"', '"cup"'),
     ):
@@ -50,7 +49,7 @@ def require_accuracy(accuracy: float) -> None:
 
 def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
     """The design with the angles of the period that suit an accuracy, unless it says them itself;
-    not with bolts, whose period is long.
+    not with bolts, whose period is long, and not with a bearing, whose balls pass.
 
     Raises InputError where the accuracy is out of range.
     """
@@ -59,7 +58,7 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
         design.kinematics.period_angle
     )
     given, kinematics = "samples" in design.steps.model_fields_set, design.kinematics
-    if given or not whole_period or kinematics.pitches > 1:
+    if given or not whole_period or kinematics.pitches > 1 or design.bearing is not None:
         return design
     samples = next(count for least, count in SAMPLES if accuracy >= least)
     while kinematics.states(samples) < samples:  # some angles would show the same state

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from mpi4py import MPI
 
 from swgpar.analysis.accuracy import ROUGH
+from swgpar.analysis.bearing_errors import bearing_errors
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.coarse_wall import coarse_wall
 from swgpar.analysis.contact_errors import contact_errors
@@ -28,6 +29,7 @@ from swgpar.analysis.saved_state import StartStates
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.evaluation.contact_error_shares import ContactErrorShares
+from swgpar.evaluation.loaded_bearing import loaded_bearing
 from swgpar.fem.body import RING_GEAR
 from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress
@@ -49,7 +51,7 @@ class ChosenMesh:
 
     root_stress : with both errors;  error : relative
     coarse_wall : stresses of the wall on a coarser mesh, where they are known
-    contact_errors : of the contacts of flanks
+    contact_errors : of the contacts of flanks;  bearing_errors : see `bearing_errors`
     """
 
     model: DriveModel
@@ -58,6 +60,7 @@ class ChosenMesh:
     error: float
     coarse_wall: CoarseWall | None
     contact_errors: ContactErrorShares
+    bearing_errors: dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -66,12 +69,14 @@ class Refined:
 
     coarse_wall : stresses of the wall on the coarsest of these, where they are known
     found : by windows, with both errors;  contact_errors : of the contacts of flanks
+    bearing_errors : see `bearing_errors`
     """
 
     comparison: MeshComparison
     coarse_wall: CoarseWall | None
     found: RootStress
     contact_errors: ContactErrorShares
+    bearing_errors: dict[str, float]
 
     @property
     def recipe(self) -> MeshRecipe:
@@ -140,7 +145,9 @@ class Refinement:
         self._log(found)
         lobes = self.design.wave_generator.lobes
         errors = contact_errors(meshes, recipe, comparison.contacts, lobes)
-        return Refined(comparison, compared, found, errors)
+        bearing = loaded_bearing(self.model, self.loaded)
+        of_bearing = {} if bearing is None else bearing_errors(meshes, recipe, bearing)
+        return Refined(comparison, compared, found, errors, of_bearing)
 
     def _log(self, found: RootStress) -> None:
         def share(error: float | None) -> str:
@@ -256,6 +263,7 @@ def choose_mesh(
         relative_error(known.found),
         known.coarse_wall,
         known.contact_errors,
+        known.bearing_errors,
     )
 
 

@@ -79,6 +79,7 @@ class Recorder(ABC):
         self.record.root_stress = chosen.root_stress
         self.record.coarse_wall = chosen.coarse_wall
         self.record.contact_errors = chosen.contact_errors
+        self.record.bearing_errors = chosen.bearing_errors
 
     def keep(self, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.

@@ -70,8 +70,8 @@ def rate(
         As `load_mesh` takes it.
     accuracy : float
         Relative, of the largest tensile stress at the teeth (0.001 to 0.2): meshes of the runs
-        whose stresses the sheet has are refined for it, as `run` does. With a bearing, and in load
-        programs, the mesh is that of the recipe.
+        whose stresses the sheet has are refined for it, as `run` does. In load programs and in runs
+        without windows the mesh is that of the recipe.
     restart : bool
         Keep what is finished in `out`, continue what was interrupted, try again what failed.
     overwrite : bool
