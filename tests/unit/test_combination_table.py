@@ -58,7 +58,7 @@ def test_every_pair_stands_in_the_table() -> None:
     assert set(table()) == {frozenset(pair) for pair in combinations(FEATURES, 2)}
 
 
-@pytest.mark.parametrize("pair", combinations(FEATURES, 2), ids="+".join)
+@pytest.mark.parametrize("pair", [*combinations(FEATURES, 2)], ids="+".join)
 def test_the_program_does_what_the_table_says(pair: tuple[str, str]) -> None:
     said = table()[frozenset(pair)]
     keys = WITHOUT | FEATURES[pair[0]] | FEATURES[pair[1]]
