@@ -82,14 +82,13 @@ class LoadedDrive:
 
     drive : identity of the drive, without its mesh and what of it is modelled
     model : with the factor of its last tangent
-    loaded, x : load state and its vector; None before the first one
+    loaded : load states that runs have begun with, and their vectors
     period : states over a sampled period, from the loaded one on; empty without one
     """
 
     drive: str
     model: DriveModel
-    loaded: LoadState | None = None
-    x: PETSc.Vec | None = None
+    loaded: list[tuple[LoadState, PETSc.Vec]] = field(default_factory=list)
     period: list[KnownState] = field(default_factory=list)
 
 
@@ -98,7 +97,7 @@ class LoadedDrives(ModelSource):
 
     Designs share a model where they differ in the load and in what is asked of the states under it
     only (`DriveDesign.model_keys`). Without friction an equilibrium does not depend on the path to
-    it: the next run starts with that of the one before.
+    it: a run starts with that of the nearest torque.
     """
 
     def __init__(self) -> None:
@@ -131,32 +130,39 @@ class LoadedDrives(ModelSource):
     def keep_loaded(self, stepper: LoadStepper) -> None:
         if not stepper.design.contact.friction:
             drive = self._taken[self._key(stepper.model)]
-            drive.loaded, drive.x = stepper.load_state, stepper.problem.x.copy()
+            state = stepper.load_state
+            others = [one for one in drive.loaded if one[0].torque != state.torque]
+            drive.loaded = [*others, (state, stepper.problem.x.copy())]
 
     def keep_period(self, stepper: LoadStepper) -> None:
         if not stepper.design.contact.friction:
             self._taken[self._key(stepper.model)].period = list(stepper.known_states)
 
     def resume(self, stepper: LoadStepper) -> bool:
-        drive = self._taken[self._key(stepper.model)]
-        known = [one for one in self._all() if self._leads_to(one, drive, stepper)]
+        drive, target = self._taken[self._key(stepper.model)], stepper.sequence.loaded
+        # where the wave generator has turned balls are elsewhere at another speed of the cage
+        known = [
+            (one, state, x)
+            for one in self._all()
+            for state, x in one.loaded
+            if one.drive == drive.drive and not state.angle and not target.angle
+        ]
         if not known or stepper.design.contact.friction:
             return False
-        nearest = max(known, key=lambda one: (one is drive, one.model.n_elements()))
+        nearest, stepper.load_state, x = min(
+            known,
+            key=lambda one: (
+                abs(one[1].torque - target.torque),
+                one[0] is not drive,
+                -one[0].model.n_elements(),
+            ),
+        )
         if nearest is drive:
-            nearest.x.copy(stepper.problem.x)
-            stepper.guides = drive.period
+            x.copy(stepper.problem.x)
         else:
-            transfer(nearest.model, nearest.x, stepper.model, stepper.problem.x)
-        stepper.load_state = nearest.loaded
+            transfer(nearest.model, x, stepper.model, stepper.problem.x)
+        stepper.guides = drive.period
         return True
-
-    @staticmethod
-    def _leads_to(known: LoadedDrive, drive: LoadedDrive, stepper: LoadStepper) -> bool:
-        # where the wave generator has turned balls are elsewhere at another speed of the cage
-        if known.loaded is None or known.loaded.angle or stepper.sequence.loaded.angle:
-            return False
-        return known.drive == drive.drive
 
     def destroy(self) -> None:
         """Release all models."""

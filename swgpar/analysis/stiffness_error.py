@@ -86,7 +86,11 @@ def _changes(before: StiffnessValues, after: StiffnessValues, factor: float) -> 
 
 
 def _first_position(design: DriveDesign) -> DriveDesign:
-    section = design.stiffness.model_copy(update={"positions": 1})
+    """The design with one position, and without the torques that only a curve or the area of a loop
+    needs."""
+    section = design.stiffness
+    changes = {"positions": 1} if section.loop else {"positions": 1, "points": 1}
+    section = section.model_copy(update=changes)
     return design.model_copy(update={"stiffness": section})
 
 
