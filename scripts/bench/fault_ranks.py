@@ -32,6 +32,13 @@ def arguments_of(bad: BadInput, folder: Path, number: int) -> list[str]:
     file, out = str(folder / next(iter(bad.files))), str(folder / "out")
     if bad.kind == "study":
         return ["study", file, "--out", out]
+    if bad.kind == "optimisation":
+        return ["optimise", file, "--out", out]
+    if bad.kind == "curve file":
+        wave = f'wave_generator={{type="points",file="{file}",face_width=4.0}}'
+        return ["check", str(DESIGN), "--set", *PLANE, wave]
+    if bad.kind == "result":
+        return ["report", str(folder / "copy")]
     if bad.kind == "mesh recipe":
         return ["check", str(REFERENCE), "--mesh", file]
     if bad.kind == "pitch file":

@@ -89,7 +89,8 @@ def agreed(comm: MPI.Comm, path: Path, action: str = "write") -> Iterator[None]:
         # what a file of anybody holds may raise anything; else it is an error of the program
         if action != "read" and not isinstance(error, FAILURES):
             raise
-        failure = OutputError(f"cannot {action} {path}: {reason_of(error)}")
+        named = getattr(error, "filename", None) if action == "read" else None
+        failure = OutputError(f"cannot {action} {named or path}: {reason_of(error)}")
     raise_first(comm, failure)
 
 

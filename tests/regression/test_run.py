@@ -22,7 +22,7 @@ from support.commands import (
 from support.paths import DESIGN, DRIVERS, RECIPE
 from support.small_drive import NO_SHORTCUTS, PLANE, SHORT
 from swgpar.meshing import load_recipe
-from swgpar.results import history
+from swgpar.results import history, made_files
 
 CUP_ROTATION = DRIVERS / "cup_rotation.py"
 
@@ -96,6 +96,8 @@ def test_restart_before_anything_was_saved(plain: Path, tmp_path: Path) -> None:
         out = tmp_path / name
         out.mkdir()
         if k:
+            made_files.begin(out)
+            made_files.note(out / "history.csv")
             (out / "history.csv").write_bytes((plain / "history.csv").read_bytes())
         succeed(run_command(out, "--restart"))
         assert "starting from the beginning" in (out / "run.log").read_text(encoding="utf-8")

@@ -12,6 +12,7 @@ import datetime
 import functools
 import json
 import math
+import shutil
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -25,7 +26,7 @@ from hypothesis import strategies as st
 from mpi4py import MPI
 
 import swgpar
-from support.paths import DESIGN, DRIVERS, RECIPE, REFERENCE
+from support.paths import DATA, DESIGN, DRIVERS, RECIPE, REFERENCE
 from support.small_drive import PLANE
 from swgpar.analysis.forecast import forecast
 from swgpar.analysis.run_record import RunRecord
@@ -34,6 +35,8 @@ from swgpar.errors import LONGEST, SwgparError
 from swgpar.input.toml_file import apply_overrides, read_toml
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.recipe import RECIPES, recipe_path
+from swgpar.optimisation.problem import make_problem
+from swgpar.optimisation.spec import load_specification
 from swgpar.results import checkpoint, parallel_hdf5
 from swgpar.results.folder import CHECKPOINT
 from swgpar.results.parallel_hdf5 import Block
@@ -102,7 +105,7 @@ def _drives() -> list[Table]:
         {"flexible_spline.profile": arcs, "ring_gear.profile": arcs},
         {"fatigue": {}, "losses": {"bearing_diameter": 30.0}},
         {"stiffness": {"torque": 20.0}},
-        {"ratcheting": {"rotation": 5.0}},
+        {"ratcheting": {"limit": 0.5}},
         {
             "deviations": {
                 "turns": 2,
@@ -110,10 +113,48 @@ def _drives() -> list[Table]:
                 "ring_gear": {"pitch_grade": 5, "eccentricity": 0.01},
             }
         },
-        {"load.program": [{"name": "up", "torque": 5.0}, {"name": "back", "rotation": 0.1}]},
+        {"load.program": [{"name": "up", "torque": 5.0}, {"name": "back", "output_rotation": 0.1}]},
         {"contact": {"friction": 0.1}, "steps": {"samples": 4}},
     ]
-    return [cup, small, plane, flat, *(apply_overrides(plane, change) for change in changed)]
+    newer = [apply_overrides(small, change) for change in _newer_sections()]
+    return [
+        *(cup, small, plane, flat),
+        *(apply_overrides(plane, change) for change in changed),
+        *newer,
+        read_toml(DRIVERS / "rating.toml"),
+        read_toml(DRIVERS / "pancake.toml"),
+    ]
+
+
+def _newer_sections() -> list[Table]:
+    """Changes of the small cup drive, each with a section or a kind of curve."""
+    steel = {"E": 205e3, "nu": 0.3, "density": 7850.0, "expansion": 1.2e-5}
+    bearing = {"balls": 20, "ball_diameter": 2.0, "race_thickness": 0.5, "race_interference": 0.01}
+    output = {
+        "radial_stiffness": 1e5,
+        "axial_stiffness": 1e5,
+        "tilting_stiffness": 1e4,
+        "radial_force": 10.0,
+        "tilting_moment": 0.1,
+    }
+    polar = {
+        "type": "polar",
+        "radius": "a - (a - b) * sin(theta)**2 * k",
+        "parameters": {"k": 1.0},
+        "face_width": 4.0,
+    }
+    cycloid = {"type": "cycloid", "r_epicycloid": 1.0, "r_hypocycloid": 1.0, "r_root": 0.3}
+    return [
+        {"wave_generator.bearing": bearing, "micro_geometry.wg_slope": 0.0},
+        {"ring_gear.housing": {"thickness": 4.0, "outside": "held"}},
+        {"output_bearing": output},
+        {"material": steel, "frequencies": {"number": 4}},
+        {"material": steel, "flexible_spline.temperature": 60.0, "ring_gear.temperature": 40.0},
+        {"rating": {"rated_torque": 2.0, "momentary_torque": 4.0, "K1": 1.0, "efficiency": 0.7}},
+        {"wave_generator": polar},
+        {"flexible_spline.profile": cycloid, "ring_gear.profile": cycloid},
+        {"steps": {"samples": 4}, "losses": {"bearing_diameter": 15.0, "flank_friction": 0.05}},
+    ]
 
 
 def _trains() -> list[Table]:
@@ -156,6 +197,31 @@ def _studies() -> list[Table]:
     return [{"study": study} for study in (grid, cases, trains)]
 
 
+def _searches() -> list[Table]:
+    variables = [
+        {"keys": ["mesh.stiffness"], "low": 1e9, "high": 1e11, "log": True},
+        {"keys": ["gear_1.mass", "gear_2.mass"], "choices": [50.0, 100.0]},
+    ]
+    search = {
+        "design": str(DRIVERS / "gear_pair.toml"),
+        "set": ["monte_carlo.samples=20"],
+        "evaluations": 12,
+        "sampler": "tpe",
+        "first": [{"mesh.stiffness": 2e9}],
+        "variable": variables,
+        "objective": [{"quantity": "natural frequency 2 (rad/s)", "goal": "maximise"}],
+        "constraint": [{"quantity": "damping ratio 1", "at_most": 0.5}],
+    }
+    return [{"optimise": search}]
+
+
+def _curve_file() -> bytes:
+    """Points of a cam for the small drive: an ellipse."""
+    angles = [2.0 * math.pi * k / 120 for k in range(120)]
+    rows = (f"{18.2 * math.cos(t):.6f}, {19.4 * math.sin(t):.6f}" for t in angles)
+    return "\n".join(["x, y", *rows]).encode()
+
+
 def _pitch_file() -> bytes:
     return "\n".join(["tooth,pitch", *(f"{k},{math.sin(k):.3f}" for k in range(42))]).encode()
 
@@ -168,6 +234,7 @@ def right_files() -> dict[str, list[Table]]:
         "gear train": _trains(),
         "mesh recipe": [*(read_toml(recipe_path(name)) for name in RECIPES), read_toml(RECIPE)],
         "study": _studies(),
+        "optimisation": _searches(),
     }
 
 
@@ -302,7 +369,13 @@ def right_checkpoint(folder: Path) -> bytes:
     return (folder / CHECKPOINT).read_bytes()
 
 
-KINDS = ("drive", "gear train", "mesh recipe", "study", "pitch file", "checkpoint")
+KINDS = (
+    *("drive", "gear train", "mesh recipe", "study", "optimisation"),
+    *("pitch file", "curve file", "result", "checkpoint"),
+)
+
+FINISHED = DATA / "first_format"
+"""Folders of finished runs whose files are damaged."""
 
 
 @st.composite
@@ -318,6 +391,15 @@ def bad_inputs(draw: st.DrawFn, folder: Path) -> BadInput:
         return BadInput(
             kind, {"pitch.csv": content, "column": column.encode()}, f"{what}, column {column}"
         )
+    if kind == "curve file":
+        content, what = draw(damaged(_curve_file()))
+        return BadInput(kind, {"cam.csv": content}, what)
+    if kind == "result":
+        run = draw(st.sampled_from(sorted(path.name for path in FINISHED.iterdir())))
+        names = [path.name for path in (FINISHED / run).iterdir() if path.is_file()]
+        name = draw(st.sampled_from(sorted(names)))
+        content, what = draw(damaged((FINISHED / run / name).read_bytes()))
+        return BadInput(kind, {name: content, "run": run.encode()}, f"{run}/{name}, {what}")
     table, what = draw(changed_tables(kind))
     content = tomli_w.dumps(table).encode(errors="surrogatepass")
     if draw(st.integers(0, 7)) == 0:
@@ -431,6 +513,38 @@ def _use_pitch_file(folder: Path) -> str:
     )
 
 
+def _use_search(folder: Path) -> str:
+    """Every first design is within the bounds, and every variable a key of the design."""
+    problem = make_problem(load_specification(folder / "input.toml"))
+    for first in problem.section.first:
+        problem.applied(problem.run_table, first)
+    return ""
+
+
+def _use_curve_file(folder: Path) -> str:
+    wave = {"type": "points", "file": str(folder / "cam.csv"), "face_width": 4.0}
+    table = {**apply_overrides(read_toml(DESIGN), PLANE), "wave_generator": wave}
+    return _not_finite(swgpar.check(swgpar.load_design(table)))
+
+
+def _use_result(folder: Path) -> str:
+    """What is read of a damaged result has finite answers, and figures."""
+    run = (folder / "run").read_text(encoding="utf-8")
+    copy = folder / "copy"
+    shutil.rmtree(copy, ignore_errors=True)
+    shutil.copytree(FINISHED / run, copy)
+    for file in folder.iterdir():
+        if file.is_file() and (copy / file.name).exists():
+            shutil.copy(file, copy / file.name)
+    for file in folder.iterdir():
+        if file.is_file():
+            file.unlink()
+    result = swgpar.open_result(copy)
+    values = {answer.name: answer.value for answer in result.summary.values()}
+    result.plot.save(copy)
+    return _not_finite({name: value for name, value in values.items() if value is not None})
+
+
 def _use_checkpoint(folder: Path) -> str:
     """A damaged checkpoint is refused, or all that it holds is what was written."""
     path, ranges = folder / CHECKPOINT, {name: (0, rows) for name, rows, _ in SHAPES}
@@ -453,7 +567,10 @@ USES: dict[str, Callable[[Path], str]] = {
     "gear train": _use_design,
     "mesh recipe": _use_recipe,
     "study": _use_study,
+    "optimisation": _use_search,
     "pitch file": _use_pitch_file,
+    "curve file": _use_curve_file,
+    "result": _use_result,
     "checkpoint": _use_checkpoint,
 }
 """By kind of file: use it from a folder; returns what is wrong with an input that is accepted."""

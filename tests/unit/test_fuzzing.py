@@ -6,9 +6,18 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+import tomli_w
 from hypothesis import HealthCheck, given, settings
 
-from support.bad_inputs import BadInput, Outcome, attempt, bad_inputs, draw_inputs, is_sentence
+from support.bad_inputs import (
+    BadInput,
+    Outcome,
+    attempt,
+    bad_inputs,
+    draw_inputs,
+    is_sentence,
+    right_files,
+)
 
 COUNT = 400
 
@@ -16,6 +25,14 @@ COUNT = 400
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("inputs")
+
+
+@pytest.mark.parametrize("kind", right_files())
+def test_what_is_changed_is_right_at_first(folder: Path, kind: str) -> None:
+    for table in right_files()[kind]:
+        content = tomli_w.dumps(table).encode()
+        outcome = attempt(BadInput(kind, {"input.toml": content}, "nothing"), folder)
+        assert (outcome.status, outcome.fault) == ("accepted", ""), (outcome.sentence, table)
 
 
 def test_bad_inputs_are_refused_or_make_sense(
