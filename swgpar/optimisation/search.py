@@ -132,7 +132,7 @@ class Search:
     """One search in a storage, on all ranks of a communicator; collective unless said otherwise.
 
     storage : of this rank;  name : of the search in the storage
-    first : designs that are tried first, when the search is new
+    first : designs that are tried first, unless the search knows them
     own : whether nobody else uses the storage, so that evaluations without an end belong to a call
     that was interrupted
     """
@@ -176,8 +176,6 @@ class Search:
         identity = study.user_attrs.get("identity")
         if identity is None:
             study.set_user_attr("identity", problem.identity)
-            for values in first:
-                study.enqueue_trial(values)
         elif identity != problem.identity:
             instead = "overwrite = true (--overwrite)"
             if not own:
@@ -189,10 +187,13 @@ class Search:
                 f"the storage holds a search {self.name} of another problem: allowed are the same "
                 f"variables, objectives, constraints, design and mesh, or {instead}"
             )
+        for values in first:  # a call that was killed here may have added some of them
+            study.enqueue_trial(values, skip_if_exists=True)
         state = optuna.trial.TrialState
         for trial in study.get_trials(deepcopy=False, states=(state.RUNNING,)) if own else ():
-            study.tell(trial.number, state=state.FAIL)  # interrupted: tried once more
+            # interrupted: tried once more. In this order a kill between the two loses none
             study.enqueue_trial(trial.params)
+            study.tell(trial.number, state=state.FAIL)
 
     def _complete(self) -> list[optuna.trial.FrozenTrial]:
         complete = import_optuna().trial.TrialState.COMPLETE

@@ -181,8 +181,9 @@ def _hint(keys: ExternalProfile | InternalProfile, name: str, reason: str) -> st
     if hasattr(keys, "cutter_radius"):
         return "; allowed are cutters that stay inside the tooth"
     if isinstance(keys, Conjugate) and "land is left" in reason:
-        change = "larger, so that its teeth are thinner" if "root" in reason else "smaller"
-        return f"; no other r_root mends it: make {name}.backlash {change}"
+        if "root" in reason:
+            return f"; make {name}.backlash larger, which makes its teeth thinner, and r_root small"
+        return f"; make {name}.backlash smaller"
     return ""
 
 

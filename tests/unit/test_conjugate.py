@@ -10,6 +10,7 @@ import pytest
 
 import swgpar
 from support.drive_groups import PLANE
+from support.paths import REFERENCE
 from swgpar.checks.derived_geometry import derived_geometry
 from swgpar.errors import InputError
 
@@ -116,3 +117,15 @@ def test_what_gives_no_teeth_is_refused(
 ) -> None:
     with pytest.raises(InputError, match=words):
         design(profile=profile, **values)
+
+
+@pytest.mark.parametrize("r_root", [0.02, 1.0])
+def test_without_a_land_the_refusal_names_the_backlash(r_root: float) -> None:
+    """On the reference cup no radius of the root mends it."""
+    profile = {"type": "conjugate", "r_root": r_root}
+    changes = {"ring_gear.c_P": 1.0, "ring_gear.profile": profile}
+    words = r"make ring_gear\.profile\.backlash larger, which makes its teeth thinner"
+    with pytest.raises(InputError, match=words):
+        swgpar.load_design(REFERENCE, changes)
+    mended = {"ring_gear.profile.backlash": 0.6, "ring_gear.profile.r_root": 0.1}
+    swgpar.load_design(REFERENCE, {**changes, **mended})

@@ -3,6 +3,7 @@ result as it was."""
 
 from __future__ import annotations
 
+import json
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -107,3 +108,17 @@ def test_damaged_fields_have_a_sentence(loop: Path, tmp_path: Path) -> None:
         with pytest.raises(SwgparError, match=f"cannot read {folder}") as caught:
             swgpar.open_result(folder).grid(0)
         assert "h5py" not in str(caught.value) and "errno" not in str(caught.value)
+
+
+def test_results_of_another_version_say_what_to_do(loop: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    shutil.copytree(loop, folder)
+    content = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    content["versions"]["swgpar"] = "99.0"
+    for change, words in (
+        ({"format": 9}, "written by swgpar 99.0 in the format 9: allowed are formats 1 to 2"),
+        ({"rotation": "x"}, "written by swgpar 99.0, and swgpar .* does not read its content"),
+    ):
+        (folder / "summary.json").write_text(json.dumps({**content, **change}), encoding="utf-8")
+        with pytest.raises(SwgparError, match=words):
+            swgpar.open_result(folder)

@@ -19,7 +19,7 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE, SHORT
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import Housing
-from swgpar.errors import InputError
+from swgpar.errors import InputError, SwgparError
 from swgpar.exchange.outlines import (
     FLANK_POINTS,
     TOLERANCE,
@@ -390,3 +390,8 @@ def test_formats_that_a_source_does_not_have(folder: Path, tmp_path: Path) -> No
         swgpar.export(DESIGN, tmp_path, ["vtkhdf"])
     with pytest.raises(InputError, match="lookup needs a run with"):
         swgpar.export(folder, tmp_path, ["lookup"])
+
+
+def test_errors_of_gmsh_have_a_sentence() -> None:
+    with pytest.raises(SwgparError, match="^Gmsh cannot make part: "), gmsh_model("part") as gmsh:
+        gmsh.model.occ.addCircle(0.0, 0.0, 0.0, -1.0)

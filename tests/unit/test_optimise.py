@@ -179,3 +179,29 @@ def test_a_lock_that_a_killed_search_has_left_is_none(tmp_path: Path) -> None:
     found = swgpar.optimise(written(tmp_path, evaluations="3"), out, restart=True)
     # Optuna takes such a lock over after 30 s
     assert len(found.evaluations) == 3 and time.monotonic() - begin < 25.0
+
+
+def test_a_kill_while_designs_are_given_loses_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import optuna
+
+    given = [2e9, 3e9, 4e9, 5e9]
+    first = ", ".join(f'{{ "mesh.stiffness" = {value} }}' for value in given)
+    path, out = written(tmp_path, evaluations="4", first=f"[{first}]"), tmp_path / "out"
+    enqueue, calls = optuna.Study.enqueue_trial, 0
+
+    def killed(study: optuna.Study, *arguments: Any, **keywords: Any) -> None:
+        nonlocal calls
+        calls += 1
+        if calls == 3:
+            raise KeyboardInterrupt
+        enqueue(study, *arguments, **keywords)
+
+    with monkeypatch.context() as context:
+        context.setattr(optuna.Study, "enqueue_trial", killed)
+        with pytest.raises(KeyboardInterrupt):
+            swgpar.optimise(path, out)
+    found = swgpar.optimise(path, out, restart=True)
+    tried = sorted(each.values["mesh.stiffness"] for each in found.evaluations.values())
+    assert tried == given
