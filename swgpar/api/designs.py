@@ -11,16 +11,17 @@ from mpi4py import MPI
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.api.runs import DesignLike, MeshLike, load_design, load_mesh
 from swgpar.checks.starter import (
-    CamType,
     Layout,
     Lobes,
     Model,
-    Profile,
     Request,
     Shape,
     starter_design,
+    usual_profile,
 )
+from swgpar.checks.starter_cam import CamType
 from swgpar.checks.starter_file import as_toml
+from swgpar.checks.starter_teeth import Profile
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
 from swgpar.input.arguments import given_path, given_texts
@@ -41,7 +42,7 @@ def new(
     torque: float,
     diameter: float | None = None,
     bore: float | None = None,
-    profile: Profile = "quadruple_arc",
+    profile: Profile | None = None,
     cam: CamType | None = None,
     layout: Layout = "ring_fixed",
     model: Model = "cup",
@@ -62,7 +63,9 @@ def new(
         On the output.
     diameter, bore : float, mm
         Pitch diameter or inner diameter of the flexible spline; one of both.
-    profile : "quadruple_arc", "double_arc" or "involute"
+    profile : "s_shaped", "quadruple_arc", "double_arc" or "involute"
+        Without it S-shaped teeth with a conjugate ring gear for cups and plane drives with an
+        elliptical cam, and the quadruple arc for others.
     cam : "elliptical", "parabolic", "simplified", "four_roller" or "harmonic"
         Without it the ellipse, and with three lobes the harmonic cam.
     layout : "ring_fixed" or "spline_fixed"
@@ -86,6 +89,7 @@ def new(
     (200, 0.254)
     """
     cam = cam or ("elliptical" if lobes == 2 else "harmonic")
+    profile = profile or usual_profile(model, cam, lobes)
     request = Request(ratio, torque, diameter, bore, profile, cam, layout, model, shape, lobes)
     design, table = starter_design(request)
     build_sector_meshes(design.geometry, load_mesh(MESHES[model]))

@@ -1,41 +1,43 @@
 """A design to start from: all sizes of a drive from its ratio, its diameter or bore, its torque and
 kinds of curves.
 
-What is given is kept. All else follows from rules of proportion, those of the designs in
-`drivers/catalogue`: sizes of the blank over the pitch diameter D, sizes of the teeth over the
-module. The backlash is the smallest of a list with which the undeformed flanks clear each other,
+What is given is kept. All else follows from rules of proportion after published sections
+(docs/howto/own_drive.md has their sources): sizes of the blank over the pitch diameter D, sizes of
+the teeth over the module. So drives of one ratio are similar, whatever their size. With arcs and
+involutes the backlash is the smallest of a list with which the undeformed flanks clear each other,
 and the teeth of a dynamic spline are the thickest of a list.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
 import numpy as np
 
 from swgpar.checks.design_file import make_drive
+from swgpar.checks.starter_cam import CamType, cam_keys, rounded
+from swgpar.checks.starter_teeth import (
+    Profile,
+    ToothSizes,
+    ring_section,
+    spline_section,
+    tooth_sizes,
+)
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import GEARS
+from swgpar.design.sections import Fatigue
 from swgpar.errors import InputError
-from swgpar.geometry.bracketed_root import root_between
-from swgpar.geometry.cams import make_cam, taut_length
-from swgpar.geometry.cams.keys import Harmonic, Parabolic, Simplified
 from swgpar.input.arguments import require_choice, require_number
 from swgpar.input.quantities import show
 from swgpar.input.require import require, require_available
 from swgpar.input.toml_file import with_value
-from swgpar.profiles.keys import DoubleArc, ProfileKeys, QuadrupleArc, RackInvolute
-
-Profile = Literal["quadruple_arc", "double_arc", "involute"]
-"""Kinds of profiles of a starter design."""
-
-CamType = Literal["elliptical", "parabolic", "simplified", "four_roller", "harmonic"]
-"""Kinds of cams of a starter design."""
 
 Model = Literal["cup", "plane", "pancake"]
 """Kinds of drives of a starter design."""
+
+Shape = Literal["cup", "short", "hat"]
+"""Shapes of the flexible spline: a usual cup, one of half the length, a silk hat with a flange
+outwards."""
 
 Layout = Literal["ring_fixed", "spline_fixed"]
 """Layouts of which the ratio gives the numbers of teeth."""
@@ -43,37 +45,33 @@ Layout = Literal["ring_fixed", "spline_fixed"]
 Lobes = Literal[2, 3]
 """Lobes of the cam of a starter design."""
 
-Shape = Literal["cup", "short", "hat"]
-"""Shapes of the flexible spline: a usual cup, one of half the length, a silk hat with a flange
-outwards."""
-
 LEAST_RATIO, LARGEST_RATIO = 15.0, 320.0
 """Ratios for which the rules give a drive that can be built and meshed."""
 
-RING_RIM = 0.04
+PRESSURE_ANGLE = {2: 20.0, 3: 14.0}
+"""By lobes, degrees. Three lobes lead a tooth on a path that is 1.5 times as steep."""
+
 FACE_WIDTH = 0.17
 LENGTH = 0.5
 FILLET = 0.02
 BORE, HUB = 0.17, 0.30
-"""Over the pitch diameter: rim of the ring gear, face width, length, fillet, bore radius and radius
-of the clamped hub of the cup."""
+"""Over the pitch diameter: face width, length, fillet, bore radius and radius of the clamped hub of
+the cup."""
+
+WALL, BACK_FILLET, END = 0.667, 0.3, 1.15
+"""Over the rim: thickness of the wall behind the teeth, fillet between both, thickness of the
+closed end."""
 
 SHORT_LENGTH = 0.25
-FLANGE, FLANGE_THICKNESS, CLAMPED_FLANGE = 0.68, 0.016, 0.60
-"""Over the pitch diameter: length of a short cup, radius and thickness of the flange of a silk hat,
-radius from which it is clamped."""
+FLANGE, CLAMPED_FLANGE = 0.68, 0.60
+"""Over the pitch diameter: length of a short cup, radius of the flange of a silk hat, radius from
+which it is clamped."""
 
-RING_RIM_MODULES = 8.0
-"""Largest rim of the ring gear, modules: a thicker one behaves alike."""
-
-
-ADDENDUM, DEDENDUM = 0.6, 0.8
-"""Of both gears, modules."""
-
-RIM, PRESSURE_ANGLE = {2: 0.012, 3: 0.006}, {2: 20.0, 3: 14.0}
-"""By lobes: rim of the flexible spline over the pitch diameter, pressure angle in degrees. Three
-lobes lead a tooth on a path that is 1.5 times as steep, and bend the rim four times as much on the
-same module."""
+BALLS = 22
+BALL_DIAMETER, RACE_THICKNESS = 0.09, 0.018
+OUTER_CONFORMITY = 0.52
+"""Bearing: balls, their diameter and the thickness of the outer race over the bore of the spline,
+and the radius of the outer groove over the ball's diameter."""
 
 PLAY = (0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2)
 """Backlash that is tried: share of the tooth's thickness (1 - c_P of the ring gear), or its profile
@@ -84,13 +82,6 @@ LEAST_CLEARANCE = 0.0005
 
 GAP = 0.05
 """Between the ring gears of a pancake drive, over its face width."""
-
-PROFILE_KEYS: dict[Profile, type[ProfileKeys]] = {
-    "quadruple_arc": QuadrupleArc,
-    "double_arc": DoubleArc,
-    "involute": RackInvolute,
-}
-"""Their typical lengths are those of a starter design."""
 
 DYNAMIC_RADII = {
     "r_tip": 0.2,
@@ -116,8 +107,15 @@ slope."""
 CROWNING, SLOPE, FLANK_CROWNING = 0.1, 0.09, 0.045
 """Micro-geometry of the reference drive (Table 7.4), modules."""
 
-CUTTER_TEETH = 2.0 / 3.0
-"""Teeth of the shaper-cutter over those of the ring gear, as in section 6.3."""
+CONJUGATE_CROWNING = {"cup": 0.065, "short": 0.12, "hat": 0.065}
+"""Crowning of S-shaped flanks by the shape, modules. The ring gear is conjugate at mid-width. In
+the cone of the cup rigid flanks without crowning overlap by that much at the ends."""
+
+SAMPLES = 4
+"""Angles of a period: with a bearing fatigue needs them."""
+
+STRENGTHS = ("tensile_strength", "yield_strength", "fatigue_limit", "shear_fatigue_limit")
+"""Keys of [fatigue] that the file shows with their defaults."""
 
 
 @dataclass(frozen=True)
@@ -139,6 +137,20 @@ class Request:
     model: Model = "cup"
     shape: Shape = "cup"
     lobes: Lobes = 2
+
+    @property
+    def has_bearing(self) -> bool:
+        """Whether balls are between cam and spline: in cups with two lobes, on cams that an inner
+        race can follow."""
+        followed = self.cam not in ("four_roller", "parabolic")
+        return self.model == "cup" and self.lobes == 2 and followed
+
+
+def usual_profile(model: Model, cam: CamType, lobes: int) -> Profile:
+    """The profile of a start for which none is named: S-shaped where the motion is that for which
+    these teeth are made, that of an ellipse in a cup or in the plane."""
+    fits = model != "pancake" and cam == "elliptical" and lobes == 2
+    return "s_shaped" if fits else "quadruple_arc"
 
 
 CHOICES = {
@@ -163,7 +175,7 @@ def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
     _check(request)
     refusal: InputError | None = None
     built = False
-    for play in PLAY:
+    for play in PLAY if request.profile != "s_shaped" else PLAY[:1]:
         table = _table(request, play)
         try:
             design = make_drive(table)
@@ -185,7 +197,7 @@ def _thin_teeth(table: dict[str, Any]) -> tuple[DriveDesign, dict[str, Any]]:
     """The pancake drive with the thickest teeth of the dynamic spline that clear those of the
     flexible spline."""
     for c_P in DYNAMIC_THICKNESS:
-        thinner = with_value(table, "dynamic_spline.c_P", _rounded(c_P))
+        thinner = with_value(table, "dynamic_spline.c_P", rounded(c_P))
         design = make_drive(thinner)
         if (
             design.rigid_teeth("dynamic_spline").clearance()
@@ -230,23 +242,20 @@ def _check(request: Request) -> None:
     )
 
 
-def _rounded(value: float, digits: int = 4) -> float:
-    return float(f"{value:.{digits}g}")
-
-
 def _table(request: Request, play: float) -> dict[str, Any]:
     """Content of the design file with a backlash."""
     lobes = request.lobes
     teeth = round(lobes * request.ratio) - (0 if request.layout == "ring_fixed" else lobes)
+    sizes = tooth_sizes(request.profile, lobes, teeth)
     if request.diameter is not None:
         module = request.diameter / teeth
     else:
         assert request.bore is not None  # one of both is given
-        # the inner radius is the pitch radius less dedendum and rim
-        module = 0.5 * request.bore / ((0.5 - RIM[lobes]) * teeth - DEDENDUM)
-    module = _rounded(module, 6)
+        module = 0.5 * request.bore / (0.5 * teeth - sizes.below_pitch_circle)
+    module = rounded(module, 6)
     pitch = module * teeth
-    width = _rounded(FACE_WIDTH * pitch, 3)
+    width = rounded(FACE_WIDTH * pitch, 3)
+    inner = 0.5 * pitch - sizes.below_pitch_circle * module
     table: dict[str, Any] = {
         "drive": {
             "model": request.model,
@@ -255,120 +264,88 @@ def _table(request: Request, play: float) -> dict[str, Any]:
             "teeth_rg": teeth + lobes,
             "module": module,
             "pressure_angle": PRESSURE_ANGLE[lobes],
-            "addendum_coef": ADDENDUM,
-            "dedendum_coef": DEDENDUM,
+            "addendum_coef": sizes.addendum,
+            "dedendum_coef": sizes.dedendum,
             "face_width": width,
         },
-        **{gear: _gear(request, gear, module, teeth, play) for gear in GEARS},
+        "flexible_spline": spline_section(request.profile, sizes, module),
+        "ring_gear": ring_section(request.profile, sizes, module, teeth + lobes, play),
         "wave_generator": {
             "type": request.cam,
             **({"lobes": 3} if lobes == 3 else {}),
             "face_width": width,
+            **cam_keys(request.cam, inner, module, lobes),
         },
     }
     if request.model == "cup":
-        length = SHORT_LENGTH if request.shape == "short" else LENGTH
-        table["cup"] = {
-            "length": _rounded(length * pitch),
-            "thickness_coef": 0.667,
-            "fillet_radius": _rounded(FILLET * pitch),
-            **_end(request.shape, pitch),
-        }
-        # the cone of the deflected wall is steeper the shorter the wall is
-        cone = (LENGTH + 0.5 * FACE_WIDTH) / (length + 0.5 * FACE_WIDTH)
-        micro = {"wg_crowning": CROWNING, "wg_slope": SLOPE * cone, "fs_crowning": FLANK_CROWNING}
-        table["micro_geometry"] = {name: _rounded(value * module) for name, value in micro.items()}
+        table |= _cup(request, sizes, module, pitch)
+    if request.has_bearing:
+        taper = table["micro_geometry"].pop("wg_slope")
+        table["wave_generator"]["bearing"] = _bearing(2.0 * inner, taper)
     if request.model == "pancake":
         table["dynamic_spline"] = _dynamic_spline(table, module)
-        table["micro_geometry"] = {"wg_crowning": _rounded(PANCAKE_CROWNING * module)}
+        table["micro_geometry"] = {"wg_crowning": rounded(PANCAKE_CROWNING * module)}
     table["material"] = {"E": 210e3, "nu": 0.29}
     table["load"] = {"torque": request.torque}
+    if request.has_bearing:
+        table["steps"] = {"samples": SAMPLES}
+    if request.model != "pancake":  # for which fatigue is not available
+        fields = Fatigue.model_fields
+        table["fatigue"] = {key: fields[key].default for key in STRENGTHS}
     table["rating"] = {"rated_torque": request.torque}
-    table["wave_generator"] |= _cam_keys(request.cam, table)
     return table
+
+
+def _cup(request: Request, sizes: ToothSizes, module: float, pitch: float) -> dict[str, Any]:
+    """Sections [cup] and [micro_geometry]. module, pitch : mm, pitch diameter"""
+    length = SHORT_LENGTH if request.shape == "short" else LENGTH
+    rim = sizes.rim * module
+    # the cone of the deflected wall is steeper the shorter the wall is
+    cone = (LENGTH + 0.5 * FACE_WIDTH) / (length + 0.5 * FACE_WIDTH)
+    flanks = CONJUGATE_CROWNING[request.shape] if request.profile == "s_shaped" else FLANK_CROWNING
+    micro = {"wg_crowning": CROWNING, "wg_slope": SLOPE * cone, "fs_crowning": flanks}
+    cup = {
+        "length": rounded(length * pitch),
+        "thickness_coef": WALL,
+        "back_fillet": rounded(BACK_FILLET * rim),
+        "end_thickness": rounded(END * rim),
+        "fillet_radius": rounded(FILLET * pitch),
+        **_end(request.shape, pitch),
+    }
+    micro_geometry = {name: rounded(value * module) for name, value in micro.items()}
+    return {"cup": cup, "micro_geometry": micro_geometry}
 
 
 def _end(shape: Shape, pitch: float) -> dict[str, Any]:
     """Keys of the closed end or flange. pitch : mm, pitch diameter"""
     if shape != "hat":
-        return {"inner_radius": _rounded(BORE * pitch), **_clamped(HUB * pitch)}
-    flange = {
-        "flange_radius": _rounded(FLANGE * pitch),
-        "end_thickness": _rounded(FLANGE_THICKNESS * pitch),
-    }
+        return {"inner_radius": rounded(BORE * pitch), **_clamped(HUB * pitch)}
+    flange = {"flange_radius": rounded(FLANGE * pitch)}
     return {"shape": "hat", **flange, **_clamped(CLAMPED_FLANGE * pitch)}
 
 
 def _clamped(radius: float) -> dict[str, Any]:
     """Keys of a hub or flange that is clamped: a bare edge bends, and halves the stiffness."""
-    return {"attachment": "clamped", "clamping_radius": _rounded(radius)}
+    return {"attachment": "clamped", "clamping_radius": rounded(radius)}
+
+
+def _bearing(bore: float, taper: float) -> dict[str, Any]:
+    """Section [wave_generator.bearing]. bore : mm, of the spline;  taper : mm, of the race"""
+    return {
+        "balls": BALLS,
+        "ball_diameter": rounded(BALL_DIAMETER * bore),
+        "race_thickness": rounded(RACE_THICKNESS * bore),
+        "outer_conformity": OUTER_CONFORMITY,
+        "race_taper": taper,
+    }
 
 
 def _dynamic_spline(table: dict[str, Any], module: float) -> dict[str, Any]:
     """Section of the second ring gear of a pancake drive, with its thickest teeth."""
-    radii = {name: _rounded(value * module) for name, value in DYNAMIC_RADII.items()}
+    radii = {name: rounded(value * module) for name, value in DYNAMIC_RADII.items()}
     return {
         "rim": table["ring_gear"]["rim"],
         "c_P": DYNAMIC_THICKNESS[0],
-        "gap": _rounded(GAP * table["drive"]["face_width"], 2),
+        "gap": rounded(GAP * table["drive"]["face_width"], 2),
         "profile": {"type": "quadruple_arc", **radii},
     }
-
-
-def _gear(request: Request, gear: str, module: float, teeth: int, play: float) -> dict[str, Any]:
-    """Section of a gear; the ring gear has the backlash."""
-    profile, pitch, ring = request.profile, module * teeth, gear == "ring_gear"
-    rim = min(RING_RIM * pitch, RING_RIM_MODULES * module) if ring else RIM[request.lobes] * pitch
-    radii = {
-        name: _rounded(value * module)
-        for name, value in PROFILE_KEYS[profile].typical_lengths.items()
-    }
-    section: dict[str, Any] = {"rim": _rounded(rim)}
-    if profile == "involute":
-        if ring:
-            radii |= {
-                "shift": play,
-                "cutter_teeth": 2 * round(0.5 * CUTTER_TEETH * (teeth + request.lobes)),
-            }
-        return {**section, "profile": {"type": profile, **radii}}
-    section["c_P"] = _rounded(1.0 - play) if ring else 1.0
-    section["c_l"] = 0.0 if profile == "double_arc" else 0.5
-    return {**section, "profile": {"type": profile, **radii}}
-
-
-def _cam_keys(cam: CamType, table: dict[str, Any]) -> dict[str, float]:
-    """Keys of the cam that are not common to all."""
-    if cam == "elliptical":
-        return {"C": 1.0}
-    module, teeth = table["drive"]["module"], table["drive"]["teeth_fs"]
-    inner = (0.5 * teeth - DEDENDUM) * module - table["flexible_spline"]["rim"]
-    lobes = table["drive"]["teeth_rg"] - teeth
-    major, minor = inner + 0.5 * lobes * module, inner - 0.5 * lobes * module
-    if cam == "four_roller":
-        return {
-            "beta": 10.0,
-            "r_4": _rounded(0.135 * major),
-        }  # 8 mm on the reference drive (section 5.5)
-
-    def excess(keys: Simplified | Harmonic | Parabolic) -> float:
-        C = 1.0 if isinstance(keys, Parabolic) else keys.C
-        return taut_length(make_cam(keys, major, C * minor), 720) / (2.0 * np.pi * inner) - 1.0
-
-    def fitting(
-        keys: Callable[[float], Simplified | Harmonic | Parabolic], low: float, high: float
-    ) -> float:
-        """The value of a key with which the band around the cam is as long as the spline's inner
-        circumference."""
-        return root_between(lambda value: excess(keys(value)), low, high, xtol=1e-8)
-
-    if cam == "simplified":
-        return {"C": _rounded(fitting(lambda C: Simplified(C=C, face_width=1.0), 0.5, 1.0))}
-    if cam == "harmonic":
-        fit = fitting(lambda C: Harmonic(C=C, lobes=lobes, face_width=1.0), 0.5, 1.0)
-        return {"C": _rounded(fit, 6)}
-    C_p, r_c = 0.51, _rounded(0.175 * minor)  # that of the improved cam of Table 5.5
-    ellipse = 0.5 * major / minor**2
-    a_p = fitting(
-        lambda a_p: Parabolic(a_p=a_p, C_p=C_p, r_c=r_c, face_width=1.0), ellipse, 1.08 * ellipse
-    )
-    return {"C": 1.0, "a_p": _rounded(a_p, 5), "C_p": C_p, "r_c": r_c}

@@ -1,15 +1,19 @@
-"""The file of a starter design, with the meaning of every key."""
+"""The file of a starter design, with the meaning of every key and sources of the proportions."""
 
 from __future__ import annotations
 
 import shlex
 from typing import Any
 
-from swgpar.checks.starter import Request
+from swgpar.checks.starter import END, HUB, WALL, Request
+from swgpar.checks.starter_teeth import RIM
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import printable
 from swgpar.input.quantities import Section
 from swgpar.input.toml_file import toml_value
+
+SOURCES = "docs/howto/own_drive.md, Proportions"
+"""Where the numbers of the sources are."""
 
 
 def as_toml(request: Request, design: DriveDesign, table: dict[str, Any], name: str) -> str:
@@ -28,21 +32,47 @@ def as_toml(request: Request, design: DriveDesign, table: dict[str, Any], name: 
     lines = [
         f"# Strain wave gear: ratio {request.ratio:g}, {size}, torque {request.torque:g} N·m.",
         "# These are given, with the kinds of profile and cam. All other values are assumptions to "
-        "start from: sizes",
-        f"# of the blank are shares of the pitch diameter, {drive.module * drive.teeth_fs:.5g} mm, "
-        "those of the teeth multiples of the module.",
+        "start from, after the",
+        f"# sources that the sections name ({SOURCES}): sizes of the blank are shares of the",
+        f"# pitch diameter, {drive.module * drive.teeth_fs:.5g} mm, those of the teeth multiples "
+        "of the module.",
         f"#   swgpar check {name}",
         f"#   mpirun -n 2 swgpar run {name} --out {shlex.quote(f'results/{stem}')}",
         f"#   mpirun -n 2 swgpar rate {name} --out {shlex.quote(f'results/{stem}_rating')}",
     ]
+    sources = _sources(request)
     for section, content in table.items():
-        lines += _section(section, getattr(design, section), content)
+        lines += _section(section, getattr(design, section), content, sources)
     return "\n".join(lines) + "\n"
 
 
-def _section(title: str, section: Section, content: dict[str, Any]) -> list[str]:
-    """Lines of a section: its plain keys with the texts of their fields, then the sections in
-    it."""
+def _sources(request: Request) -> dict[str, str]:
+    """What the proportions of a section are taken from."""
+    sources = {
+        "micro_geometry": "shares of the module in Yagüe-Spaude (2021), Table 7.4",
+        "fatigue": "a steel like 30CrNiMo8, quenched and tempered",
+        "wave_generator.bearing": "grooves as in US 8,770,064; balls and race are assumptions",
+    }
+    if request.profile == "s_shaped":
+        sources |= {
+            "flexible_spline": f"rim up to {RIM[request.lobes]:g} of the pitch diameter: Chinese "
+            "Journal of Mechanical Engineering 34 (2021), s10033-021-00621-z",
+            "flexible_spline.profile": "US 4,823,638",
+            "ring_gear.profile": "envelope of the S-shaped tooth in its exact motion",
+        }
+    if request.shape != "hat":
+        sources["cup"] = (
+            f"end of {END:g} rims, clamped within {HUB:g} of the pitch diameter: EP 1 628 045; "
+            f"wall of {WALL:g} rims: public drives have 0.6 to 1"
+        )
+    return sources
+
+
+def _section(
+    title: str, section: Section, content: dict[str, Any], sources: dict[str, str]
+) -> list[str]:
+    """Lines of a section: its source, its plain keys with the texts of their fields, then the
+    sections in it."""
     tables = {key: value for key, value in content.items() if isinstance(value, dict)}
     entries = {
         key: f"{key} = {toml_value(value)}" for key, value in content.items() if key not in tables
@@ -52,8 +82,9 @@ def _section(title: str, section: Section, content: dict[str, Any]) -> list[str]
     lines = [
         "",
         f"[{title}]",
+        *(f"# {source}" for source in [sources.get(title)] if source),
         *(f"{entry:{width}s}  # {fields[key].description}" for key, entry in entries.items()),
     ]
     for key, value in tables.items():
-        lines += _section(f"{title}.{key}", getattr(section, key), value)
+        lines += _section(f"{title}.{key}", getattr(section, key), value, sources)
     return lines

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
+import numpy as np
+
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import ExternalGear, GearName, InternalGear
 from swgpar.errors import InputError
 from swgpar.input.require import require
 from swgpar.profiles import Points
+from swgpar.profiles.flank import ToothProfile
 
 LARGEST_DEDENDUM = 2.0
 """Largest dedendum in modules, of both sections that have the key."""
@@ -17,6 +22,13 @@ ROUND_OFF = 1e-9
 THIN_RIM = 0.25
 """Rim over tooth height below which it is said: half of 0.5, below which rims of external gears are
 to be avoided by ISO 6336-3 (rim thickness factor); rims of flexible splines are thin on purpose."""
+
+CORNER = np.radians(0.1)
+"""Corner between two pieces of a swept area from which it is said. Below, the flank is smooth
+beside the deviations of any cutter."""
+
+BEGIN = np.zeros(1)
+"""Arc length at which a segment begins, mm."""
 
 
 def check_teeth(design: DriveDesign) -> None:
@@ -71,6 +83,19 @@ def _room(design: DriveDesign, gear: GearName, faced: GearName) -> float:
     return between + other.dedendum - teeth.addendum
 
 
+def _largest_corner(flank: ToothProfile) -> float:
+    """Largest angle (rad) between pieces of the boundary of a swept area; 0 without any."""
+    return max(
+        (
+            abs(float(np.angle(np.exp(1j * (after.angle(BEGIN)[0] - piece.angle(end)[0])))))
+            for piece, after in pairwise(flank.segments)
+            if piece.name == after.name == "swept"
+            for end in [np.array([piece.length])]
+        ),
+        default=0.0,
+    )
+
+
 def tooth_remarks(design: DriveDesign) -> list[str]:
     """Sentences about tips that touch a root, swept areas as flanks, and a thin rim."""
     sentences = []
@@ -81,11 +106,14 @@ def tooth_remarks(design: DriveDesign) -> list[str]:
                 f"there is not computed; a larger dedendum_coef of {faced} leaves room"
             )
     for gear in design.gears:
-        if any(segment.name == "swept" for segment in design.profile(gear).segments):
+        corner = _largest_corner(design.profile(gear))
+        if corner > CORNER:
             other = "ring_gear" if gear == "flexible_spline" else "flexible_spline"
             sentences.append(
-                f"{gear}.profile is the boundary of the area that the teeth of {other} sweep: "
-                "the envelope of their flanks is undercut or not all that touches"
+                f"{gear}.profile is the boundary of the area that the teeth of {other} sweep, with "
+                f"a corner of {np.degrees(corner):.2g} degrees: the envelope of their flanks is "
+                "undercut or not all that touches, and a contact at the corner has no finite "
+                "pressure"
             )
     rim, teeth = design.flexible_spline.rim, design.teeth("flexible_spline")
     height = teeth.addendum + teeth.dedendum

@@ -259,13 +259,16 @@ def _add_new(commands: _Commands) -> None:
         size.add_argument(name, type=float, metavar="D", help=f"{text} of the flexible spline, mm")
     new.add_argument("--torque", type=float, required=True, metavar="T", help="on the output, N·m")
     for name, choices, text in (
-        ("--profile", ("quadruple_arc", "double_arc", "involute"), "profile of the teeth"),
         ("--layout", ("ring_fixed", "spline_fixed"), "fixed member"),
         ("--model", ("cup", "plane", "pancake"), MODELS),
         ("--shape", ("cup", "short", "hat"), SHAPES),
     ):
         text = f"{text} (default: {choices[0]})"
         new.add_argument(name, choices=choices, default=choices[0], help=text)
+    profiles = ("s_shaped", "quadruple_arc", "double_arc", "involute")
+    text = "profile of the teeth (default: s_shaped with a conjugate ring gear; quadruple_arc in a "
+    text += "pancake drive, and with cams other than the ellipse)"
+    new.add_argument("--profile", choices=profiles, help=text)
     cams = ("elliptical", "parabolic", "simplified", "four_roller", "harmonic")
     text = "cam of the wave generator (default: elliptical, with three lobes harmonic)"
     new.add_argument("--cam", choices=cams, help=text)

@@ -117,8 +117,10 @@ def test_volumes_of_step_files(
     """Of all profiles and cams: OpenCASCADE's volumes of the bodies it reads, against integrals of
     the exact curves."""
     design = drive_with(profile, cam, model).with_values({"ring_gear.housing.thickness": 5.0})
-    if fillet:
-        design = design.with_values({"cup.back_fillet": fillet})
+    if model == "cup":
+        same = design.cup_sizes.thickness  # of the closed end, which `wall_volume` takes
+        keys = {"cup.back_fillet": fillet, "cup.end_thickness": same}
+        design = design.with_values(keys)
     paths = swgpar.export(design, tmp_path, ["step"])
     assert capfd.readouterr().out == ""
     width = design.drive.face_width

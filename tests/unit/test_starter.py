@@ -11,15 +11,10 @@ import pytest
 
 import swgpar
 from swgpar.checks.remarks import remarks
-from swgpar.checks.starter import (
-    LARGEST_RATIO,
-    LEAST_RATIO,
-    CamType,
-    Profile,
-    Request,
-    starter_design,
-)
+from swgpar.checks.starter import LARGEST_RATIO, LEAST_RATIO, Request, starter_design
+from swgpar.checks.starter_cam import CamType
 from swgpar.checks.starter_file import as_toml
+from swgpar.checks.starter_teeth import PROFILE_KEYS, Profile
 from swgpar.cli import main, parser
 from swgpar.errors import InputError, OutputError
 from swgpar.geometry.cams import taut_length
@@ -36,9 +31,51 @@ def test_a_starter_design_clears_and_can_be_meshed(ratio: float, profile: Profil
     assert design.rigid_teeth().clearance() > 0.0 and design.backlash > 0.0
 
 
-def test_a_starter_design_needs_no_remarks() -> None:
-    design = swgpar.new(ratio=100.0, diameter=50.8, torque=52.0)
+@pytest.mark.parametrize("ratio", [30.0, 80.0, 100.0, 320.0])
+def test_a_cup_is_one_that_is_built(ratio: float) -> None:
+    design = swgpar.new(ratio=ratio, diameter=50.8, torque=10.0)
     assert remarks(design) == []
+    assert (design.flexible_spline.profile.type, design.ring_gear.profile.type) == (
+        "s_shaped",
+        "conjugate",
+    )
+    assert design.bearing is not None and design.micro_geometry.wg_slope == 0.0
+    cup = design.cup
+    assert cup.attachment == "clamped" and cup.clamping_radius > cup.inner_radius
+    assert 0.0 < cup.back_fillet < (1.0 - cup.thickness_coef) * design.flexible_spline.rim
+    arcs = swgpar.new(ratio=ratio, diameter=50.8, torque=10.0, profile="quadruple_arc")
+    found, before = swgpar.check(design), swgpar.check(arcs)
+    assert found["smallest flank clearance, kinematic (mm)"] > 0.0
+    error, share = (
+        "transmission error of rigid teeth (arcsec)",
+        "share of rigid teeth within 1 µm of contact",
+    )
+    assert found[error] < 0.2 * before[error] and found[share] > 2.0 * before[share]
+
+
+def test_drives_of_one_ratio_are_similar() -> None:
+    """So stresses depend on the torque over the third power of the diameter only."""
+    small, large = (starter_design(Request(80.0, 1.0, diameter=d))[1] for d in (8.0, 64.0))
+    lengths = 0
+
+    def compare(one: dict, other: dict) -> None:
+        nonlocal lengths
+        for key, value in one.items():
+            if isinstance(value, dict):
+                compare(value, other[key])
+            elif isinstance(value, float) and value != other[key]:
+                assert other[key] == pytest.approx(8.0 * value, rel=2e-3), key  # rounded
+                lengths += 1
+
+    compare(small, large)
+    assert lengths > 10
+
+
+def test_the_file_names_its_sources() -> None:
+    request = Request(80.0, 1.0, diameter=50.0, profile="s_shaped")
+    text = as_toml(request, *starter_design(request), "drive.toml")
+    for source in ("US 4,823,638", "EP 1 628 045", "US 8,770,064", "s10033-021-00621-z"):
+        assert source in text
 
 
 NO_ROOM = {(15.0, "four_roller"), (160.0, "parabolic"), (320.0, "parabolic")}
@@ -67,7 +104,7 @@ def test_a_cam_fits_a_ratio_or_is_refused(ratio: float, cam: CamType) -> None:
 
 
 @pytest.mark.parametrize("layout, ratio", [("ring_fixed", -40.0), ("spline_fixed", 40.0)])
-@pytest.mark.parametrize("profile", get_args(Profile))
+@pytest.mark.parametrize("profile", PROFILE_KEYS)
 def test_three_lobes_give_whole_ratios(profile: Profile, layout: str, ratio: float) -> None:
     request = Request(
         40.0,
@@ -93,7 +130,7 @@ def test_three_lobes_give_whole_ratios(profile: Profile, layout: str, ratio: flo
     assert abs(taut_length(design.cam()) / (2.0 * np.pi * design.inner_radius) - 1.0) < 1e-5
 
 
-@pytest.mark.parametrize("profile", get_args(Profile))
+@pytest.mark.parametrize("profile", PROFILE_KEYS)
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_a_pancake_clears_in_both_ring_gears(ratio: float, profile: Profile) -> None:
     request = Request(ratio, 10.0, diameter=100.0, profile=profile, model="pancake")
@@ -118,7 +155,12 @@ def test_what_is_given_is_kept(layout: str, ratio: float) -> None:
 
 
 @pytest.mark.parametrize(
-    "profile, cam", [*zip(get_args(Profile), get_args(CamType)), ("involute", "four_roller")]
+    "profile, cam",
+    [
+        *zip(get_args(Profile), get_args(CamType)),
+        ("involute", "parabolic"),
+        ("involute", "harmonic"),
+    ],
 )
 def test_every_key_of_the_file_has_its_meaning(profile: Profile, cam: CamType) -> None:
     request = Request(100.0, 52.0, diameter=50.8, profile=profile, cam=cam)

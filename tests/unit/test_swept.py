@@ -110,7 +110,12 @@ def test_the_flank_is_the_boundary_of_the_swept_area(name: str) -> None:
     assert left.min() * radii.max() > -1e-6
     assert np.abs(left).max() * radii.max() < (3e-4 if name == "sharp" else 2e-6)
     assert design.rigid_teeth().clearance() > -1e-6 * design.drive.module
-    assert any("area that the teeth of" in sentence for sentence in tooth_remarks(design))
+    # a corner, and only a corner, is said
+    joints, h = flank.breaks[1 : len(swept)], 1e-9
+    cosines = np.einsum("ij,ij->i", flank.tangent(joints - h), flank.tangent(joints + h))
+    corner = np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0))).max(initial=0.0)
+    said = any("area that the teeth of" in sentence for sentence in tooth_remarks(design))
+    assert said == (corner > 0.1)
 
 
 @pytest.mark.parametrize("gear", ["ring_gear", "flexible_spline"])
