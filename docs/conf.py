@@ -34,6 +34,7 @@ extensions = [
     "property_texts",
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
+    "gallery_hooks",
     "sphinx-mathjax-offline",  # equations without a network
 ]
 # equations and figures have the number of their page, so that other pages can refer to them
@@ -74,7 +75,6 @@ sphinx_gallery_conf = {
     "gallery_dirs": "auto_gallery",
     "filename_pattern": r"/plot_",
     "within_subsection_order": "gallery_hooks.PageOrder",
-    "image_scrapers": ("matplotlib", "gallery_hooks.returned_figure"),
     "reset_modules": ("matplotlib", "gallery_hooks.name_the_file"),
     "parallel": 2,
     "remove_config_comments": True,

@@ -6,10 +6,13 @@ import builtins
 from pathlib import Path
 from typing import Any
 
-from matplotlib.figure import Figure
-from sphinx_gallery.scrapers import figure_rst
+from sphinx.application import Sphinx
+from sphinx.errors import ExtensionError
 
 GALLERY = Path(__file__).parents[1] / "gallery"
+
+IMAGE = ".. image-sg::"
+"""Directive of a figure in a page that sphinx-gallery has written."""
 
 ORDER = (
     "first_drive",
@@ -48,12 +51,23 @@ def name_the_file(configuration: dict[str, Any], name: str | None) -> None:
         builtins.__file__ = str(GALLERY / Path(name).name)
 
 
-def returned_figure(block: tuple, variables: dict[str, Any], configuration: dict[str, Any]) -> str:
-    """Show the figure that is the value of a block's last expression, as in a notebook."""
-    figure = variables["example_globals"].get("___")
-    if not isinstance(figure, Figure) or getattr(figure, "shown_in_gallery", False):
-        return ""
-    figure.shown_in_gallery = True  # the name keeps its value in the blocks that follow
-    path = next(variables["image_path_iterator"])
-    figure.savefig(path, dpi=100)
-    return figure_rst([path], configuration["src_dir"])
+def pages_without_figure(folder: Path) -> list[str]:
+    """Names of the pages of the gallery that show no figure.
+
+    folder : of the pages that sphinx-gallery has written
+    """
+    pages = sorted(folder.glob("plot_*.rst"))
+    return [page.stem for page in pages if IMAGE not in page.read_text(encoding="utf-8")]
+
+
+def _require_figures(app: Sphinx) -> None:
+    if not app.config.sphinx_gallery_conf["plot_gallery"]:
+        return
+    if missing := pages_without_figure(Path(app.srcdir) / "auto_gallery"):
+        raise ExtensionError(f"pages of the gallery have no figure: {', '.join(missing)}")
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Stop the build where a page of the gallery has no figure, after the pages are written."""
+    app.connect("builder-inited", _require_figures, priority=900)
+    return {"parallel_read_safe": True}

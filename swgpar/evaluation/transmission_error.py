@@ -121,12 +121,15 @@ class TransmissionError(AnswerGroup):
     ASKED_BY = "steps.samples or [deviations]"
     IN_PROGRAMS = False
 
+    @property
+    def covered(self) -> str:
+        """What the error is of, in words."""
+        if self.turns >= 1.0:
+            return f"{self.turns:.0f} turns with deviations"
+        return "one period of the ideal drive"
+
     def remarks(self) -> Iterator[str]:
-        yield (
-            f"{self.turns:.0f} turns with deviations"
-            if self.turns >= 1.0
-            else "one period of the ideal drive"
-        )
+        yield self.covered
         if self.without_friction:
             yield "without contact.friction: over whole turns flanks have none"
         for line in self.spectrum[:SHOWN]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from swgpar.optimisation.problem import Problem
 from swgpar.optimisation.result import OptimisationResult
+from swgpar.results.figure_set import line_through
 from swgpar.results.quantity import with_unit
 from swgpar.studies.figures import as_png, axes_grid
 
@@ -83,7 +84,8 @@ def pareto(problem: Problem, result: OptimisationResult) -> list[bytes]:
         _draw(panel, result, [x, y], titles[x])
         best = [result.evaluations[number].quantities for number in result.best]
         front = np.array(sorted((each[x], each[y]) for each in best)).reshape(-1, 2)
-        panel.plot(*front.T, "s-", ms=5, color=BEST, label="Pareto front")
+        style = line_through(len(front))
+        panel.plot(*front.T, "s", ls=style, ms=5, color=BEST, label="Pareto front")
         panel.set_ylabel(titles[y])
         panel.legend(fontsize=8)
         pictures.append(as_png(figure))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.results.figure_set import panels
+from swgpar.results.figure_set import new_figure, panels
 from swgpar.results.table import Columns
 
 if TYPE_CHECKING:
@@ -105,8 +105,6 @@ def draw_contact_pattern(pairs: Columns, lines: Columns, step: int | None, plane
     step : of the history; None for that with the largest pressure. Raises InputError where no flank
     touches at it
     """
-    from matplotlib.figure import Figure
-
     if "cell_width_mm" not in lines:
         raise InputError(
             "contact_lines.csv has no cells: allowed with results of this version of swgpar"
@@ -121,7 +119,7 @@ def draw_contact_pattern(pairs: Columns, lines: Columns, step: int | None, plane
         )
     chosen = np.sort(chosen[np.argsort(-pairs["force_N"][chosen])][:MOST_FLANKS])
     flanks = [_Flank(pairs, lines, int(k)) for k in chosen]
-    figure = Figure(figsize=(10.0, 6.0), layout="constrained")
+    figure = new_figure(figsize=(10.0, 6.0), layout="constrained")
     angle = pairs["wg_angle_deg"][chosen[0]]
     figure.suptitle(
         f"contact of the flanks, angle of the wave generator {angle:.3g} degrees", fontsize=10

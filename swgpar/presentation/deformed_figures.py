@@ -13,6 +13,7 @@ from swgpar.geometry.rotation import rotated
 from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.presentation.off_screen import off_screen_plotter, without_margin
 from swgpar.presentation.sections import COLOURS, Box, PlaneBody, SectionView, section_of_cut
+from swgpar.results.figure_set import new_figure
 
 if TYPE_CHECKING:
     import pyvista
@@ -181,9 +182,7 @@ def draw_cup_section(
 
 
 def _figure(panels: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]:
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=size, dpi=110, layout="constrained")
+    figure = new_figure(figsize=size, dpi=110, layout="constrained")
     axes = list(figure.subplots(1, panels, squeeze=False)[0])
     for panel in axes:
         panel.set_aspect("equal")

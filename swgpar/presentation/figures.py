@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from mpi4py import MPI
@@ -13,8 +13,8 @@ from swgpar.design.kinematics import Kinematics
 from swgpar.drive_results.drive_data import SPLINE, DriveData
 from swgpar.errors import InputError
 from swgpar.evaluation.transmission_error import orders
-from swgpar.load.load_states import Stage
 from swgpar.meshing.drive_geometry import DriveGeometry
+from swgpar.presentation.ball_figure import draw_ball_loads
 from swgpar.presentation.circumference_figure import FIELDS, draw_circumference
 from swgpar.presentation.contact_figures import (
     ANGLE,
@@ -33,7 +33,7 @@ from swgpar.presentation.fatigue_figures import draw_haigh, sector_picture
 from swgpar.presentation.program_figures import torque_against_rotation
 from swgpar.presentation.sections import PlaneBody
 from swgpar.results.field_sources import chosen_increment
-from swgpar.results.figure_set import Drawings, FigureSet, panels
+from swgpar.results.figure_set import FEWEST, Drawings, FigureSet, line_through, new_figure, panels
 from swgpar.results.history import COLUMNS
 from swgpar.results.sector_fields import SectorFields
 
@@ -98,7 +98,8 @@ class DriveFigures(FigureSet):
         root = self._result.summary.root_stress
         if root and root.period:
             label = "flexible spline, s1 at the teeth by windows"
-            axes.plot(*np.array(root.period).T, "k^--", ms=4, lw=0.8, label=label)
+            style = line_through(len(root.period), "--")
+            axes.plot(*np.array(root.period).T, "k^", ls=style, ms=4, lw=0.8, label=label)
         axes.set_title("largest stresses (nodal averages)" + self._over_period())
         axes.set_ylabel("stress (MPa)")
         axes.set_ylim(bottom=0.0)
@@ -130,9 +131,11 @@ class DriveFigures(FigureSet):
         figure, (upper, lower) = panels(2, 7.0, 6.0)
         error = rows["transmission_error_arcsec"]
         marker = "o" if len(error) < 40 else None
-        upper.plot(rows["wg_angle_deg"], error - error.mean(), lw=1.0, marker=marker, ms=3)
+        style = line_through(len(error))
+        angle = rows["wg_angle_deg"]
+        upper.plot(angle, error - error.mean(), ls=style, lw=1.0, marker=marker, ms=3)
         upper.set(xlabel=self._angle, ylabel="arc seconds")
-        upper.set_title("transmission error less its mean")
+        upper.set_title(f"transmission error less its mean, {summary.covered}")
         order, amplitude, _ = orders(summary.turns, rows)
         lower.vlines(order, 0.0, amplitude, lw=1.2)
         for line in summary.spectrum[:4]:
@@ -158,7 +161,7 @@ class DriveFigures(FigureSet):
 
     def _draw_transmission_error(self, axes: Axes) -> None:
         self._draw(axes, "transmission_error", None)
-        axes.set_title("transmission error: output angle less its kinematic value")
+        axes.set_title("transmission error of the ideal drive: output less its kinematic angle")
         axes.set_ylabel("arc seconds")
 
     def torque_against_rotation(self) -> Figure:
@@ -206,12 +209,17 @@ class DriveFigures(FigureSet):
         return _needed(self._result.fatigue, "fatigue", "the section [fatigue]")
 
     def _draw(self, axes: Axes, name: str, label: str | None) -> None:
-        """Draw a column under load: points where it was computed, and the curve through them."""
+        """Draw a column under load: points where it was computed, and the curve through three or
+        more."""
         curves = self._result.curves()
         if name not in curves.values:  # a result of another version
             return
+        points: dict[str, Any] = {"ls": "none", "marker": "o", "ms": 3}
+        if len(curves.angle) < FEWEST:
+            axes.plot(curves.angle, curves.values[name], label=label, **points)
+            return
         (line,) = axes.plot(curves.fine_angle, curves.fine[name], label=label)
-        axes.plot(curves.angle, curves.values[name], "o", ms=3, color=line.get_color())
+        axes.plot(curves.angle, curves.values[name], color=line.get_color(), **points)
 
     @property
     def _angle(self) -> str:
@@ -235,27 +243,7 @@ class DriveFigures(FigureSet):
         """Loads of a bearing's balls (N) over the angle from the major axis, and the largest during
         the rotation."""
         balls = _needed(self._result.balls, "balls", "wave_generator.bearing")
-        bearing = self._result.summary.bearing
-        loaded = balls["step"] >= Stage.LOAD
-        if loaded.any():
-            balls = {name: values[loaded] for name, values in balls.items()}
-        figure, (upper, lower) = panels(2, 7.0, 6.5)
-        increments, first = np.unique(balls["increment"], return_index=True)
-        for increment in increments:
-            here = np.flatnonzero(balls["increment"] == increment)
-            here = here[np.argsort(balls["cam_angle_deg"][here])]
-            upper.plot(balls["cam_angle_deg"][here], balls["load_N"][here], "o-", ms=3, lw=0.6)
-        upper.set(xlabel="angle from the major axis (degrees)", ylabel="ball load (N)")
-        upper.set_xlim(-180.0, 180.0)
-        count = len(balls["ball"]) // len(increments)
-        upper.set_title(f"loads of {count} balls at {len(increments)} angles")
-        peaks = balls["load_N"].reshape(len(increments), -1).max(axis=1)
-        lower.plot(balls["wg_angle_deg"][first], peaks, "o-", ms=4)
-        fixed = ", balls fixed to the cam" if bearing and bearing.balls_fixed_to_cam else ""
-        lower.set(xlabel=self._angle, ylabel="largest ball load (N)" + fixed)
-        for axes in (upper, lower):
-            axes.set_ylim(bottom=0.0)
-        return figure
+        return draw_ball_loads(balls, self._result.summary.bearing, self._angle)
 
     def contact_pattern(self, step: int | None = None) -> Figure:
         """Pressure (MPa) on all loaded flanks, over arc length and face width.
@@ -388,10 +376,8 @@ def _needed(data: T | None, what: str, allowed: str) -> T:
 
 def _as_figure(picture: np.ndarray) -> Figure:
     """A figure that shows a picture (height, width, 3) pixel by pixel."""
-    from matplotlib.figure import Figure
-
     height, width = picture.shape[:2]
-    figure = Figure(figsize=(width / 100.0, height / 100.0), dpi=100)
+    figure = new_figure(figsize=(width / 100.0, height / 100.0), dpi=100)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.imshow(picture)
     axes.set_axis_off()

@@ -10,7 +10,7 @@ import numpy as np
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.evaluation.stiffness import TorsionalStiffness
 from swgpar.presentation.answer_text import value_text
-from swgpar.results.figure_set import panels
+from swgpar.results.figure_set import line_through, panels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,7 +32,10 @@ def torque_against_rotation(program: Mapping[str, np.ndarray], summary: DriveSum
             here[first] = True
         label = f"wave generator at {value:.3g}°" if summary.stiffness else str(value)
         rotation, torque = program["rotation_arcmin"][here], program["torque_Nm"][here]
-        axes.plot(rotation, torque, "o-", ms=3, lw=1.0, label=label)
+        if summary.ratcheting and here[0]:  # before the first point the output carries nothing
+            rotation, torque = np.append(0.0, rotation), np.append(0.0, torque)
+        style = line_through(len(torque) if summary.stiffness else len(groups))
+        axes.plot(rotation, torque, "o", ls=style, ms=3, lw=1.0, label=label)
     if summary.stiffness:
         _mark_chords(axes, summary.stiffness)
     if ratcheting := summary.ratcheting:
@@ -40,8 +43,10 @@ def torque_against_rotation(program: Mapping[str, np.ndarray], summary: DriveSum
         axes.plot(*peak, "k*", ms=12, label="largest torque")
     axes.set_xlabel("rotation of the output by the torque (arc minutes)")
     axes.set_ylabel("torque on the output (N·m)")
-    locked = "torque against rotation, wave generator locked"
-    axes.set_title(locked if summary.stiffness else "load program")
+    what = "ratcheting: torque" if summary.ratcheting else "torque"
+    locked = summary.stiffness or summary.ratcheting
+    where = "wave generator locked" if locked else "along the load program"
+    axes.set_title(f"{what} on the output against its rotation, {where}")
     axes.axhline(0.0, color="0.6", lw=0.6)
     axes.legend(fontsize=8)
     return figure

@@ -30,6 +30,9 @@ COLUMNS = {
 }
 """Columns of the history: title and format of their values."""
 
+BETWEEN = 2
+"""Blanks between columns."""
+
 
 def print_drive(history: Mapping[str, np.ndarray], summary: DriveSummary) -> None:
     """Print history and answers of a run; call it on one rank."""
@@ -51,13 +54,33 @@ def _print_history(history: Mapping[str, np.ndarray]) -> None:
     names = [driven.get(name, name) if driven.get(name) in history else name for name in COLUMNS]
     title = "largest stresses over the bodies (MPa, nodal averages)"
     title += "; torque in N·mm, angles in degrees"
-    table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))  # fits into 80 columns
-    for heading, _ in COLUMNS.values():
-        table.add_column(heading, justify="right", no_wrap=True)
-    forms = [form for _, form in COLUMNS.values()]
-    for values in zip(*(history[name] for name in names), strict=True):
-        table.add_row(*map(format, values, forms))
-    console.print(table)
+    columns = {}
+    for name, (heading, form) in zip(names, COLUMNS.values()):
+        columns[heading] = [format(value, form) for value in history[name]]
+    letters = {name: max(map(len, [name, *cells])) for name, cells in columns.items()}
+    for headings in _blocks(letters):
+        table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+        for heading in headings:
+            table.add_column(heading, justify="right", no_wrap=True)
+        for row in zip(*(columns[heading] for heading in headings), strict=True):
+            table.add_row(*row)
+        console.print(table)
+        title = ""
+
+
+def _blocks(letters: Mapping[str, int]) -> list[list[str]]:
+    """Headings of the tables into which a history is divided, so that none is wider than the
+    terminal. Each begins with the first column.
+
+    letters : width of every column
+    """
+    first, *others = letters
+    blocks = [[first]]
+    for name in others:
+        if sum(letters[one] + BETWEEN for one in [*blocks[-1], name]) > console.width - 1:
+            blocks.append([first])
+        blocks[-1].append(name)
+    return blocks
 
 
 def _print_answers(answers: AnswerGroup) -> None:

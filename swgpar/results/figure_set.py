@@ -6,9 +6,11 @@ import io
 import os
 import sys
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mpi4py import MPI
 
@@ -46,6 +48,33 @@ def import_matplotlib() -> None:
         os.close(here)
 
 
+_for_files: ContextVar[bool] = ContextVar("for_files", default=False)
+
+
+@contextmanager
+def _drawn_for_files() -> Iterator[None]:
+    """Figures made here are for files, and no window shows them."""
+    token = _for_files.set(True)
+    try:
+        yield
+    finally:
+        _for_files.reset(token)
+
+
+def new_figure(**options: Any) -> Figure:
+    """An empty figure, which `plt.show()` shows unless `FigureSet.save` draws it.
+
+    options : of `matplotlib.figure.Figure`
+    """
+    if _for_files.get():
+        from matplotlib.figure import Figure
+
+        return Figure(**options)
+    from matplotlib import pyplot
+
+    return pyplot.figure(**options)
+
+
 def panels(
     count: int,
     width: float,
@@ -58,13 +87,20 @@ def panels(
 
     shared : whether the panels share the horizontal axis;  height_ratios : of the panels
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(width, height), layout="constrained")
+    figure = new_figure(figsize=(width, height), layout="constrained")
     found = figure.subplots(count, sharex=shared, squeeze=False, height_ratios=height_ratios)[:, 0]
     for axes in found:
         axes.grid(alpha=0.3)
     return figure, list(found)
+
+
+FEWEST = 3
+"""Points through which a figure draws a line: two say nothing about what lies between them."""
+
+
+def line_through(points: int, style: str = "-") -> str:
+    """Style of the line through so many points: none through one or two."""
+    return style if points >= FEWEST else "none"
 
 
 PICTURE = 6
@@ -111,7 +147,8 @@ class FigureSet(ABC):
             if not writes and not self._gathered:
                 continue
             try:
-                figure = self.drawings[name]()
+                with _drawn_for_files():
+                    figure = self.drawings[name]()
                 if writes:
                     exact = name in self.exact_size
                     _write(figure, path, figure.dpi if exact else DOTS_PER_INCH)

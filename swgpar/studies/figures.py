@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from swgpar.results.figure_set import line_through
 from swgpar.results.history import COLUMNS, loaded_increments
 from swgpar.results.quantity import with_unit
 from swgpar.studies.case import Case, Outcome
@@ -54,7 +55,7 @@ def over_angle(results: Sequence[JobResult]) -> Iterator[bytes]:
                 loaded = loaded_increments(columns)
                 if name in columns:
                     angle, values = columns["wg_angle_deg"][loaded], columns[name][loaded]
-                    panel.plot(angle, values, label=label, **_style(k))
+                    panel.plot(angle, values, label=label, **_style(k, len(values)))
             stress = f"stress ({COLUMNS[name].unit})"
             _name(panel, COLUMNS[name].label, stress, "angle of the wave generator (degrees)")
         _add_legend(figure, axes)
@@ -87,7 +88,8 @@ def over_key(results: Sequence[JobResult], key: str, *, in_step: bool) -> Iterat
             for (name, quantity), panel in zip(panels, axes):
                 for k, (label, points) in enumerate(part):
                     known = [(x, o.values[name]) for x, o in points if name in o.values]
-                    panel.plot(*np.reshape(known, (-1, 2)).T, label=label, **_style(k))
+                    style = _style(k, len(known))
+                    panel.plot(*np.reshape(known, (-1, 2)).T, label=label, **style)
                 _name(panel, quantity.meaning, with_unit(name, quantity.unit), title)
                 panel.set_xscale(scale)
             _add_legend(figure, axes)
@@ -112,8 +114,8 @@ def _parts(items: Sequence[Any], size: int = LINES) -> Iterator[Sequence[Any]]:
         yield items[first : first + size]
 
 
-def _style(k: int) -> dict[str, Any]:
-    marker, line = MARKERS[k % len(MARKERS)], "-" if k < 10 else "--"
+def _style(k: int, points: int) -> dict[str, Any]:
+    marker, line = MARKERS[k % len(MARKERS)], line_through(points, "-" if k < 10 else "--")
     return {"color": f"C{k % 10}", "marker": marker, "ms": 3, "ls": line}
 
 

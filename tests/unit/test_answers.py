@@ -30,12 +30,13 @@ def result(request: pytest.FixtureRequest) -> swgpar.DriveResult:
     return swgpar.open_result(request.param)
 
 
-def test_numbers_and_remarks_are_whole_on_a_terminal_of_80_columns(
-    result: swgpar.DriveResult, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+@pytest.mark.parametrize("width", [60, 80])
+def test_numbers_and_remarks_are_whole_on_a_narrow_terminal(
+    width: int, result: swgpar.DriveResult, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     with open(tmp_path / "out.txt", "w+", encoding="utf-8") as file:
         monkeypatch.setattr(
-            terminal, "console", Console(file=file, width=80, highlight=False, soft_wrap=True)
+            terminal, "console", Console(file=file, width=width, highlight=False, soft_wrap=True)
         )
         terminal.print_drive(result.history, result.summary)
         file.seek(0)
@@ -49,6 +50,12 @@ def test_numbers_and_remarks_are_whole_on_a_terminal_of_80_columns(
             answer.name
         )
     assert all(remark in text for group in result.summary.groups() for remark in group.remarks())
+    assert "…" not in text
+    shown = text[: text.index(next(iter(result.summary.groups())).TITLE)].split()
+    for name, (heading, form) in terminal.COLUMNS.items():
+        if name in result.history:
+            values = [format(v, form) for v in result.history[name][: result.summary.increments]]
+            assert all(value in shown for value in values), heading
 
 
 def test_the_report_has_every_answer_by_its_name(result: swgpar.DriveResult) -> None:

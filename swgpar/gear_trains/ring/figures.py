@@ -11,7 +11,7 @@ from swgpar.gear_trains.drawing import MomentCurve, axes, draw_moments
 from swgpar.gear_trains.result import TrainResult
 from swgpar.gear_trains.ring.design import RingDesign
 from swgpar.gear_trains.ring.quantities import POINTS
-from swgpar.results.figure_set import Drawings
+from swgpar.results.figure_set import Drawings, new_figure
 from swgpar.results.table import Columns
 
 if TYPE_CHECKING:
@@ -34,12 +34,10 @@ def drawings(result: TrainResult[RingDesign]) -> Drawings:
 
 
 def _shapes(result: TrainResult) -> Figure:
-    from matplotlib.figure import Figure
-
     modes, table = result.tables["modes"], result.tables["mode_shapes"]
     count = sum(name.startswith("outward") for name in table)
     rows, angle = (count + 2) // 3, table["angle_rad"]
-    figure = Figure(figsize=(7.5, 2.6 * rows), layout="constrained")
+    figure = new_figure(figsize=(7.5, 2.6 * rows), layout="constrained")
     for k, axis in enumerate(figure.subplots(rows, 3, squeeze=False).ravel(), start=1):
         axis.set_axis_off()
         if k > count:

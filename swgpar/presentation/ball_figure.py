@@ -1,0 +1,45 @@
+"""The figure of a bearing's balls."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from swgpar.load.load_states import Stage
+from swgpar.results.figure_set import line_through, panels
+from swgpar.results.table import Columns
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from swgpar.evaluation.bearing_loads import BallLoads
+
+
+def draw_ball_loads(balls: Columns, bearing: BallLoads | None, title: str) -> Figure:
+    """Loads of the balls (N) over the angle from the major axis, and the largest during the
+    rotation.
+
+    balls : columns of balls.csv;  title : of the axis with the angle of the wave generator
+    """
+    loaded = balls["step"] >= Stage.LOAD
+    if loaded.any():
+        balls = {name: values[loaded] for name, values in balls.items()}
+    figure, (upper, lower) = panels(2, 7.0, 6.5)
+    increments, first = np.unique(balls["increment"], return_index=True)
+    for increment in increments:
+        here = np.flatnonzero(balls["increment"] == increment)
+        here = here[np.argsort(balls["cam_angle_deg"][here])]
+        upper.plot(balls["cam_angle_deg"][here], balls["load_N"][here], "o-", ms=3, lw=0.6)
+    upper.set(xlabel="angle from the major axis (degrees)", ylabel="ball load (N)")
+    upper.set_xlim(-180.0, 180.0)
+    count = len(balls["ball"]) // len(increments)
+    upper.set_title(f"loads of {count} balls at {len(increments)} angles")
+    peaks = balls["load_N"].reshape(len(increments), -1).max(axis=1)
+    style = line_through(len(peaks))
+    lower.plot(balls["wg_angle_deg"][first], peaks, "o", ls=style, ms=4)
+    fixed = ", balls fixed to the cam" if bearing and bearing.balls_fixed_to_cam else ""
+    lower.set(xlabel=title, ylabel="largest ball load (N)" + fixed)
+    for axes in (upper, lower):
+        axes.set_ylim(bottom=0.0)
+    return figure
