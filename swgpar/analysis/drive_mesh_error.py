@@ -139,17 +139,19 @@ def with_finer_flanks(coarse: MeshRecipe, recipe: MeshRecipe) -> list[MeshRecipe
 
 
 def coarser_mesh(
-    model: DriveModel, recipe: MeshRecipe, state: LoadState, *, coarsest: bool
+    model: DriveModel, recipe: MeshRecipe, state: LoadState, *, windows: bool, coarsest: bool
 ) -> CoarserMesh:
-    """What the loaded model on a coarser mesh gives in windows, contacts and bearing; collective.
+    """What the loaded model on a coarser mesh gives in contacts and bearing, and in windows;
+    collective.
 
+    windows : whether they are computed
     coarsest : whether it is the coarsest one. There the ring gear has windows too: of it one change
     shows both errors.
 
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
     contacts, bearing = pair_contacts(model, state), loaded_bearing(model, state)
-    if not model.design.resolves_root_stress:
+    if not windows:
         return CoarserMesh(recipe, {}, contacts, {}, bearing)
     found = resolve_root_stress(model, state, COMPARED_LEVELS, COMPARED_LEVELS - 1, ring=coarsest)
     return CoarserMesh(recipe, found.by_part, contacts, found.regions, bearing)

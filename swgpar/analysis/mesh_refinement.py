@@ -132,10 +132,12 @@ class Refinement:
         before : stress on the present mesh with its error, if it is known
         """
         compared = coarse_wall(self.model, self.loaded, coarser[0], recipe)
-        meshes = [coarser_mesh(self.model, coarser[0], self.loaded, coarsest=True)]
+        meshes = [coarser_mesh(self.model, coarser[0], self.loaded, windows=True, coarsest=True)]
         for between in coarser[1:]:
             self._replace(between)
-            meshes.append(coarser_mesh(self.model, between, self.loaded, coarsest=False))
+            meshes.append(
+                coarser_mesh(self.model, between, self.loaded, windows=True, coarsest=False)
+            )
         self._replace(recipe)
         found = resolve_root_stress(self.model, self.loaded, self.levels)
         contacts = pair_contacts(self.model, self.loaded)

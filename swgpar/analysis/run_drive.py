@@ -241,7 +241,13 @@ class DriveRun:
         if model.design.compares_meshes:
             model.take_over_windows(self.model)
             try:
-                found = coarser_mesh(model, recipe, loaded, coarsest=not self.coarser)
+                found = coarser_mesh(
+                    model,
+                    recipe,
+                    loaded,
+                    windows=model.design.resolves_root_stress,
+                    coarsest=not self.coarser,
+                )
             except (ConvergenceError, InputError) as error:
                 logger.info("the error by the mesh of the drive is not known: %s", error)
             self.model.take_over_windows(model)

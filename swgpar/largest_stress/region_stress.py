@@ -193,14 +193,15 @@ class WindowReadings:
     ) -> float:
         """Error (MPa) of the last window around a tooth.
 
-        The stress of a flank beside its root is that of the end of the root. Coarser windows have
-        no node between the root and the contact, so the root shows the error.
+        The stress of a flank beside its root is that of the end of the root, and at most the
+        largest in the root. Coarser windows may have no node between the root and the contact.
         """
         levels, (stress, _, region) = self.levels[tooth][name], name.partition(OF_REGION)
         root = self.levels[tooth].get(f"{stress}{OF_REGION}{TOOTH_ROOT}")
         reach = BESIDE_ROOT * model.geometry.module
         if region == FLANK and root and _to_root(layout, self.last[tooth][name].position) < reach:
-            return levels[-1] * error_of(root, ratio) / max(root[-1], LEAST_STRESS)
+            below = max(root[-1] - levels[-1], 0.0)
+            return min(error_of(levels, ratio), error_of(root, ratio) + below)
         return error_of(levels, ratio)
 
 

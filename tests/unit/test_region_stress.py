@@ -143,8 +143,9 @@ def test_flanks_of_cups_are_the_same_in_all_windows() -> None:
 def test_a_flank_beside_its_root_has_the_errors_of_the_root(
     distance: float, side: float, beside: bool
 ) -> None:
-    """Coarser windows have no node between the root and the contact."""
-    flank, at_root = [1.0, 2.0, 40.0], [side * END_OF_ROOT[0], END_OF_ROOT[1], 0.3]
+    """Coarser windows have no node between the root and the contact. The end of the root is at most
+    the root's largest."""
+    flank, at_root = [1.0, 2.0, 93.0], [side * END_OF_ROOT[0], END_OF_ROOT[1], 0.3]
     position = np.array(at_root) + [0.0, distance * BESIDE_ROOT * 0.5, 0.0]
     found = WindowReadings(0)
     for in_root, on_flank in zip(LEVELS, flank, strict=True):
@@ -152,9 +153,9 @@ def test_a_flank_beside_its_root_has_the_errors_of_the_root(
         found.add(3, {name: WindowStress(v, 3, at, "", "", 1) for name, (v, at) in places.items()})
     model = cast(DriveModel, Model("plane"))
     one = found.stresses(model, FLEXIBLE_SPLINE, {}, RATIO)[FLANK]
-    share = error_of(LEVELS, RATIO) / LEVELS[-1]
-    expected = 40.0 * share if beside else error_of(flank, RATIO)
-    assert one.place.value == 40.0
+    of_root = error_of(LEVELS, RATIO) + LEVELS[-1] - 93.0
+    expected = of_root if beside else error_of(flank, RATIO)
+    assert one.place.value == 93.0
     assert one.place.error == pytest.approx(expected)
 
 
