@@ -7,17 +7,31 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from swgpar.answers.answer import Answer
-from swgpar.results.page import Table, TableRow, number
+from swgpar.results.page import Amount, Table, TableRow, number
 
 NOTHING = 1e-9
 """Size below which a value is round-off and 0 is shown."""
 
 
-def value_text(value: float | None) -> str:
-    """A value with five digits; a dash where there is none."""
+def value_text(value: float | None, error: float | None = None) -> str:
+    """A value with the digits of its error, without one with five; a dash where there is none."""
     if value is None:
         return "—"
-    return number(0.0 if abs(value) < NOTHING else float(value))
+    if abs(value) < NOTHING:
+        return number(0.0)
+    if not np.isfinite(value) or error is None or error < NOTHING:
+        return number(float(value))
+    return _rounded(value, _decimals(error))
+
+
+def _decimals(error: float) -> int:
+    """Decimals of the second digit of an error, negative left of the point."""
+    return 1 - int(np.floor(np.log10(error)))
+
+
+def _rounded(value: float, decimals: int) -> str:
+    """Without a power of ten and without the sign of a zero."""
+    return f"{round(value, decimals) + 0.0:.{max(decimals, 0)}f}"
 
 
 def error_text(answer: Answer) -> str:
@@ -27,8 +41,7 @@ def error_text(answer: Answer) -> str:
     if error is None:
         return answer.no_error.replace(" ", "\u00a0")
     error = 0.0 if error < NOTHING else error
-    digits = 1 - int(np.floor(np.log10(error))) if error > 0.0 else 0
-    return f"±\u00a0{round(error, digits):.{max(digits, 0)}f}"
+    return f"±\u00a0{_rounded(error, _decimals(error) if error > 0.0 else 0)}"
 
 
 def remark_text(answer: Answer) -> str:
@@ -41,7 +54,9 @@ def answer_table(answers: Iterable[Answer]) -> Table:
     """A row of the report for each answer."""
     rows = []
     for answer in answers:
-        numbers = ["—" if answer.value is None else answer.value, answer.unit, error_text(answer)]
+        text = value_text(answer.value, answer.error)
+        amount = text if answer.value is None else Amount(answer.value, text)
+        numbers = [amount, answer.unit, error_text(answer)]
         rows.append(
             TableRow([answer.text, *numbers, answer.place, remark_text(answer), answer.name])
         )

@@ -93,7 +93,8 @@ def _finish_deformed(
 ) -> Figure:
     axes[0].set_axis_off()
     scale = f"displacements x {factor:g}, bodies may seem to cross"
-    _finish(figure, axes, title, "true to scale" if factor == 1.0 else scale, limit)
+    what = "true to scale" if factor == 1.0 else scale
+    _finish(figure, axes, f"deformed drive, {title}", what, limit)
     return figure
 
 
@@ -132,7 +133,7 @@ def draw_loaded_teeth(
         axes.text(0.0, low + 0.1 * pitch, "wave generator", ha="center")
     place = f"teeth at {np.degrees(angle):.1f} degrees from +y"
     where = place if geometry.model == "plane" else f"{place}, section at z {z:.2f} mm"
-    _finish(figure, [axes], f"{title}; {where}", "true to scale", limit)
+    _finish(figure, [axes], f"loaded teeth, {title}", f"{where}\ntrue to scale", limit)
     return figure
 
 
@@ -177,7 +178,7 @@ def draw_cup_section(
         axes.set(xlim=box[:2], ylim=box[2:])
         axes.set(xlabel="z (mm), open end at negative z", title=f"through the {name}")
     panels[0].set_ylabel("radius (mm)")
-    _finish(figure, panels, title, "true to scale", limit)
+    _finish(figure, panels, f"sections of the cup, {title}", "true to scale", limit)
     return figure
 
 
@@ -195,7 +196,7 @@ def _finish(figure: Figure, axes: Sequence[Axes], when: str, what: str, limit: f
     from matplotlib.colors import Normalize
 
     ends = f"colours end at {limit:.4g} MPa ({PERCENTILE:g} % of the nodes are below)"
-    figure.suptitle(f"{when}\n{what}; {ends}", fontsize=10)
+    figure.suptitle(f"von Mises stress of the {when}\n{what}; {ends}", fontsize=10)
     colours = ScalarMappable(Normalize(0.0, limit), COLOURS)
     label = "von Mises stress (MPa), nodal averages"
     figure.colorbar(colours, ax=list(axes), extend="max", shrink=0.8, label=label)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from swgpar.answers.answer import Answer
 from swgpar.drive_results.report_checks import checks
 from swgpar.drive_results.summary import DriveSummary
-from swgpar.presentation.answer_text import answer_table, detail_table
+from swgpar.presentation.answer_text import answer_table
 from swgpar.presentation.drive_drawing import draw_drive
 from swgpar.presentation.drive_result import DriveResult
 from swgpar.presentation.scene import SCRIPT, scene
@@ -52,7 +54,7 @@ def drive_report(result: DriveResult) -> bytes:
         strong=all(check.good for check in judged if check.of_strength),
         drawings=draw_drive(design),
         groups=_groups(summary),
-        details=detail_table(summary),
+        details=list(_details(summary)),
         not_asked=[f"{kind.TITLE} ({kind.ASKED_BY})" for kind in summary.not_asked_for()],
         checks=judged,
         scene=view,
@@ -78,3 +80,16 @@ def _groups(summary: DriveSummary) -> list[Group]:
         if shown:
             groups.append(Group(evaluation.TITLE, answer_table(shown), list(evaluation.remarks())))
     return groups
+
+
+def _details(summary: DriveSummary) -> Iterator[Group]:
+    """Further answers by evaluation; those of a region of a body by region."""
+    for evaluation in summary.groups():
+        parts: dict[str, list[Answer]] = {}
+        for answer in evaluation.answers():
+            if answer.detail:
+                _, inside, region = answer.name.partition(" in ")
+                title = f"{evaluation.TITLE}: {region}" if inside else evaluation.TITLE
+                parts.setdefault(title, []).append(answer)
+        for title, answers in parts.items():
+            yield Group(title, answer_table(answers), [])

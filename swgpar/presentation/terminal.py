@@ -97,7 +97,7 @@ def _print_answers(answers: AnswerGroup) -> None:
         below = [Text(words) for words in (answer.place, remark_text(answer)) if words]
         indented = [Padding(text, (0, 0, 0, 2)) for text in below]
         what = Padding(Group(answer.text, *indented), (0, 0, 0, 2))
-        table.add_row(what, value_text(answer.value), error_text(answer), answer.unit)
+        table.add_row(what, value_text(answer.value, answer.error), error_text(answer), answer.unit)
     console.print(f"\n{answers.TITLE}", style="bold", markup=False)
     console.print(table)
     for remark in answers.remarks():

@@ -17,7 +17,7 @@ def amount_text(verdict: Verdict) -> str:
         return "—"
     if math.isinf(answer.value):
         return "without end"
-    return f"{value_text(answer.value)} {answer.unit}".rstrip()
+    return f"{value_text(answer.value, answer.error)} {answer.unit}".rstrip()
 
 
 def error_of(verdict: Verdict) -> str:

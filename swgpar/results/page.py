@@ -21,6 +21,14 @@ RANK = "results/rank.js"
 
 
 @dataclass(frozen=True)
+class Amount:
+    """A number with a text of its own. value : by which rows are ordered"""
+
+    value: float
+    text: str
+
+
+@dataclass(frozen=True)
 class TableRow:
     """Cells of a table. bad : whether something is wrong"""
 

@@ -23,6 +23,7 @@ from swgpar.evaluation.transmission_error import TorqueOverTurns, TransmissionEr
 from swgpar.geometry.rotation import rotated
 from swgpar.largest_stress.root_stress import BETWEEN, RootStress
 from swgpar.meshing import build_sector_meshes, load_recipe
+from swgpar.presentation.answer_text import value_text
 from swgpar.presentation.deformed_figures import deformed
 from swgpar.presentation.drive_drawing import draw_drive
 from swgpar.presentation.off_screen import off_screen_plotter
@@ -46,9 +47,41 @@ def test_a_run_leaves_one_page_that_needs_nothing_else(folder: Path) -> None:
     assert page.tags.count("svg") == 2 and "canvas" in page.tags
     summary = swgpar.open_result(folder).summary
     for name, answer in summary.items():
-        assert f"{answer.value:.5g}" in text, name
+        assert f">{value_text(answer.value, answer.error)}<" in text, name
     assert "balance of torques" in text and summary.versions["petsc"] in text
     assert f"teeth_fs = {summary.design.drive.teeth_fs}" in text
+
+
+def test_the_report_opens_with_verdicts_and_answers_and_folds_tables_by_region(
+    folder: Path,
+) -> None:
+    text = (folder / "report.html").read_text(encoding="utf-8")
+    titles = re.findall("<h2>(.*?)</h2>", text)
+    assert titles[:3] == ["Verdicts", "Answers", "The drive"]
+    folded = re.findall("<details><summary>(.*?)</summary>(.*?)</details>", text, re.DOTALL)
+    regions = [(title, table) for title, table in folded if ": " in title]
+    assert len(regions) > 3
+    for title, table in regions:
+        names = re.findall(r"largest\.\w+ in ([\w ]+)<", table)
+        assert names and set(names) == {title.split(": ")[1]}
+
+
+@pytest.mark.parametrize(
+    "value, error, text",
+    [
+        (31.403, 0.18, "31.40"),
+        (3.6611, 1.5, "3.7"),
+        (123456.0, 3500.0, "123500"),
+        (-0.001, 0.5, "0.00"),
+        (2043.21, None, "2043.2"),
+        (2043.21, 0.0, "2043.2"),
+        (None, 1.0, "—"),
+    ],
+)
+def test_a_value_has_the_digits_of_its_error(
+    value: float | None, error: float | None, text: str
+) -> None:
+    assert value_text(value, error) == text
 
 
 def test_the_transmission_error_with_deviations_is_an_answer(folder: Path) -> None:
@@ -230,4 +263,8 @@ def test_the_report_of_a_gear_train(tmp_path: Path) -> None:
     text = (tmp_path / "ring" / "report.html").read_text(encoding="utf-8")
     assert_needs_nothing_else(text)
     answer = next(iter(result.summary.values()))
-    assert answer.name in text and answer.text in text and f"{answer.value:.5g}" in text
+    assert (
+        answer.name in text
+        and answer.text in text
+        and value_text(answer.value, answer.error) in text
+    )
