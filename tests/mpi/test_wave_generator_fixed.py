@@ -186,5 +186,5 @@ def test_ranks_do_not_matter() -> None:
 
 def test_the_starter_designs_no_such_drive() -> None:
     """Its ratio does not say how many teeth it has."""
-    with pytest.raises(InputError, match="allowed ring_fixed or spline_fixed"):
+    with pytest.raises(InputError, match='allowed "ring_fixed", "spline_fixed"'):
         swgpar.new(ratio=50.0, diameter=50.0, torque=10.0, layout="wave_generator_fixed")

@@ -189,8 +189,6 @@ def test_bad_deviations(override: str, reason: str) -> None:
     assert "deviations." in message and reason in message and "\n" not in message
 
 
-def test_deviations_need_a_torque_and_no_friction() -> None:
+def test_deviations_need_a_torque() -> None:
     with pytest.raises(InputError, match="load.torque = 0 holds the output: allowed above 0"):
         plane("deviations.turns=1", "load.torque=0")
-    with pytest.raises(InputError, match="contact.friction = 0.1 is out of range"):
-        plane("deviations.turns=1", "contact.friction=0.1")

@@ -12,7 +12,7 @@ from support.commands import swgpar as command
 from support.messages import Messages
 from support.paths import DATA, DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.analysis import run_drive
+from swgpar.analysis import model_sources
 from swgpar.checks.clearance import clearances
 from swgpar.checks.remarks import remarks
 from swgpar.design.drive_design import DriveDesign
@@ -104,7 +104,7 @@ def test_a_run_says_it_before_it_computes(monkeypatch: pytest.MonkeyPatch) -> No
     def begin(*_: object, **__: object) -> None:
         raise Begun
 
-    monkeypatch.setattr(run_drive, "build_drive_model", begin)
+    monkeypatch.setattr(model_sources, "build_drive_model", begin)
     with Messages() as messages, pytest.raises(Begun):
         swgpar.run(design("ring_gear.c_P=1.06", *PERIOD), RECIPE, plain=True)
     assert sum("interference: smallest flank clearance" in text for text in messages.texts) == 1
