@@ -79,9 +79,15 @@ def note(path: Path) -> None:
 def require_own(folder: Path, patterns: Iterable[str]) -> None:
     """Refuse a folder that has links, or files that are not in its list, under names that will be
     written. patterns : of these names"""
-    known = names(folder)
+    known, has_list = names(folder), (folder / LIST).exists()
     for path in _matching(folder, patterns):
         refuse_link(path)
+        if not has_list:
+            raise OutputError(
+                f"{path} is there, and the folder has no list of the files that runs have made "
+                f"({LIST}), like those of earlier versions: remove or move the folder, or choose "
+                "another one"
+            )
         if path.relative_to(folder).as_posix() not in known:
             raise not_made(path)
 

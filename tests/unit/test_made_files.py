@@ -150,7 +150,7 @@ def test_a_run_without_a_list_is_continued(finished: Path, tmp_path: Path) -> No
     out = tmp_path / "run"
     shutil.copytree(finished, out)
     (out / made_files.LIST).unlink()
-    with pytest.raises(OutputError, match="was not made by a run"):
+    with pytest.raises(OutputError, match="no list of the files that runs have made"):
         drive(out, overwrite=True)
     drive(out, restart=True)
     assert made_files.names(out) >= {CHECKPOINT, "history.csv", "summary.json", "run.log"}
@@ -188,3 +188,9 @@ def test_designs_of_a_user_beside_a_search_stay(tmp_path: Path) -> None:
     assert own.exists() and (out / "optimise.csv").exists()
     own.unlink()
     swgpar.optimise(file, out, overwrite=True)
+
+
+def test_a_folder_of_an_earlier_version_is_named_as_such(tmp_path: Path) -> None:
+    (tmp_path / "history.csv").write_text("", encoding="utf-8")
+    with pytest.raises(OutputError, match=r"no list of the files .* \(swgpar.files\)"):
+        made_files.require_own(tmp_path, ["history.csv"])
