@@ -4,7 +4,6 @@ there is room."""
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,40 +13,17 @@ import pytest
 from mpi4py import MPI
 
 from support.commands import assert_same_history, execute, run_command, succeed
+from support.small_disk import Disk, mounted_disk
 from support.small_drive import PLANE
 from swgpar.analysis.restart import SavedRun
 from swgpar.results import checkpoint, history
 from swgpar.results.folder import CHECKPOINT
 
 
-class Disk:
-    """A file system of a given size in memory."""
-
-    def __init__(self, place: Path) -> None:
-        self.place = place
-
-    def mount(self, kilobytes: int, *options: str) -> subprocess.CompletedProcess[str]:
-        words = ",".join([*options, f"size={kilobytes}k"])
-        command = ["mount", "-t", "tmpfs", "-o", words, "swgpar-test", str(self.place)]
-        return subprocess.run(command, capture_output=True, text=True, timeout=60)
-
-    def grow(self, kilobytes: int) -> None:
-        assert self.mount(kilobytes, "remount").returncode == 0
-
-
 @pytest.fixture
 def disk(tmp_path: Path) -> Iterator[Disk]:
-    if os.geteuid() != 0 or shutil.which("mount") is None:
-        pytest.skip("a small file system is mounted: only root can")
-    made = Disk(tmp_path / "disk")
-    made.place.mkdir()
-    trial = made.mount(64)
-    if trial.returncode != 0:
-        pytest.skip(f"a small file system cannot be mounted here: {trial.stderr.strip()}")
-    try:
+    with mounted_disk(tmp_path / "disk", 64) as made:
         yield made
-    finally:
-        subprocess.run(["umount", "-l", str(made.place)], check=True, timeout=60)
 
 
 def size(folder: Path) -> int:

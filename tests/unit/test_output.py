@@ -4,7 +4,6 @@ full disk."""
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -16,6 +15,7 @@ import swgpar
 from support.commands import environment, execute, run_command
 from support.commands import swgpar as command
 from support.paths import DESIGN, RECIPE
+from support.small_disk import mounted_disk
 from support.small_drive import PLANE
 from swgpar.errors import InputError, OutputError
 
@@ -69,18 +69,9 @@ def test_a_petsc4py_for_another_numpy_has_a_sentence(tmp_path: Path) -> None:
 @pytest.fixture
 def full(tmp_path: Path) -> Iterator[Path]:
     """A folder on a disk with 8 kB left."""
-    if os.geteuid() != 0 or shutil.which("mount") is None:
-        pytest.skip("a small file system is mounted: only root can")
-    place = tmp_path / "disk"
-    place.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", "size=64k", "swgpar-test", str(place)]
-    if subprocess.run(mount, capture_output=True, timeout=60).returncode != 0:
-        pytest.skip("a small file system cannot be mounted here")
-    (place / "ballast").write_bytes(bytes(56 * 1024))
-    try:
-        yield place
-    finally:
-        subprocess.run(["umount", "-l", str(place)], check=True, timeout=60)
+    with mounted_disk(tmp_path / "disk", 64) as disk:
+        (disk.place / "ballast").write_bytes(bytes(56 * 1024))
+        yield disk.place
 
 
 @pytest.mark.parametrize("kind", ["step", "dxf", "inp", "teeth", "mesh"])

@@ -38,6 +38,15 @@ def venv(tmp_path: Path) -> Path:
     return found
 
 
+@pytest.fixture
+def failing_python(tmp_path: Path) -> Path:
+    """An interpreter that makes environments in which nothing can be installed."""
+    python = tmp_path / "python"
+    python.write_text(PYTHON, encoding="utf-8")
+    python.chmod(0o755)
+    return python
+
+
 def assert_kept(venv: Path) -> None:
     assert (venv / "own").exists() and "true" in (venv / "pyvenv.cfg").read_text(encoding="utf-8")
     assert list(venv.parent.glob(f"{venv.name}*")) == [venv]
@@ -50,21 +59,17 @@ def test_without_a_python_the_environment_stays(venv: Path, tmp_path: Path) -> N
 
 
 def test_an_environment_that_cannot_be_made_gives_the_other_one_back(
-    venv: Path, tmp_path: Path
+    venv: Path, tmp_path: Path, failing_python: Path
 ) -> None:
-    python = tmp_path / "python"
-    python.write_text(PYTHON, encoding="utf-8")
-    python.chmod(0o755)
-    done = setup(venv, tmp_path, str(python))
+    done = setup(venv, tmp_path, str(failing_python))
     assert done.returncode == 3 and "could not be installed" in done.stderr
     assert_kept(venv)
 
 
-def test_an_environment_of_somebody_else_stays(venv: Path, tmp_path: Path) -> None:
+def test_an_environment_of_somebody_else_stays(
+    venv: Path, tmp_path: Path, failing_python: Path
+) -> None:
     (venv / ".swgpar-stamp").unlink()
-    python = tmp_path / "python"
-    python.write_text(PYTHON, encoding="utf-8")
-    python.chmod(0o755)
-    done = setup(venv, tmp_path, str(python))
+    done = setup(venv, tmp_path, str(failing_python))
     assert done.returncode == 1 and "that scripts/setup has not made" in done.stderr
     assert_kept(venv)
