@@ -219,27 +219,25 @@ def find_places(
         body = model.elements.bodies[name]
         prefix = body.layout.body.stress_prefixes[0]
         ring = name == RING_GEAR
-        touched = np.ones(fields[name]["s3"].shape, dtype=bool) if ring else pressed
+        mesh, free = body.layout.mesh, np.zeros(fields[name]["s3"].shape, dtype=bool)
         # every sector of the ring gear is alike: one stands for all
-        near = near_contact(
-            body.layout.mesh, working_flanks(body.layout.mesh)[None] if ring else pressed, distance
-        )
-        near |= inside_teeth(geometry, body.layout.mesh)
-        apart = np.broadcast_to(~near, touched.shape)
+        near = near_contact(mesh, working_flanks(mesh)[None] if ring else pressed, distance)
+        near |= inside_teeth(geometry, mesh)
+        apart = np.broadcast_to(~near, free.shape)
         regions = model.regions[name]
-        beyond = np.ones(touched.shape[1], dtype=bool)  # nodes of the housing
-        beyond[body.layout.mesh.nodes_of(0)] = False
+        beyond = np.ones(free.shape[1], dtype=bool)  # nodes of the housing
+        beyond[mesh.nodes_of(0)] = False
         for stress in ("s1", "s3", "vm"):
             values = -fields[name][stress] if stress == "s3" else fields[name][stress]
             values = np.where(beyond, -np.inf, values)
             # s1 below a contact is compressive or small; of the ring gear any flank may be touched
-            below = near if stress != "s1" else np.zeros_like(touched) if ring else touched
-            below = np.broadcast_to(below, touched.shape)
+            below = near if stress != "s1" else free if ring else pressed
+            below = np.broadcast_to(below, free.shape)
             names = {f"{prefix}_{stress}": (values, below)}
             if stress != "s1":
                 names[f"{prefix}_{stress}{APART}"] = (
                     np.where(apart, values, -np.inf),
-                    np.zeros_like(touched),
+                    free,
                 )
             limited = np.where(below, regions[True], regions[False])
             limited = ~np.isin(limited, (*WITHOUT_LIMIT, UNDER_CONTACT)) & (
