@@ -102,4 +102,4 @@ def test_a_log_that_cannot_be_written(tmp_path: Path) -> None:
     """Only the first rank writes it."""
     (tmp_path / "run.log").mkdir()
     command = swgpar("run", DESIGN, "--mesh", RECIPE, "--out", tmp_path)
-    assert f"{tmp_path / 'run.log'} is there, and was not made by a run" in refused(command, 4)
+    assert f"{tmp_path / 'run.log'} is there, and the folder has no list" in refused(command, 4)
