@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from swgpar.results.figure_set import panels
+from swgpar.results.figure_set import panels, plot_line
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,7 +40,7 @@ def draw_moments(title: str, xlabel: str, curves: Iterable[MomentCurve]) -> Figu
     """Means above standard deviations."""
     figure, (upper, lower) = axes(title, xlabel, "mean (µm)", "standard deviation (µm)")
     for curve in curves:
-        upper.plot(curve.x, curve.mean, curve.style, lw=1.0, label=curve.label)
-        lower.plot(curve.x, curve.deviation, curve.style, lw=1.0)
+        plot_line(upper, curve.x, curve.mean, curve.style, lw=1.0, label=curve.label)
+        plot_line(lower, curve.x, curve.deviation, curve.style, lw=1.0)
     upper.legend(fontsize=8)
     return figure

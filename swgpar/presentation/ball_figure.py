@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swgpar.load.load_states import Stage
-from swgpar.results.figure_set import line_through, panels
+from swgpar.results.figure_set import panels, plot_line
 from swgpar.results.table import Columns
 
 if TYPE_CHECKING:
@@ -30,14 +30,14 @@ def draw_ball_loads(balls: Columns, bearing: BallLoads | None, title: str) -> Fi
     for increment in increments:
         here = np.flatnonzero(balls["increment"] == increment)
         here = here[np.argsort(balls["cam_angle_deg"][here])]
-        upper.plot(balls["cam_angle_deg"][here], balls["load_N"][here], "o-", ms=3, lw=0.6)
+        angle, load = balls["cam_angle_deg"][here], balls["load_N"][here]
+        plot_line(upper, angle, load, "o-", ms=3, lw=0.6)
     upper.set(xlabel="angle from the major axis (degrees)", ylabel="ball load (N)")
     upper.set_xlim(-180.0, 180.0)
     count = len(balls["ball"]) // len(increments)
     upper.set_title(f"loads of {count} balls at {len(increments)} angles")
     peaks = balls["load_N"].reshape(len(increments), -1).max(axis=1)
-    style = line_through(len(peaks))
-    lower.plot(balls["wg_angle_deg"][first], peaks, "o", ls=style, ms=4)
+    plot_line(lower, balls["wg_angle_deg"][first], peaks, "o-", ms=4)
     fixed = ", balls fixed to the cam" if bearing and bearing.balls_fixed_to_cam else ""
     lower.set(xlabel=title, ylabel="largest ball load (N)" + fixed)
     for axes in (upper, lower):

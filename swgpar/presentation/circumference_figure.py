@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swgpar.meshing.drive_geometry import DriveGeometry
-from swgpar.results.figure_set import panels
+from swgpar.results.figure_set import panels, plot_line
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -58,7 +58,7 @@ def draw_circumference(
     for axes, (name, label) in zip(rows, FIELDS.items()):
         for part, chosen in parts(geometry, points).items():
             values = np.tile(largest_by_tooth(fields[name], chosen, teeth), copies)
-            axes.plot(angle[order], values[order], lw=1.2, label=part)
+            plot_line(axes, angle[order], values[order], lw=1.2, label=part)
         axes.set(ylabel=label, xlim=(-180.0, 180.0), xticks=range(-180, 181, 45))
     figure.suptitle(f"flexible spline, largest of every tooth's sector\n{title}", fontsize=10)
     handles, labels = rows[0].get_legend_handles_labels()

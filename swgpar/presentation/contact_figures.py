@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.results.figure_set import new_figure, panels
+from swgpar.results.figure_set import new_figure, panels, plot_line
 from swgpar.results.table import Columns
 
 if TYPE_CHECKING:
@@ -85,13 +85,8 @@ def draw_load_sharing(pairs: Columns, history: Columns, title: str, lobes: int =
     figure.legend(loc="outside lower center", ncols=3, fontsize=8)
     rows = np.unique(pairs["increment"]).astype(int) - 1
     if "pairs_in_contact" in history:  # not in a result of another version
-        lower.step(
-            history["wg_angle_deg"][rows],
-            history["pairs_in_contact"][rows],
-            "o-",
-            where="mid",
-            ms=4,
-        )
+        angles, count = history["wg_angle_deg"][rows], history["pairs_in_contact"][rows]
+        plot_line(lower, angles, count, "o-", drawstyle="steps-mid", ms=4)
     lower.set(xlabel=title, ylabel="pairs in contact")
     for axes in (upper, lower):
         axes.set_ylim(bottom=0.0)

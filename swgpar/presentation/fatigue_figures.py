@@ -9,7 +9,7 @@ import numpy as np
 
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.presentation.off_screen import off_screen_plotter
-from swgpar.results.figure_set import panels
+from swgpar.results.figure_set import panels, plot_line
 from swgpar.results.sector_fields import SectorFields
 
 if TYPE_CHECKING:
@@ -49,8 +49,7 @@ def draw_haigh(
     axes.set_title("Haigh's diagram, on the critical plane of every node", fontsize=10)
     axes.legend(fontsize=7)
     of_program = "step" in cycle
-    x, style = ("step", ".-") if of_program else ("wg_angle_deg", "-")
-    below.plot(cycle[x], cycle["normal_stress_MPa"], style)
+    plot_line(below, cycle["step" if of_program else "wg_angle_deg"], cycle["normal_stress_MPa"])
     what = "point of the load program (step)" if of_program else angle
     below.set(xlabel=what, ylabel="normal stress (MPa)")
     below.set_title(f"cycle where the safety is the least: {worst.region}", fontsize=10)

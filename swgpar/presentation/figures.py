@@ -33,7 +33,7 @@ from swgpar.presentation.fatigue_figures import draw_haigh, sector_picture
 from swgpar.presentation.program_figures import torque_against_rotation
 from swgpar.presentation.sections import PlaneBody
 from swgpar.results.field_sources import chosen_increment
-from swgpar.results.figure_set import FEWEST, Drawings, FigureSet, line_through, new_figure, panels
+from swgpar.results.figure_set import FEWEST, Drawings, FigureSet, new_figure, panels, plot_line
 from swgpar.results.history import COLUMNS
 from swgpar.results.sector_fields import SectorFields
 
@@ -98,8 +98,8 @@ class DriveFigures(FigureSet):
         root = self._result.summary.root_stress
         if root and root.period:
             label = "flexible spline, s1 at the teeth by windows"
-            style = line_through(len(root.period), "--")
-            axes.plot(*np.array(root.period).T, "k^", ls=style, ms=4, lw=0.8, label=label)
+            x, y = np.array(root.period).T
+            plot_line(axes, x, y, "k^--", ms=4, lw=0.8, label=label)
         axes.set_title("largest stresses (nodal averages)" + self._over_period())
         axes.set_ylabel("stress (MPa)")
         axes.set_ylim(bottom=0.0)
@@ -130,10 +130,7 @@ class DriveFigures(FigureSet):
         summary = self._result.summary.transmission_error
         figure, (upper, lower) = panels(2, 7.0, 6.0)
         error = rows["transmission_error_arcsec"]
-        marker = "o" if len(error) < 40 else None
-        style = line_through(len(error))
-        angle = rows["wg_angle_deg"]
-        upper.plot(angle, error - error.mean(), ls=style, lw=1.0, marker=marker, ms=3)
+        plot_line(upper, rows["wg_angle_deg"], error - error.mean(), lw=1.0)
         upper.set(xlabel=self._angle, ylabel="arc seconds")
         upper.set_title(f"transmission error less its mean, {summary.covered}")
         order, amplitude, _ = orders(summary.turns, rows)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import sys
+import weakref
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -22,6 +23,8 @@ from swgpar.results.atomic import agreed, raise_first, reason_of, write_file
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from numpy.typing import ArrayLike
 
 FOLDER = "figures"
 """Below the results folder."""
@@ -64,6 +67,9 @@ def _drawn_for_files() -> Iterator[None]:
 def new_figure(**options: Any) -> Figure:
     """An empty figure, which `plt.show()` shows unless `FigureSet.save` draws it.
 
+    pyplot keeps as many figures as its setting ``figure.max_open_warning`` allows (20). Before it
+    gets more, the oldest one made here is closed: whoever holds it can still write it to a file.
+
     options : of `matplotlib.figure.Figure`
     """
     if _for_files.get():
@@ -72,7 +78,16 @@ def new_figure(**options: Any) -> Figure:
         return Figure(**options)
     from matplotlib import pyplot
 
-    return pyplot.figure(**options)
+    most = pyplot.rcParams["figure.max_open_warning"]
+    while _opened and 0 < most <= len(pyplot.get_fignums()):
+        pyplot.close(_opened.pop(0)())
+    figure = pyplot.figure(**options)
+    _opened.append(weakref.ref(figure, _opened.remove))
+    return figure
+
+
+_opened: list[weakref.ref[Figure]] = []
+"""Figures made by pyplot, the oldest first."""
 
 
 def panels(
@@ -101,6 +116,24 @@ FEWEST = 3
 def line_through(points: int, style: str = "-") -> str:
     """Style of the line through so many points: none through one or two."""
     return style if points >= FEWEST else "none"
+
+
+FEW = 40
+"""Points below which each has a mark."""
+
+
+def plot_line(axes: Axes, x: ArrayLike, y: ArrayLike, style: str = "-", **options: Any) -> Line2D:
+    """A line through points (n,), with marks where they are few and none through one or two.
+
+    style : of matplotlib;  options : of the line
+    """
+    (line,) = axes.plot(x, y, style, **options)
+    count = len(line.get_xydata())
+    if count < FEWEST:
+        line.set_linestyle("none")
+    if count < FEW and line.get_marker() == "None":
+        line.set(marker="o", markersize=3)
+    return line
 
 
 PICTURE = 6

@@ -3,6 +3,7 @@ one. Lines go through three points or more, and titles say what is shown."""
 
 from __future__ import annotations
 
+import io
 import subprocess
 import sys
 from dataclasses import replace
@@ -18,8 +19,11 @@ import swgpar
 from support.paths import DATA, ROOT
 from swgpar.drive_results.drive_data import DriveData
 from swgpar.evaluation.transmission_error import TorqueOverTurns, TransmissionError
+from swgpar.gear_trains.drawing import MomentCurve, draw_moments
 from swgpar.presentation.ball_figure import draw_ball_loads
+from swgpar.presentation.contact_figures import draw_load_sharing
 from swgpar.presentation.program_figures import torque_against_rotation
+from swgpar.results.figure_set import plot_line
 from swgpar.results.history import Curves
 
 CONF = """
@@ -39,6 +43,20 @@ def test_plt_show_has_the_figures_of_a_result_and_files_leave_none(tmp_path: Pat
     assert pyplot.get_fignums() == [] and list(tmp_path.rglob("*.png"))
     figure = plot.stress()
     assert [pyplot.figure(number) for number in pyplot.get_fignums()] == [figure]
+    pyplot.close("all")
+
+
+def test_pyplot_keeps_the_newest_figures_without_a_warning(
+    recwarn: pytest.WarningsRecorder,
+) -> None:
+    pyplot.close("all")
+    plot = _result().plot
+    with pyplot.rc_context({"figure.max_open_warning": 3}):
+        mine = pyplot.figure()
+        made = [plot.stress() for _ in range(5)]
+        assert [pyplot.figure(number) for number in pyplot.get_fignums()] == [mine, *made[-2:]]
+    assert not [warning for warning in recwarn if "opened" in str(warning.message)]
+    made[0].savefig(io.BytesIO())
     pyplot.close("all")
 
 
@@ -93,6 +111,22 @@ def test_no_line_goes_through_two_points(
     }
     figure = torque_against_rotation(program, SimpleNamespace(stiffness=None, ratcheting=None))
     assert len(_joined(figure)) == lines
+    pairs = {
+        "angle_deg": angle,
+        "force_share": angle,
+        "flank": np.full(points, "clockwise"),
+        "increment": angle + 1.0,
+    }
+    history = {"wg_angle_deg": angle, "pairs_in_contact": angle}
+    assert len(_joined(draw_load_sharing(pairs, history, "angle"), 1)) == lines
+    figure = draw_moments("title", "time", [MomentCurve(angle, angle, angle, "label")])
+    assert len(_joined(figure)) == len(_joined(figure, 1)) == lines
+
+
+@pytest.mark.parametrize("points, mark", [(3, "o"), (40, "None")])
+def test_few_points_have_marks(points: int, mark: str) -> None:
+    axes = Figure().subplots()
+    assert plot_line(axes, np.arange(points), np.arange(points)).get_marker() == mark
     pyplot.close("all")
 
 

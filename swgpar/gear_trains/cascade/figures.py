@@ -11,7 +11,7 @@ import numpy as np
 from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
 from swgpar.gear_trains.drawing import axes
 from swgpar.gear_trains.result import TrainResult
-from swgpar.results.figure_set import Drawings
+from swgpar.results.figure_set import Drawings, plot_line
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -68,7 +68,7 @@ def _against_force(
     """Load shares by label against the rack force (kN)."""
     figure, (axis,) = axes(title, "rack force (kN)", "load share")
     for k, (label, values) in enumerate(shares.items()):
-        axis.plot(force, values, STYLES[k % 2], lw=1.0, label=label)
+        plot_line(axis, force, values, STYLES[k % 2], lw=1.0, label=label)
     axis.axhline(limit, color="k", ls=":", label="largest allowed")
     axis.set_ylim(0.0, LARGEST_DRAWN)
     axis.legend(fontsize=8, ncols=3)
@@ -81,10 +81,10 @@ def _in_time(result: TrainResult) -> Figure:
     figure, (upper, lower) = axes("load sharing over one period", *labels)
     for k, name in NAMES.items():
         style = STYLES[(int(k) - 1) % 2]
-        upper.plot(table["time_s"], table[f"share_{k}"], style, lw=0.8, label=name)
+        plot_line(upper, table["time_s"], table[f"share_{k}"], style, lw=0.8, label=name)
     upper.set_ylim(0.0, LARGEST_DRAWN)
     upper.legend(fontsize=8, ncols=4)
-    lower.plot(table["time_s"], table["rack_force_kN"])
+    plot_line(lower, table["time_s"], table["rack_force_kN"])
     return figure
 
 
@@ -114,6 +114,6 @@ def _flex_unit(result: TrainResult) -> Figure:
     table = result.tables["flex_unit"]
     labels = "deformation (mm)", "torque (N·m)", "stiffness (N·m/deg)"
     figure, (upper, lower) = axes("flexible units, mean", *labels)
-    upper.plot(table["deformation_mm"], table["torque_Nm"])
-    lower.plot(table["deformation_mm"], table["stiffness_Nm_per_deg"])
+    plot_line(upper, table["deformation_mm"], table["torque_Nm"])
+    plot_line(lower, table["deformation_mm"], table["stiffness_Nm_per_deg"])
     return figure

@@ -10,7 +10,7 @@ from swgpar.gear_trains.drawing import MomentCurve, axes, draw_moments
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
 from swgpar.gear_trains.gear_pair.quantities import VALUES
 from swgpar.gear_trains.result import TrainResult
-from swgpar.results.figure_set import Drawings
+from swgpar.results.figure_set import Drawings, plot_line
 from swgpar.vibration.linearisation import EQUIVALENT
 
 if TYPE_CHECKING:
@@ -57,10 +57,11 @@ def _density(result: TrainResult[GearPairDesign], case: int, load: str) -> Figur
     title = f"density of the mesh deflection at the end, {load}"
     figure, (axis,) = axes(title, "mesh deflection (µm)", "density (1/µm)")
     _, label = STYLES["monte_carlo"]
-    axis.step(deflection, table["monte_carlo"], "k", where="mid", lw=1.0, label=label)
+    bins = table["monte_carlo"]
+    plot_line(axis, deflection, bins, "k", drawstyle="steps-mid", lw=1.0, label=label)
     for method in EQUIVALENT:
         style, label = STYLES[method]
-        axis.plot(deflection, table[method], style, label=label)
+        plot_line(axis, deflection, table[method], style, label=label)
     axis.axvspan(-half, half, color="0.9", label="backlash")
     axis.set_xlim(deflection[0], deflection[-1])
     axis.legend(fontsize=8)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from swgpar.gear_trains.drawing import MomentCurve, axes, draw_moments
 from swgpar.gear_trains.planetary.monitored import MONITORED
 from swgpar.gear_trains.result import TrainResult
-from swgpar.results.figure_set import Drawings
+from swgpar.results.figure_set import Drawings, plot_line
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,5 +56,5 @@ def _forces(result: TrainResult) -> Figure:
     }
     figure, panels = axes("linearised forces of the meshes of planet 1", "time (s)", *columns)
     for axis, values in zip(panels, columns.values(), strict=True):
-        axis.plot(table["time_s"], values, lw=0.6)
+        plot_line(axis, table["time_s"], values, lw=0.6)
     return figure

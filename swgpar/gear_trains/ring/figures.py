@@ -11,7 +11,7 @@ from swgpar.gear_trains.drawing import MomentCurve, axes, draw_moments
 from swgpar.gear_trains.result import TrainResult
 from swgpar.gear_trains.ring.design import RingDesign
 from swgpar.gear_trains.ring.quantities import POINTS
-from swgpar.results.figure_set import Drawings, new_figure
+from swgpar.results.figure_set import Drawings, new_figure, plot_line
 from swgpar.results.table import Columns
 
 if TYPE_CHECKING:
@@ -85,9 +85,9 @@ def _critical(result: TrainResult) -> Figure:
     for k, (point, label) in enumerate(POINTS.items()):
         mean, deviation = table[f"mean_{point}_m"], table[f"deviation_{point}_m"]
         still, label_of_still = table[f"without_inertia_{point}_m"], None if k else "quasi-static"
-        upper.plot(speed, mean / mean[0], f"C{k}", lw=1.0, label=label)
-        upper.plot(speed, still / mean[0], "k:", lw=0.9, label=label_of_still)
-        lower.plot(speed, deviation / deviation[0], f"C{k}", lw=1.0)
+        plot_line(upper, speed, mean / mean[0], f"C{k}", lw=1.0, label=label)
+        plot_line(upper, speed, still / mean[0], "k:", lw=0.9, label=label_of_still)
+        plot_line(lower, speed, deviation / deviation[0], f"C{k}", lw=1.0)
     # the curves fill the panel
     upper.legend(fontsize=8, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0))
     return figure
