@@ -6,8 +6,9 @@ from collections.abc import Callable, Sequence
 
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.step_bounds import PART_OF_PITCH, pitches_turned
+from swgpar.design.program_sections import Ratcheting
 from swgpar.errors import ConvergenceError
-from swgpar.evaluation.ratcheting import TorquePoint, has_fallen, overshoot
+from swgpar.evaluation.ratcheting import TorquePoint, overshoot, why_ended
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 
@@ -41,7 +42,7 @@ class RotationPath:
     points : so far; those of later steps are appended
     measure : makes a point of the present state; collective
     tolerance : share of the peak torque
-    drop : share of the peak torque by which it falls at the end of the way; None without an end
+    section : says where the way ends; None without an end
     """
 
     def __init__(
@@ -50,10 +51,10 @@ class RotationPath:
         points: list[TorquePoint],
         measure: Callable[[], TorquePoint],
         tolerance: float,
-        drop: float | None,
+        section: Ratcheting | None,
     ) -> None:
         self.stepper, self.points, self.measure = stepper, points, measure
-        self.tolerance, self.drop = tolerance, drop
+        self.tolerance, self.section = tolerance, section
         self._step = PART_OF_PITCH
         # N·m; below it torques are round-off of the forces that bend the spline
         self._floor = stepper.design.negligible_torque_Nm
@@ -105,8 +106,8 @@ class RotationPath:
             logger.info("   in %d steps, the last of %.2g pitches", steps, step)
 
     def has_ended(self) -> bool:
-        """Whether the torque has fallen from its peak by the drop."""
-        return self.drop is not None and has_fallen(self.drop, self.points, self._floor)
+        """Whether the torque has fallen from its peak, or is sufficient."""
+        return self.section is not None and bool(why_ended(self.section, self.points, self._floor))
 
     def _is_resolved(self, point: TorquePoint, step: float) -> bool:
         """Whether the steps so far, one of so many pitches to `point` the last, show the torque."""

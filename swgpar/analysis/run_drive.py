@@ -39,7 +39,7 @@ from swgpar.drive_results.drive_data import DriveData
 from swgpar.errors import ConvergenceError, InputError, SwgparError, TimeLimitError
 from swgpar.evaluation.loaded_bearing import loaded_bearing
 from swgpar.evaluation.period import continued, require_samples
-from swgpar.evaluation.ratcheting import has_fallen
+from swgpar.evaluation.ratcheting import why_ended
 from swgpar.evaluation.result_frame import history_rows
 from swgpar.evaluation.transmission_error import period_rows
 from swgpar.fem.body import RING_GEAR
@@ -285,10 +285,10 @@ class DriveRun:
                 state.stage.label, np.degrees(state.angle), its, ratio
             )
             for state in states[len(record.rows) :]:
-                fallen = design.ratcheting is not None and has_fallen(
-                    design.ratcheting.drop, record.torque_points, design.negligible_torque_Nm
+                ended = design.ratcheting is not None and why_ended(
+                    design.ratcheting, record.torque_points, design.negligible_torque_Nm
                 )
-                if fallen or self.ended_early:
+                if ended or self.ended_early:
                     break
                 start = time.perf_counter()
                 # a start at once ends with the first one

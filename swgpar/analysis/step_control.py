@@ -56,12 +56,8 @@ class StepControl:
         self.slip_checks = slip_checks
         ratcheting = self.design.ratcheting
         self._teeth = ratcheting is not None
-        settings = (
-            (PROGRAM_TOLERANCE, None)
-            if ratcheting is None
-            else (ratcheting.tolerance, ratcheting.drop)
-        )
-        self._path = RotationPath(stepper, torque_points, self._torque_point, *settings)
+        tolerance = PROGRAM_TOLERANCE if ratcheting is None else ratcheting.tolerance
+        self._path = RotationPath(stepper, torque_points, self._torque_point, tolerance, ratcheting)
 
     def advance(self, target: LoadState) -> None:
         """Solve up to `target`; raises ConvergenceError as the stepper does."""

@@ -90,3 +90,6 @@ class Ratcheting(Section):
         ge=1e-4,
         le=0.1,
     )
+    sufficient_torque: float | None = positive(
+        "torque of the output at which the run ends without a peak; default: none", "N·m", None
+    )

@@ -19,6 +19,9 @@ AT_TEETH, IN_SPLINE, NOTHING = "teeth jump over", "flexible spline buckles", "no
 """What gives way: the teeth move on with the output; they stay, and the spline yields between them
 and the output; nothing up to the end of the run."""
 
+FELL, SUFFICIENT = "torque fell", "torque is sufficient"
+"""Why a run with [ratcheting] ends before its last increment."""
+
 
 @dataclass(frozen=True)
 class TorquePoint:
@@ -137,16 +140,19 @@ def peak(points: Sequence[TorquePoint]) -> int:
     return int(np.argmax([point.torque_Nm for point in points]))
 
 
-def has_fallen(drop: float, points: Sequence[TorquePoint], least: float) -> bool:
-    """Whether the torque of the last point has fallen clearly below its peak.
+def why_ended(section: Ratcheting, points: Sequence[TorquePoint], least: float) -> str:
+    """`FELL` where the torque of the last point is clearly below its peak, `SUFFICIENT` where it
+    has reached the sufficient one; empty where the run goes on.
 
-    drop : share of the peak
     least : N·m, up to which a torque is none: in the backlash it rises and falls by round-off
     """
     if not points:
-        return False
+        return ""
     top = points[peak(points)].torque_Nm
-    return top > least and points[-1].torque_Nm < (1.0 - drop) * top
+    if top > least and points[-1].torque_Nm < (1.0 - section.drop) * top:
+        return FELL
+    enough = section.sufficient_torque
+    return SUFFICIENT if enough is not None and top >= enough else ""
 
 
 def what_gave_way(kinematics: Kinematics, points: Sequence[TorquePoint]) -> str:
@@ -174,7 +180,7 @@ def evaluate_ratcheting(
     least : N·m, up to which a torque is none
     ended_early : whether no equilibrium was found behind the last state
     """
-    top, fallen = peak(points), has_fallen(section.drop, points, least)
+    top = peak(points)
     largest = points[top].torque_Nm
     error = overshoot([p.rotation_deg for p in points], [p.torque_Nm for p in points])
     error = max(error, section.tolerance * largest)
@@ -192,8 +198,6 @@ def evaluate_ratcheting(
         gave_way=what_gave_way(kinematics, points) if is_peak else NOTHING,
         ended="no equilibrium found"
         if ended_early
-        else "torque fell"
-        if fallen
-        else "limit reached",
+        else why_ended(section, points, least) or "limit reached",
         states=len(points),
     )

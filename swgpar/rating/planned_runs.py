@@ -75,13 +75,15 @@ class RatingPlan:
 class RatingLoads:
     """Torques (N·m) and speed (1/min) of a rating, with their defaults.
 
-    momentary : None where it is not given;  largest : of all torques
+    momentary, ratcheting : None where they are not given; the latter is the least torque at which
+    the drive may ratchet;  largest : of all torques
     """
 
     rated: float
     repeated_peak: float
     average: float
     momentary: float | None
+    ratcheting: float | None
     average_speed: float
 
     @property
@@ -93,6 +95,9 @@ class RatingLoads:
 NO_STRENGTHS = "no strengths are given: [fatigue]"
 NO_BEARING = "the wave generator has no bearing: [wave_generator.bearing]"
 NO_LOSSES = "no coefficients of losses are given: [losses]"
+
+SUFFICIENT = 2.0
+"""Torque at which a run with [ratcheting] ends, over the least one of the sheet."""
 
 IDENTITY = 8
 """Letters of an identity that tell the runs of one case apart."""
@@ -114,6 +119,9 @@ def rating_loads(design: DriveDesign) -> RatingLoads:
         repeated_peak=section.repeated_peak_torque or rated,
         average=section.average_torque or rated,
         momentary=section.momentary_torque,
+        ratcheting=None
+        if section.momentary_torque is None
+        else section.momentary_torque * section.ratcheting_safety,
         average_speed=section.average_speed or design.load.input_speed,
     )
 
@@ -279,6 +287,8 @@ def _program(design: DriveDesign, loads: RatingLoads, case: LoadCase) -> Planned
     keys = {} if section is None else section.model_dump(exclude_unset=True)
     if case == LoadCase.STIFFNESS:
         keys = {"torque": loads.rated, "rated_torque": loads.rated} | keys
+    elif loads.ratcheting is not None:
+        keys = {"sufficient_torque": SUFFICIENT * loads.ratcheting} | keys
     content = _content(design, loads, loads.rated, ()) | {name: keys}
     content["output"] = {**content["output"], "root_stress": False}
     try:

@@ -106,7 +106,7 @@ def rating_rows(design: DriveDesign, accuracy: float | None = None) -> list[Rati
         *_strength(design, section, loads),
         *_bearing(design, section),
         *_bolts(design),
-        _ratcheting(section, loads),
+        _ratcheting(loads),
         *_stiffness(design, section),
         *_motion(design, section),
         *_computation(design, accuracy or RESOLUTION),
@@ -241,11 +241,11 @@ def _without_peak(summary: DriveSummary) -> str:
     return f"a lower bound: the torque has no peak up to the end of the run ({found.ended})"
 
 
-def _ratcheting(section: RatingSection, loads: RatingLoads) -> RatingRow:
-    limit, momentary = None, loads.momentary
-    if momentary is not None:
+def _ratcheting(loads: RatingLoads) -> RatingRow:
+    limit = None
+    if loads.ratcheting is not None:
         source = "rating.momentary_torque times rating.ratcheting_safety"
-        limit = Limit(momentary * section.ratcheting_safety, Sense.AT_LEAST, source)
+        limit = Limit(loads.ratcheting, Sense.AT_LEAST, source)
     return RatingRow(
         "ratcheting",
         LoadCase.RATCHETING,

@@ -21,7 +21,7 @@ from swgpar.contact.clearance import LOADED_SIDE
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.evaluation.program_results import PointRow, point_rows, work_by_torque
-from swgpar.evaluation.ratcheting import AT_TEETH
+from swgpar.evaluation.ratcheting import AT_TEETH, SUFFICIENT
 from swgpar.load.load_program import FIRST_LOADING, NO_TORQUE, program_points
 from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import Stage
@@ -207,6 +207,18 @@ def ratcheting() -> list[DriveResult]:
         run(small("plane").with_values({**LOW_TEETH, "ratcheting.increment": increment}))
         for increment in (0.5, 0.01)
     ]
+
+
+def test_ratcheting_ends_where_the_torque_is_sufficient(ratcheting: list[DriveResult]) -> None:
+    """Before the peak, with a lower bound of it."""
+    enough = 0.25 * ratcheting[1].summary.ratcheting.peak_torque_Nm
+    keys = {"ratcheting.increment": 0.01, "ratcheting.sufficient_torque": enough}
+    result = run(small("plane").with_values({**LOW_TEETH, **keys}))
+    found, torque = result.summary.ratcheting, result.program["torque_Nm"]
+    assert found.ended == SUFFICIENT and not found.is_peak
+    assert torque[-2] < enough <= found.peak_torque_Nm == pytest.approx(torque[-1])
+    same = ratcheting[1].program["torque_Nm"][: len(torque)]
+    assert torque[:-1] == pytest.approx(same[:-1], rel=1e-6, abs=1e-6)
 
 
 def test_ratcheting_ends_by_itself(ratcheting: list[DriveResult]) -> None:

@@ -16,12 +16,14 @@ from swgpar.errors import InputError
 from swgpar.evaluation.program_results import work_by_torque
 from swgpar.evaluation.ratcheting import (
     AT_TEETH,
+    FELL,
     IN_SPLINE,
     NOTHING,
+    SUFFICIENT,
     TorquePoint,
     evaluate_ratcheting,
-    has_fallen,
     overshoot,
+    why_ended,
 )
 from swgpar.evaluation.stiffness import ARC_MINUTE, by_position, torsional_stiffness
 from swgpar.load.load_program import (
@@ -260,8 +262,8 @@ def test_what_gives_way_is_where_the_rotation_goes(teeth: float, gave_way: str) 
     design = small("plane").with_values({"ratcheting.increment": 0.1})
     moved = [0.0, 0.5, 0.5, 0.5 + teeth, 0.5 + 2.0 * teeth]
     points = points_of([1.0, 2.5, 3.0, 2.9, 1.0], moved)
-    drop = design.ratcheting.drop
-    assert not has_fallen(drop, points[:4], 1e-9) and has_fallen(drop, points, 1e-9)
+    section = design.ratcheting
+    assert not why_ended(section, points[:4], 1e-9) and why_ended(section, points, 1e-9) == FELL
     found = evaluate_ratcheting(
         design.kinematics, design.ratcheting, points, 1e-9, ended_early=False
     )
@@ -286,9 +288,21 @@ def test_a_torque_that_has_not_fallen_has_no_peak(torques: list[float]) -> None:
     )
     assert not found.is_peak and found.gave_way == NOTHING and found.peak_error_Nm is None
     assert found.ended == "no equilibrium found"
-    assert not has_fallen(design.ratcheting.drop, points, 1e-9)
+    assert not why_ended(design.ratcheting, points, 1e-9)
     (answer,) = (one for one in found.answers() if one.name == "ratcheting.peak_torque_Nm")
     assert answer.no_error == NO_ESTIMATE and "no peak" in answer.remark
+
+
+def test_a_sufficient_torque_is_no_peak() -> None:
+    design = small("plane").with_values(
+        {"ratcheting.increment": 0.1, "ratcheting.sufficient_torque": 2.0}
+    )
+    points = points_of([0.0, 1.0, 2.5], [0.0, 0.5, 1.0])
+    section = design.ratcheting
+    assert not why_ended(section, points[:2], 1e-9)
+    assert why_ended(section, points, 1e-9) == SUFFICIENT
+    found = evaluate_ratcheting(design.kinematics, section, points, 1e-9, ended_early=False)
+    assert not found.is_peak and found.ended == SUFFICIENT and found.peak_torque_Nm == 2.5
 
 
 @pytest.mark.parametrize("turn", [0.35, 0.5, 0.62])
