@@ -170,4 +170,5 @@ def _bad_value(field: FieldInfo, kind: str, key: str, value: Any) -> str:
         return f"{key} = {show(value)} is out of range: {allowed(field, smallest=True)}"
     if kind in RANGE_FINDINGS:
         return f"{key} = {show(value)} is out of range: {limits}"
-    return f"{key} = {show(value)} is not {noun}: {limits}"
+    shown = repr(value) if isinstance(value, float) else show(value)  # 1.0 is no whole number
+    return f"{key} = {shown} is not {noun}: {limits}"

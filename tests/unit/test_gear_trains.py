@@ -34,6 +34,7 @@ REFUSED = [
     (CASCADE, "gear_train.seed=-1", "gear_train.seed = -1 is out of range: allowed 0 to 1e+12"),
     (CASCADE, "rack.mass=0", "rack.mass = 0 is out of range: allowed above 0 to 1000000000 kg"),
     (CASCADE, "g2.teeth=20.5", "g2.teeth = 20.5 is not a whole number"),
+    (CASCADE, "g2.teeth=20.0", "g2.teeth = 20.0 is not a whole number"),
     (CASCADE, "g5.teeth=20", "g5 = a table is not a key of the design file: did you mean g"),
     (CASCADE, "g1_g1.variation=1", "g1_g1.variation = 1 is out of range: allowed 0 to below 1"),
     (CASCADE, "g1_g1.module=5", "g1_g1.module = 5 is out of range: allowed 4 mm (g1_g2.module)"),
