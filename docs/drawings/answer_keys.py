@@ -46,7 +46,7 @@ def spring(torque: float, way: float) -> float:
 def stiffness_loop() -> Figure:
     """The loop that the program runs through, evaluated by it."""
     section = Stiffness(torque=TOP, points=12)
-    program = StiffnessProgram(section, TOP, TOP, 0.0, (0.0,), False)
+    program = StiffnessProgram(section, TOP, TOP, 0.0, (0.0,), False, False)
     points = program.points()
     torques = np.array([point.value for point in points])
     ways = np.sign(np.diff(torques, prepend=0.0))

@@ -99,10 +99,17 @@ class DriveSections(Design):
     @property
     def is_mirror_symmetric(self) -> bool:
         """Whether the undeformed drive is its own image in the plane through the axis and the major
-        axis. The balls of a bearing are placed on one side of it or the other. With bolts, or a
-        load from one side, no other state mirrors it."""
-        alone = self.bearing is None and self.repeats and not self.is_bolted
-        return self.wave_generator.is_mirror_symmetric and alone
+        axis, at any angle of the wave generator. Balls leave the plane when it turns. With bolts,
+        or a load from one side, no other state mirrors it."""
+        return self.bearing is None and self.starts_mirror_symmetric
+
+    @property
+    def starts_mirror_symmetric(self) -> bool:
+        """Whether it is so before the wave generator turns: a ball, or the middle between two, is
+        on the major axis then."""
+        alone = self.repeats and not self.is_bolted
+        in_plane = self.bearing is None or self.bearing.starts_mirror_symmetric
+        return self.wave_generator.is_mirror_symmetric and alone and in_plane
 
     @property
     def has_cup(self) -> bool:

@@ -349,6 +349,15 @@ class Losses(Section):
         "mm",
         None,
     )
+    lubricant_viscosity: float | None = positive(
+        "kinematic viscosity of the oil, or of the grease's base oil, at the temperature of the "
+        "drive; without it the bearing has no drag of the lubricant",
+        "mm²/s",
+        None,
+    )
+    lubrication_factor: float = positive(
+        "Palmgren's factor f0 of the bearing and its lubrication", default=1.0, le=20.0
+    )
     input_drag: float = not_negative(
         "torque of seals and grease at the input, at any speed", "N·m", 0.0
     )

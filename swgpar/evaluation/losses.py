@@ -1,5 +1,5 @@
 """Losses of the drive over a turn of the wave generator: friction of flanks and bearing, hysteresis
-of the material, seals and grease.
+of the material, drag of the lubricant, seals.
 
 The loss torque is the input torque that the losses take: their work per turn over 2 pi
 (docs/theory/losses.md).
@@ -14,6 +14,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.answers.answer import AnswerGroup, answer, evaluation
+from swgpar.design.bearing_drag import BearingDrag
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.stress_cycle import StressCycle, elements_of_rank
 from swgpar.fem.body_layout import BodyLayout
@@ -41,6 +42,12 @@ class LossParts:
     hysteresis: float = answer("losses.hysteresis", "its part by hysteresis of the spline", "N·mm")
     bearing: float = answer(
         "losses.bearing", "its part by friction of the wave generator's bearing", "N·mm"
+    )
+    lubricant: float = answer(
+        "losses.lubricant",
+        "its part by drag of the lubricant in the wave generator's bearing",
+        "N·mm",
+        default=0.0,
     )
     seals: float = answer(
         "losses.seals", "its part by seals and grease at input and output", "N·mm", default=0.0
@@ -115,6 +122,7 @@ def evaluate_losses(
         flank_friction=float(sliding.mean()),
         hysteresis=hysteresis,
         bearing=float(bearing.mean()),
+        lubricant=bearing_drag(design).torque(omega),
         seals=1000.0 * losses.drag_at_input(omega, design.kinematics.input_ratio),
     )
     if (missing := force_without_sliding(pairs, increments)) > SMALL_SHARE:
@@ -151,6 +159,17 @@ def _bearing_diameter(design: DriveDesign) -> float:
     them of the bore."""
     return (
         2.0 * design.inner_radius if design.bearing is None else design.bearing_sizes.pitch_diameter
+    )
+
+
+def bearing_drag(design: DriveDesign) -> BearingDrag:
+    """Drag of the lubricant in the bearing, with the coefficients of [losses]."""
+    losses = design.losses
+    return BearingDrag(
+        factor=losses.lubrication_factor,
+        viscosity=losses.lubricant_viscosity or 0.0,
+        diameter=_bearing_diameter(design),
+        relative=1.0 - design.kinematics.spline_speed,
     )
 
 

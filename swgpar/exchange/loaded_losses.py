@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from swgpar.design.bearing_drag import BearingDrag
 from swgpar.design.sections import Losses
 from swgpar.errors import InputError
+from swgpar.evaluation.losses import bearing_drag
 
 if TYPE_CHECKING:
     from swgpar.drive_results.drive_data import DriveData
@@ -19,15 +21,19 @@ LOADS = np.linspace(0.0, 1.5, 7)
 SPEEDS = (0.0, 0.25, 0.5, 1.0, 1.5)
 """Speeds of the table over `load.input_speed`; 0 is the breakaway."""
 
+NO_DRAG = BearingDrag(factor=1.0, viscosity=0.0, diameter=0.0)
+
 
 @dataclass(frozen=True)
 class LoadedLosses:
-    """Loss torque at the input: idle + by_load |torque| + viscous, and that of the output's side.
+    """Loss torque at the input: idle + by_load |torque| + lubricant + viscous, and that of the
+    output's side.
 
     idle : N·m, without a torque on the output, seals and grease of the input among it
     by_load : N·m at the input by N·m on the output
     drag : section [losses], of which the coefficients of seals and grease are taken
     ratio : input over output
+    bearing : drag of the lubricant in the bearing of the wave generator
     torque : N·m on the output under which `by_load` was found;  speed : rad/s of the input
     """
 
@@ -37,6 +43,7 @@ class LoadedLosses:
     ratio: float = 1.0
     torque: float = 0.0
     speed: float = 0.0
+    bearing: BearingDrag = NO_DRAG
 
     @classmethod
     def of(cls, loaded: DriveData | None, idle: DriveData | None) -> LoadedLosses:
@@ -49,12 +56,12 @@ class LoadedLosses:
             if idle is not None:
                 raise InputError("--idle is of no use without a run with [losses] under load")
             return cls(0.0, 0.0, Losses())
-        under_load, by_load = _without_seals(loaded), 0.0
+        under_load, by_load = _without_lubricants(loaded), 0.0
         design, section = loaded.summary.design, loaded.summary.design.losses
         without = under_load
         if idle is not None:
             _check(loaded, idle)
-            without = _without_seals(idle)
+            without = _without_lubricants(idle)
             by_load = (under_load - without) / design.load.torque
         return cls(
             without + section.input_drag,
@@ -63,6 +70,7 @@ class LoadedLosses:
             ratio=loaded.summary.ratio,
             torque=design.load.torque,
             speed=design.load.input_rate,
+            bearing=bearing_drag(design),
         )
 
     def at_input(self, torque: float, speed: float) -> float:
@@ -71,7 +79,11 @@ class LoadedLosses:
         torque : N·m on the output, without its sign;  speed : rad/s of the input, without its sign
         """
         side = self.drag.drag_at_input(speed, self.ratio) - self.drag.input_drag
-        return self.idle + self.by_load * torque + side
+        return self.idle + self.by_load * torque + self.lubricant(speed) + side
+
+    def lubricant(self, speed: float) -> float:
+        """Drag (N·m) of the lubricant in the bearing. speed : rad/s of the input"""
+        return self.bearing.torque(speed) / 1000.0
 
     def backdriving_torque(self) -> float:
         """Torque (N·m) on the output from which it turns the input; infinite where none does."""
@@ -107,10 +119,11 @@ class LoadedLosses:
         return dict(zip(names, np.array(rows).T, strict=True))
 
 
-def _without_seals(result: DriveData) -> float:
-    """Loss torque (N·m) of a run but for seals and grease."""
+def _without_lubricants(result: DriveData) -> float:
+    """Loss torque (N·m) of a run but for the drag of lubricant and seals."""
     losses = result.summary.losses
-    return (losses.loss_torque_Nmm - losses.parts_Nmm.seals) / 1000.0
+    parts = losses.parts_Nmm
+    return (losses.loss_torque_Nmm - parts.seals - parts.lubricant) / 1000.0
 
 
 def _check(loaded: DriveData, idle: DriveData) -> None:

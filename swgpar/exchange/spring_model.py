@@ -115,7 +115,7 @@ def spring_model(
         ripple=ripple,
         friction_torque=max(0.0, summary.stiffness.loop_work) / (2000.0 * reach),
         friction_speed=SHARE * reach,
-        loss_torque=losses.idle,
+        loss_torque=losses.idle + losses.lubricant(losses.speed),
         load_loss=losses.by_load,
         viscous_loss=losses.drag.input_viscous_drag,
         output_drag=losses.drag.output_drag,

@@ -130,6 +130,8 @@ class StiffnessProgram:
     angles : deg, of the wave generator
     uses_mirror : whether an angle has the stiffness of that which the drive's mirror plane makes of
     it: without friction
+    starts_mirrored : whether at the first angle one side of the loop is the image of the other one:
+    without friction, with a bearing too
     """
 
     section: Stiffness
@@ -138,6 +140,7 @@ class StiffnessProgram:
     negligible: float
     angles: tuple[float, ...]
     uses_mirror: bool
+    starts_mirrored: bool
 
     @property
     def lost_motion_torque(self) -> float:
@@ -188,7 +191,8 @@ class StiffnessProgram:
         of the other.
         """
         way = BRANCHES[:2] if torque >= 0.0 else BRANCHES[2:]
-        if self.uses_mirror and 2 * k in (0, len(self.angles)):
+        halfway = self.uses_mirror and 2 * k == len(self.angles)
+        if halfway or (self.starts_mirrored and k == 0):
             return way[:1] if k else (POSITIVE_LOADING,)
         return way
 
@@ -205,6 +209,7 @@ def stiffness_program(design: DriveDesign) -> StiffnessProgram:
         design.negligible_torque_Nm,
         tuple(period * k / section.positions for k in range(section.positions)),
         uses_mirror=not section.loop and design.is_mirror_symmetric,
+        starts_mirrored=not section.loop and design.starts_mirror_symmetric,
     )
 
 

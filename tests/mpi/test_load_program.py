@@ -12,6 +12,7 @@ from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
 import swgpar
+from support.bearing import BEARING
 from support.friction_work import FrictionWork
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
@@ -59,10 +60,11 @@ def branches(result: DriveResult, *stages: str) -> tuple[np.ndarray, np.ndarray]
     return result.program["torque_Nm"][here], result.program["rotation_arcmin"][here]
 
 
-def test_a_loop_without_friction() -> None:
+@pytest.mark.parametrize("bearing", [(), BEARING], ids=["cam", "bearing"])
+def test_a_loop_without_friction(bearing: tuple[str, ...]) -> None:
     """With the major axis on a tooth and a slot: theta(-T) = -theta(T), no area, and the way back
-    is the same."""
-    design = small("plane").with_values({"stiffness.positions": 1})
+    is the same. With a bearing a ball is on the major axis."""
+    design = small("plane", *bearing).with_values({"stiffness.positions": 1})
     result = run(design, plain=True)
     found = result.summary.stiffness
     unloading, loading = (

@@ -19,7 +19,7 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stepping import small
 from swgpar.errors import InputError, OutputError
-from swgpar.evaluation.losses import LossParts
+from swgpar.evaluation.losses import LossParts, bearing_drag
 from swgpar.evaluation.stiffness import torsional_stiffness
 from swgpar.exchange.fmu import VARIABLES, write_fmu
 from swgpar.exchange.loaded_losses import LoadedLosses
@@ -81,7 +81,8 @@ def windup(torque: np.ndarray) -> np.ndarray:
 
 
 class SampledRun:
-    """A sampled period with losses of 50 N·mm; with drag 5 of them are by seals."""
+    """A sampled period with losses of 50 N·mm; with drag 5 of them are by seals, or a part by the
+    lubricant."""
 
     program: dict[str, np.ndarray] = {}
 
@@ -99,10 +100,15 @@ class SampledRun:
             "wg_angle_deg": angle,
             "transmission_error_arcsec": 20.0 + 4.0 * np.cos(phase) + 1.5 * np.sin(2.0 * phase),
         }
-        parts = LossParts(
-            flank_friction=20.0, hysteresis=5.0, bearing=20.0, seals=5.0 if drag else 0.0
-        )
         design = small("plane", f"load.torque={torque}", "losses.loss_factor=3e-4", *drag)
+        lubricant = bearing_drag(design).torque(design.load.input_rate)
+        parts = LossParts(
+            flank_friction=20.0,
+            hysteresis=5.0,
+            bearing=20.0,
+            lubricant=lubricant,
+            seals=5.0 if drag and not lubricant else 0.0,
+        )
         self.summary = SimpleNamespace(
             ratio=ratio,
             stiffness=None,
@@ -357,6 +363,18 @@ def test_the_table_of_losses_balances_the_power() -> None:
     omega = design.load.input_rate
     seals = design.losses.drag_at_input(omega, RATIO)
     assert losses.at_input(0.2, omega) == pytest.approx(0.045 + seals)
+
+
+def test_the_drag_of_the_lubricant_follows_the_speed() -> None:
+    """It is a part of both runs, and neither of what the load adds."""
+    drag = ("losses.lubricant_viscosity=200",)
+    loaded, idle = SampledRun(drag=drag), SampledRun(torque=0.0, loss=30.0, drag=drag)
+    losses, omega = LoadedLosses.of(loaded, idle), loaded.summary.design.load.input_rate
+    part = loaded.summary.losses.parts_Nmm.lubricant / 1000.0
+    assert losses.at_input(0.2, omega) == pytest.approx(0.05)
+    assert losses.at_input(0.0, omega) == pytest.approx(0.03)
+    double = losses.at_input(0.0, 2.0 * omega)
+    assert double - 0.03 == pytest.approx(part * (2.0 ** (2.0 / 3.0) - 1.0))
 
 
 def test_the_torque_that_backdrives_is_that_of_the_balance() -> None:

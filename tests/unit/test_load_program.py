@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from support.bearing import BEARING
 from support.stepping import small
 from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.answers.answer import NO_ESTIMATE
@@ -242,6 +243,20 @@ def test_one_way_of_the_loop_stands_for_both() -> None:
     for one in found.values():
         assert (one.K1, one.K2) == pytest.approx((1.0 / ARC_MINUTE, 1.0 / ARC_MINUTE))
         assert one.hysteresis == pytest.approx(0.0, abs=1e-12) and one.loop_work == 0.0
+
+
+@pytest.mark.parametrize(
+    ("bearing", "ways"),
+    [((), 1), (("first_ball=0",), 1), (("first_ball=9",), 1), (("first_ball=4",), 2)],
+)
+def test_one_side_of_the_loop_suffices_where_the_balls_are_mirrored(
+    bearing: tuple[str, ...], ways: int
+) -> None:
+    """20 balls: at 0 one is on the major axis, at 9 degrees the axis is midway between two."""
+    keys = [*BEARING, *(f"wave_generator.bearing.{key}" for key in bearing)] if bearing else []
+    values = {"stiffness.torque": TORQUE, "stiffness.positions": 1, "stiffness.loop": False}
+    program = stiffness_program(small("plane", *keys).with_values(values))
+    assert len(program.points()) == ways * len(program.torques)
 
 
 def test_work_is_the_area_below_the_torque() -> None:

@@ -12,6 +12,7 @@ import swgpar
 from plain_ring import PlainRingDesign, RingCounts, RingModel
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
+from swgpar.design.bearing_drag import BearingDrag
 from swgpar.errors import InputError
 from swgpar.evaluation.losses import energy_coordinates, force_without_sliding
 from swgpar.fem.masses import mass_matrices
@@ -57,6 +58,21 @@ def test_share_of_the_force_without_a_known_contact() -> None:
     assert force_without_sliding(pairs, (1,)) == 0.0
 
 
+def test_drag_of_the_lubricant_by_hand() -> None:
+    """f0 = 2, 100 mm²/s at 1000/min in a bearing of 40 mm: 1e-7 · 2 · 1e5^(2/3) · 64000 N·mm.
+
+    Below 2000 mm²/s/min it is 160e-7 f0 d³. The torque at the input of races whose relative speed
+    is higher has the same power.
+    """
+    drag = BearingDrag(factor=2.0, viscosity=100.0, diameter=40.0)
+    omega = 1000.0 * np.pi / 30.0
+    assert drag.torque(omega) == pytest.approx(27.577, rel=1e-4)
+    assert drag.torque(0.0) == pytest.approx(160e-7 * 2.0 * 40.0**3, rel=0.01)
+    assert drag.torque(0.02 * omega) == pytest.approx(drag.torque(0.0), rel=1e-12)
+    faster = BearingDrag(factor=2.0, viscosity=100.0, diameter=40.0, relative=1.02)
+    assert faster.torque(omega) == pytest.approx(1.02 * drag.torque(1.02 * omega), rel=1e-12)
+
+
 def test_hysteresis_of_a_ring_between_two_forces() -> None:
     """A thin ring of radius R under two opposite forces P bends by P R / 2 (2 / pi - |sin|).
 
@@ -81,9 +97,11 @@ def test_losses_of_a_run() -> None:
     """They add up, follow their coefficients, and need a sampled period."""
     sampled = [*PLANE, "steps.samples=2", "steps.rotation=9"]
     less = ["losses.loss_factor=1e-3", "losses.input_drag=1e-3", "losses.output_drag=0.01"]
+    less += ["losses.lubricant_viscosity=100"]
     one = swgpar.run(swgpar.load_design(DESIGN, [*sampled, *less]), RECIPE).summary.losses
     more = ["losses.loss_factor=2e-3", "losses.bearing_friction=0.003", "losses.flank_friction=0.1"]
     more += ["losses.input_drag=2e-3", "losses.output_drag=0.02"]
+    more += ["losses.lubricant_viscosity=100", "losses.lubrication_factor=2"]
     other = swgpar.run(swgpar.load_design(DESIGN, [*sampled, *more]), RECIPE).summary.losses
     assert one.loss_torque_Nmm == pytest.approx(sum(asdict(one.parts_Nmm).values()))
     assert min(asdict(one.parts_Nmm).values()) > 0.0

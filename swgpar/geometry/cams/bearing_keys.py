@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from swgpar.input.quantities import Section, not_negative, positive, quantity
 from swgpar.materials import OptionalMaterial
 from swgpar.materials.temperature import temperature
@@ -57,3 +59,9 @@ class Bearing(Section):
     load_rating: float | None = positive(
         "basic dynamic load rating; without it that of ISO 281", "N", None
     )
+
+    @property
+    def starts_mirror_symmetric(self) -> bool:
+        """Whether a ball, or the middle between two balls, is on the major axis at the start."""
+        halves = 2.0 * self.first_ball * self.balls / 360.0
+        return math.isclose(halves, round(halves), abs_tol=1e-9)
