@@ -12,7 +12,7 @@ from swgpar.drive_results.summary import DriveSummary
 from swgpar.presentation.answer_text import answer_table
 from swgpar.presentation.drive_drawing import draw_drive
 from swgpar.presentation.drive_result import DriveResult
-from swgpar.presentation.scene import SCRIPT, scene
+from swgpar.presentation.scene import SCRIPTS, scene
 from swgpar.results.page import Table
 from swgpar.results.result_page import RunFacts, result_page
 
@@ -48,7 +48,7 @@ def drive_report(result: DriveResult) -> bytes:
         result.folder,
         result.plot.names,
         wide=WIDE,
-        scripts=(SCRIPT,) if view else (),
+        scripts=SCRIPTS if view else (),
         description=_description(summary),
         look=[check.name for check in judged if check.good is False],
         strong=all(check.good for check in judged if check.of_strength),

@@ -1,8 +1,8 @@
-"""The deformed drive as a view that turns in a page of HTML, without a network: the surface and a
-drawer in WebGL.
+"""The deformed drive as a view that turns in a page of HTML, without a network: meshes, fields of
+several increments, and a drawer in WebGL.
 
-All sectors of a body are congruent: the triangles of one are stored, and places, displacements and
-stresses of all. Places have 16 bits, stresses 8.
+All sectors of a body are congruent: nodes, cells and triangles of the surface of one are stored.
+Displacements, stresses and pressures are those of all nodes, with 16 bits each.
 """
 
 from __future__ import annotations
@@ -13,27 +13,62 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from swgpar.load.load_states import Stage
 from swgpar.presentation.deformed_figures import colour_limit
+from swgpar.presentation.scene_solids import ball_solids, cam_solid, turned
+from swgpar.results.field_sources import FieldSource
 
 if TYPE_CHECKING:
-    from swgpar.design.sections import GearName
     from swgpar.drive_results.drive_data import DriveData
+    from swgpar.presentation.scene_solids import RigidSolid
 
-MOST_NODES = 400_000
-"""Nodes of the surface up to which it goes into a report; it then has some 7 MB."""
+LARGEST = 6_000_000
+"""Bytes of the view in a report. Increments beyond them are left out."""
 
 HEX_FACES = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
 
-SCRIPT = "presentation/scene.js"
+SCRIPTS = ("presentation/section_cut.js", "presentation/scene.js")
+
+COLOURED = {
+    "vm": "von Mises stress, nodal averages, MPa",
+    "pressure": "contact pressure on the flexible spline, nodal averages, MPa",
+}
+"""Fields that the view shows, with the titles of their ranges of colours."""
+
+WORD, LETTERS = 2, 4.0 / 3.0
+"""Bytes of a stored value, and letters of a byte in the page."""
 
 
 @dataclass(frozen=True)
 class Scene:
-    """content : what the drawer reads;  limit : end of the colour range, MPa"""
+    """What the view shows.
+
+    content : what the drawer reads;  bodies, colours : names of what can be chosen
+    increments : that can be chosen;  left_out : other increments with fields
+    """
 
     content: dict[str, Any]
     bodies: list[str]
-    limit: float
+    colours: list[str]
+    increments: int
+    left_out: int
+
+
+@dataclass(frozen=True)
+class StoredSector:
+    """A modelled body of congruent sectors.
+
+    points : (n, 3) mm, of the first sector;  cells : (m, 8) of it;  sectors : that are modelled
+    """
+
+    points: np.ndarray
+    cells: np.ndarray
+    sectors: int
+
+    @property
+    def surface(self) -> np.ndarray:
+        """Triangles (k, 3) of the surface of the first sector."""
+        return sector_surface(self.points, self.cells)
 
 
 def sector_surface(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
@@ -56,57 +91,143 @@ def sector_surface(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 
 def scene(result: DriveData) -> Scene | None:
-    """The view of the last increment with fields; None without fields, or where it would be too
-    large.
+    """The view of increments with fields; None without fields, or where one increment is too large.
 
     Reads files only: one rank may call it alone.
     """
-    if not result.increments:
+    source = result.fields
+    if source is None or not source.increments:
         return None
-    stresses = {body: result.field("vm", body=body) for body in result.gears}
-    limit = colour_limit(*stresses.values())
-    bodies = [_body(result, body, stresses[body] / limit) for body in result.gears]
-    if sum(body.pop("nodes") for body in bodies) > MOST_NODES:
+    meshes = {body: _sector_mesh(result, source, body) for body in result.summary.bodies}
+    fields = {body: source.names(body, source.increments[-1]) for body in meshes}
+    values = sum(
+        mesh.sectors * len(mesh.points) * (3 + len(COLOURED.keys() & fields[body]))
+        for body, mesh in meshes.items()
+    )
+    count = int(LARGEST / (WORD * LETTERS * values))
+    if count < 1:
         return None
-    low = np.min([body["low"] for body in bodies], axis=0)
-    high = np.max([np.add(body["low"], body["span"]) for body in bodies], axis=0)
-    radius = float(np.abs([low[:2], high[:2]]).max())
-    content = {
-        "bodies": bodies,
-        "copies": result.summary.copies,
+    known = source.increments
+    chosen = np.unique(np.rint(np.linspace(len(known) - 1, 0, min(count, len(known)))).astype(int))
+    numbers = [known[k] for k in chosen]
+    solids = _solids(result, numbers[-1])
+    places = np.concatenate([mesh.points for mesh in meshes.values()])
+    low, high = float(places[:, 2].min()), float(places[:, 2].max())
+    middle = [0.0, 0.0, 0.5 * (low + high)]
+    content: dict[str, Any] = {
+        "bodies": [
+            *(_body(body, mesh, result.summary.copies) for body, mesh in meshes.items()),
+            *(_rigid_body(name, solid) for name, solid in solids.items()),
+        ],
+        "increments": [
+            {
+                "label": _label(result, number),
+                "turn": _cam_angle(result, number),
+                "bodies": [
+                    *(_fields(source, body, number, fields[body]) for body in meshes),
+                    *_solid_points(result, number, list(solids)),
+                ],
+            }
+            for number in numbers
+        ],
+        "colours": [
+            {"title": title, "limit": _limit(source, list(meshes), name, numbers[-1])}
+            for name, title in COLOURED.items()
+        ],
         "plane": result.is_plane,
-        "radius": radius,
-        "centre": [0.0, 0.0, float(0.5 * (low[2] + high[2]))],
+        "radius": float(np.linalg.norm(places - middle, axis=1).max()),
+        "moved": max(_largest_shift(source, body, numbers[-1]) for body in meshes),
+        "ends": [low, high],
     }
-    return Scene(content, [body.replace("_", " ") for body in result.gears], limit)
+    names = [body["name"] for body in content["bodies"]]
+    return Scene(content, names, list(COLOURED.values()), len(numbers), len(known) - len(numbers))
 
 
-def _body(result: DriveData, body: GearName, values: np.ndarray) -> dict[str, Any]:
-    """Surface of a body in the form that the drawer reads."""
-    points, cells = result.mesh(body)
-    drive = result.summary.design.drive
-    teeth = drive.teeth_rg if body == "ring_gear" else drive.teeth_fs
-    per_sector = result.summary.bodies[body].elements_whole // teeth
-    sectors = len(cells) // per_sector
-    stride = len(points) // sectors
-    triangles = sector_surface(points[:stride], cells[:per_sector])
-    used, corners = np.unique(triangles, return_inverse=True)
-    chosen = (used + stride * np.arange(sectors)[:, None]).ravel()
-    place, shift = points[chosen], result.field("displacement", body=body)[chosen]
-    low, span = place.min(axis=0), np.maximum(np.ptp(place, axis=0), 1e-9)
-    reach = np.maximum(np.abs(shift).max(axis=0), 1e-9)
+def _sector_mesh(result: DriveData, source: FieldSource, body: str) -> StoredSector:
+    points, cells = source.mesh(body)
+    drive, sizes = result.summary.design.drive, result.summary.bodies[body]
+    teeth = drive.teeth_rg if body in ("ring_gear", "housing") else drive.teeth_fs
+    sectors = sizes.elements * teeth // sizes.elements_whole
+    return StoredSector(points[: len(points) // sectors], cells[: len(cells) // sectors], sectors)
+
+
+def _body(name: str, mesh: StoredSector, copies: int) -> dict[str, Any]:
     return {
-        "nodes": len(chosen),
-        "sectors": sectors,
-        "stride": len(used),
-        "low": low.tolist(),
-        "span": span.tolist(),
-        "reach": reach.tolist(),
-        "points": _text(np.rint((place - low) / span * 65535.0), "<u2"),
-        "shifts": _text(np.rint(shift / reach * 32767.0), "<i2"),
-        "values": _text(np.rint(np.clip(values[chosen], 0.0, 1.0) * 255.0), "<u1"),
-        "faces": _text(corners.reshape(-1), "<u4"),
+        "name": name.replace("_", " "),
+        "sectors": mesh.sectors,
+        "copies": copies,
+        "points": _text(mesh.points, "<f4"),
+        "faces": _text(mesh.surface, "<u4"),
+        "cells": _text(mesh.cells, "<u4"),
     }
+
+
+def _rigid_body(name: str, solid: RigidSolid) -> dict[str, Any]:
+    return {
+        "name": name,
+        "sectors": 1,
+        "copies": 1,
+        "faces": _text(solid.triangles, "<u4"),
+        "cells": _text(solid.cells, "<u4"),
+    }
+
+
+def _limit(source: FieldSource, bodies: list[str], name: str, number: int) -> float:
+    """End of the range of colours of a field at an increment, of the nodes where it is not 0."""
+    having = [body for body in bodies if name in source.names(body, number)]
+    values = np.concatenate([source.read(body, name, number) for body in having])
+    return colour_limit(values[values > 0.0]) if (values > 0.0).any() else 1.0
+
+
+def _largest_shift(source: FieldSource, body: str, number: int) -> float:
+    shift = source.read(body, "displacement", number)
+    return float(np.linalg.norm(shift, axis=1).max())
+
+
+def _fields(source: FieldSource, body: str, number: int, names: tuple[str, ...]) -> dict[str, Any]:
+    """Displacements and coloured fields of a body; null for a field that it does not have."""
+    shift = source.read(body, "displacement", number)
+    reach = np.maximum(np.abs(shift).max(axis=0), 1e-9)
+    values: list[dict[str, Any] | None] = []
+    for name in COLOURED:
+        if name not in names:
+            values.append(None)
+            continue
+        field = source.read(body, name, number)
+        most = max(float(field.max()), 1e-9)
+        stored = np.rint(np.clip(field / most, 0.0, 1.0) * 65535.0)
+        values.append({"most": most, "values": _text(stored, "<u2")})
+    shifts = _text(np.rint(shift / reach * 32767.0), "<i2")
+    return {"reach": reach.tolist(), "shifts": shifts, "values": values}
+
+
+def _solids(result: DriveData, number: int) -> dict[str, RigidSolid]:
+    """Rigid bodies by name, in the frame of the cam."""
+    design = result.summary.design
+    balls = ball_solids(design, result.balls, number - 1) if result.balls else None
+    return {"wave generator": cam_solid(design)} | ({"balls": balls} if balls else {})
+
+
+def _solid_points(result: DriveData, number: int, names: list[str]) -> list[dict[str, Any] | None]:
+    """Places of the rigid bodies; null while the cam is not yet in place."""
+    if result.history["step"][number - 1] < Stage.ENGAGE:
+        return [None] * len(names)
+    solids, angle = _solids(result, number), _cam_angle(result, number)
+    return [
+        {"points": _text(turned(solids[name], angle), "<f4")} if name in solids else None
+        for name in names
+    ]
+
+
+def _cam_angle(result: DriveData, number: int) -> float:
+    """Angle (rad) of the cam in the fields of an increment, from 1."""
+    angle = float(np.radians(result.history["wg_angle_deg"][number - 1]))
+    return result.summary.design.kinematics.in_frame_of_result(angle, angle)
+
+
+def _label(result: DriveData, number: int) -> str:
+    angle = result.history["wg_angle_deg"][number - 1]
+    return f"increment {number}, wave generator at {angle:.4g}°"
 
 
 def _text(array: np.ndarray, kind: str) -> str:

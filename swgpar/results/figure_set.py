@@ -13,6 +13,7 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from mpi4py import MPI
 
 from swgpar.errors import OutputError, SwgparError
@@ -128,7 +129,7 @@ def plot_line(axes: Axes, x: ArrayLike, y: ArrayLike, style: str = "-", **option
     style : of matplotlib;  options : of the line
     """
     (line,) = axes.plot(x, y, style, **options)
-    count = len(line.get_xydata())
+    count = np.size(line.get_xdata())
     if count < FEWEST:
         line.set_linestyle("none")
     if count < FEW and line.get_marker() == "None":
