@@ -17,6 +17,7 @@ from swgpar.version import __version__
 
 if TYPE_CHECKING:
     from swgpar.api import (
+        Session,
         check,
         export,
         load_design,
@@ -51,6 +52,7 @@ _MODULES = {
     "load_design": "api",
     "load_mesh": "api",
     "run": "api",
+    "Session": "api",
     "open_result": "api",
     "rate": "api",
     "study": "studies.study",
@@ -85,6 +87,7 @@ __all__ = [
     "OutOfMemoryError",
     "OutputError",
     "RatingSheet",
+    "Session",
     "SwgparError",
     "StudyResult",
     "TimeLimitError",

@@ -72,6 +72,9 @@ class NewModels(ModelSource):
         return False
 
 
+MOST_STATES = 12
+"""Loaded states of a model that are kept, the last ones."""
+
 NEW_MODELS = NewModels()
 """Of a run that shares none."""
 
@@ -93,14 +96,18 @@ class LoadedDrive:
 
 
 class LoadedDrives(ModelSource):
-    """The models of one drive on several meshes, with the loaded states that they have reached.
+    """The models of drives on several meshes, with the loaded states that they have reached.
 
     Designs share a model where they differ in the load and in what is asked of the states under it
     only (`DriveDesign.model_keys`). Without friction an equilibrium does not depend on the path to
     it: a run starts with that of the nearest torque.
+
+    most : models that are kept, those that were used last; None for all
+    keeps_windows : whether models keep meshes and factors of windows for further loads
     """
 
-    def __init__(self) -> None:
+    def __init__(self, most: int | None = None, *, keeps_windows: bool = False) -> None:
+        self.most, self.keeps_windows = most, keeps_windows
         self._free: dict[str, LoadedDrive] = {}
         self._taken: dict[str, LoadedDrive] = {}
 
@@ -109,6 +116,7 @@ class LoadedDrives(ModelSource):
         drive = self._free.pop(key, None)
         if drive is None:
             model = build_drive_model(design, recipe, comm=comm)
+            model.keeps_windows = self.keeps_windows
             drive = LoadedDrive(to_json(design.model_keys).decode(), model)
         else:
             drive.model = replace(drive.model, design=design)
@@ -121,7 +129,9 @@ class LoadedDrives(ModelSource):
     def give_back(self, model: DriveModel) -> None:
         model.release_windows()
         key = self._key(model)
-        self._free[key] = self._taken.pop(key)
+        self._free[key] = self._taken.pop(key)  # the last one of those that are free
+        while self.most is not None and len(self._free) > self.most:
+            self._free.pop(next(iter(self._free))).model.destroy()
 
     def drop(self, model: DriveModel) -> None:
         self._taken.pop(self._key(model))
@@ -132,7 +142,7 @@ class LoadedDrives(ModelSource):
             drive = self._taken[self._key(stepper.model)]
             state = stepper.load_state
             others = [one for one in drive.loaded if one[0].torque != state.torque]
-            drive.loaded = [*others, (state, stepper.problem.x.copy())]
+            drive.loaded = [*others, (state, stepper.problem.x.copy())][-MOST_STATES:]
 
     def keep_period(self, stepper: LoadStepper) -> None:
         if not stepper.design.contact.friction:

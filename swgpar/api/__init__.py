@@ -9,8 +9,10 @@ waiting: `mpirun -n 2 python -m mpi4py script.py` ends all ranks then.
 from swgpar.api.designs import check, mesh, new
 from swgpar.api.ratings import rate
 from swgpar.api.runs import export, load_design, load_mesh, open_result, run, save_report
+from swgpar.api.session import Session
 
 __all__ = [
+    "Session",
     "check",
     "export",
     "load_design",

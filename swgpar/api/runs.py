@@ -26,6 +26,7 @@ from swgpar.systems import Result, system_of_section, system_of_table
 
 if TYPE_CHECKING:
     from swgpar.presentation.drive_result import DriveResult
+    from swgpar.systems.drive import Drives
 
 DesignLike = Design | str | Path | Mapping[str, Any]
 """A design, the path of its file, or the content of one."""
@@ -158,20 +159,43 @@ def run(
     >>> result = swgpar.run("drivers/plane_half_turn.toml")
     >>> result.summary["root.s1"].value, result.history["fs_s1"].max()
     """
-    folder = None if out is None else given_path("out", out)
-    terminal = log.console.is_terminal if progress is None else progress
-    given = RunOptions(
-        folder,
+    return run_sharing(
+        None,
+        design,
+        mesh,
+        out,
         accuracy=accuracy,
         plain=plain,
         restart=restart,
         overwrite=overwrite,
+        progress=progress,
         comm=comm,
-        terminal=terminal,
     )
+
+
+def run_sharing(
+    drives: Drives | None,
+    design: DesignLike,
+    mesh: MeshLike | None,
+    out: str | Path | None,
+    *,
+    progress: bool | None,
+    comm: MPI.Comm,
+    **asked: Any,
+) -> Result:
+    """Run a design, a drive by an adapter whose runs share models; collective.
+
+    drives : None where each run builds its own models
+    asked : further fields of `RunOptions`; the other parameters are those of `run`
+    """
+    folder = None if out is None else given_path("out", out)
+    terminal = log.console.is_terminal if progress is None else progress
+    given = RunOptions(folder, comm=comm, terminal=terminal, **asked)
     checked, options = on_all(comm, lambda: _checked(design, mesh, given))
     with log.session(comm, terminal=terminal):
         system = system_of_section(checked.system)
+        if drives is not None and isinstance(checked, DriveDesign):
+            system = drives
         result = system.run(checked, options)
         release_unused(comm)  # runs in a loop would fill the memory
         if folder is not None:

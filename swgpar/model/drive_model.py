@@ -70,6 +70,8 @@ class DriveModel:
     another mesh of the flexible spline
     phases : wall seconds
     window_meshes : what windows on a mesh share, by gear, recipe and number of sectors
+    keeps_windows : whether these and their factors stay until the model is destroyed, for the
+    windows of its next load state
     """
 
     design: DriveDesign
@@ -83,15 +85,20 @@ class DriveModel:
     rigid_contacts: RigidContacts
     phases: PhaseTimes
     window_meshes: dict[tuple[str, MeshRecipe, int], WindowMesh] = field(default_factory=dict)
+    keeps_windows: bool = False
 
     def destroy(self) -> None:
         """Release the solver and its factor; collective. PETSc's objects refer to each other, so
         Python does not."""
+        self.keeps_windows = False
         self.release_windows()
         self.solver.destroy()
 
     def release_windows(self, kept: MeshRecipe | None = None) -> None:
-        """Release the factors of windows on all meshes but that of one recipe; collective."""
+        """Release the factors of windows on all meshes but that of one recipe, unless the model
+        keeps them; collective."""
+        if self.keeps_windows:
+            return
         for (_, recipe, _), shared in self.window_meshes.items():
             if recipe != kept:
                 shared.release()
@@ -100,7 +107,10 @@ class DriveModel:
         """Take over what windows of a model of the same drive on another mesh share.
 
         Their last tangents are not used: solves with factors of their own take fewer iterations.
+        A model that keeps its windows has its own.
         """
+        if self.keeps_windows:
+            return
         for shared in other.window_meshes.values():
             shared.factor_angle = None
         self.window_meshes |= other.window_meshes

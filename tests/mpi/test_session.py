@@ -1,0 +1,80 @@
+"""Runs of a session share models, windows and states, and find what each finds alone."""
+
+from __future__ import annotations
+
+import pytest
+from mpi4py import MPI
+from pytest_mpi import parallel_assert
+
+import swgpar
+from support.paths import RECIPE
+from support.stepping import small
+from swgpar.analysis import model_sources
+from swgpar.systems import Result
+
+WORLD = MPI.COMM_WORLD
+ALONE = ("steps.rotation=0", "output.fields=false", "output.root_stress=true")
+CHANGES = ("load.torque=0.2", "load.torque=0.3", "flexible_spline.rim=0.45")
+"""A first run, one under another load, and one of another drive."""
+NAMES = ("root.s1", "root.s1_on_mesh")
+SOLVED = 1e-6
+"""Relative differences that solves leave: Newton's iteration of the drive ends at 1e-6 of the
+contact force, that of windows at 1e-4, and both are quadratic there."""
+REPEATED = 1e-12
+"""The same of a run that shares nothing."""
+
+
+@pytest.fixture
+def built(monkeypatch: pytest.MonkeyPatch) -> list[None]:
+    """One entry for each model that is built."""
+    build, count = model_sources.build_drive_model, []
+    monkeypatch.setattr(
+        model_sources,
+        "build_drive_model",
+        lambda *keys, **more: count.append(None) or build(*keys, **more),
+    )
+    return count
+
+
+def values(result: Result) -> dict[str, float]:
+    answers = {name: result.summary[name].value for name in NAMES}
+    return answers | {"torque": float(result.history["wg_torque_Nmm"][-1])}
+
+
+@pytest.mark.parallel([1, 2])
+def test_runs_of_a_session_find_what_each_finds_alone(built: list[None]) -> None:
+    with swgpar.Session() as session:
+        for change in CHANGES:
+            design = small("plane", *ALONE, change)
+            before = len(built)
+            shared = values(session.run(design, RECIPE))
+            models = len(built) - before
+            alone = values(swgpar.run(design, RECIPE))
+            loaded = change == "load.torque=0.3"
+            parallel_assert((models == 0) == loaded, f"{models} models for {change}")
+            for name, value in alone.items():
+                allowed = SOLVED if loaded else REPEATED
+                near = shared[name] == pytest.approx(value, rel=allowed)
+                parallel_assert(near, f"{name}, {change}: {shared[name]} and {value}")
+
+
+def test_a_session_keeps_the_models_that_were_used_last(built: list[None]) -> None:
+    first, second = (
+        small("plane", *ALONE, "output.root_stress=false", f"flexible_spline.rim={rim}")
+        for rim in (0.45, 0.4)
+    )
+    with swgpar.Session(models=1) as session:
+        counts = []
+        for design in (first, first, second, first):
+            session.run(design, RECIPE)
+            counts.append(len(built))
+    assert counts == [1, 1, 2, 3]
+    session.run(first, RECIPE)  # after its end it begins anew
+    assert len(built) == 4
+    session.close()
+
+
+@pytest.mark.parametrize("models", [0, 101, "two"])
+def test_the_number_of_models_is_checked(models: object) -> None:
+    with pytest.raises(swgpar.InputError, match="models = "):
+        swgpar.Session(models)  # type: ignore[arg-type]
