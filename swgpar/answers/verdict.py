@@ -83,9 +83,13 @@ class Verdict:
         return answer.remark or "it grows with every finer mesh"
 
 
+def counted(verdicts: Iterable[Verdict]) -> list[Verdict]:
+    """The verdicts that have a limit or are about strength: those that judge the whole."""
+    return [one for one in verdicts if one.limit is not None or one.of_strength]
+
+
 def worst(verdicts: Iterable[Verdict]) -> Judgement:
-    """The worst judgement of the verdicts that have a limit or are about strength; `NOT_JUDGED`
-    without any."""
+    """The worst judgement of `counted` verdicts; `NOT_JUDGED` without any."""
     order = list(Judgement)
-    counted = [one.judgement for one in verdicts if one.limit is not None or one.of_strength]
-    return max(counted, key=order.index, default=Judgement.NOT_JUDGED)
+    judgements = [one.judgement for one in counted(verdicts)]
+    return max(judgements, key=order.index, default=Judgement.NOT_JUDGED)

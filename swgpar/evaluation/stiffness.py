@@ -106,7 +106,8 @@ class TorsionalStiffness(StiffnessValues, AnswerGroup):
         for one in super().answers():
             name = one.name.partition(".")[2]
             if one.value is not None:
-                spread = f"spread over the positions {getattr(self.spread, name):.2g}"
+                size = float(f"{getattr(self.spread, name):.2g}")  # shown without a power of ten
+                spread = f"spread over the positions {size:g}"
                 one = with_error(replace(one, remark=spread), (self.mesh_error or {}).get(name))
             yield one
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from swgpar.answers.verdict import Judgement
 from swgpar.input.toml_file import to_toml
-from swgpar.rating.sheet import RatingSheet
+from swgpar.rating.sheet import RatingSheet, RunEntry
 from swgpar.rating.texts import (
     amount_text,
     counts_text,
@@ -42,14 +42,8 @@ def rating_page(sheet: RatingSheet) -> bytes:
         for one in sheet.rated
     ]
     runs = Table(
-        ["run", "torque (N·m)", "", "time (s)", "remark", "folder"],
-        [
-            TableRow(
-                [run.name, run.torque, run.status, run.wall_s, run_text(run), run.folder],
-                bad=run.status in ("failed", "refused"),
-            )
-            for run in sheet.runs
-        ],
+        ["run", "torque", "status", "time", "remark", "folder"],
+        [TableRow(_run_cells(run), bad=run.status in ("failed", "refused")) for run in sheet.runs],
     )
     return page(
         "rating/rating.html.j2",
@@ -62,3 +56,9 @@ def rating_page(sheet: RatingSheet) -> bytes:
         inputs=to_toml(sheet.design),
         version=__version__,
     )
+
+
+def _run_cells(run: RunEntry) -> list[str]:
+    torque = "" if run.torque is None else f"{run.torque:g} N·m"
+    time = "" if run.wall_s is None else f"{run.wall_s:.3g} s"
+    return [run.name, torque, run.status, time, run_text(run), run.folder]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from swgpar.answers.verdict import Judgement, Verdict
+from swgpar.answers.verdict import Judgement, Verdict, counted
 from swgpar.presentation.answer_text import error_text, value_text
 from swgpar.rating.sheet import RatingSheet, RunEntry
 from swgpar.results.page import number
@@ -43,15 +43,16 @@ def further_text(verdict: Verdict) -> str:
 
 
 def headline_text(sheet: RatingSheet) -> str:
-    """The headline in a sentence."""
+    """The headline in a sentence, with the rows that it comes from."""
     words = {
-        Judgement.PASSES: "The drive passes.",
-        Judgement.NOT_JUDGED: "The drive is not judged: a verdict on its strength, or one that is "
-        "required, is missing.",
-        Judgement.WITHIN_ERROR: "The drive is within its errors of a limit.",
-        Judgement.FAILS: "The drive fails.",
-    }
-    return words[sheet.headline]
+        Judgement.PASSES: "The drive passes",
+        Judgement.NOT_JUDGED: "The drive is not judged",
+        Judgement.WITHIN_ERROR: "The drive is within its errors of a limit",
+        Judgement.FAILS: "The drive fails",
+    }[sheet.headline]
+    rows = [one.name for one in counted(sheet.verdicts) if one.judgement == sheet.headline]
+    named = f": {', '.join(rows)}" if rows and sheet.headline != Judgement.PASSES else ""
+    return f"{words}{named}."
 
 
 def counts_text(sheet: RatingSheet) -> str:

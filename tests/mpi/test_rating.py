@@ -59,7 +59,7 @@ def test_a_rating_from_the_design_to_its_files(tmp_path: Path) -> None:
     table = read_columns(out / "rating.csv")
     parallel_assert(content["headline"] == "fails")
     parallel_assert([row["row"] for row in content["rows"]] == table["row"].tolist())
-    parallel_assert("The drive fails." in (out / "rating.html").read_text(encoding="utf-8"))
+    parallel_assert("The drive fails: " in (out / "rating.html").read_text(encoding="utf-8"))
 
     alone = swgpar.rate(design(), tmp_path / f"alone_{WORLD.rank}", mesh=RECIPE, comm=MPI.COMM_SELF)
     parallel_assert([same(*each) for each in zip(sheet.rows, alone.rows)] == [True] * len(found))

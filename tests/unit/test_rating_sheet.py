@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from swgpar.answers.verdict import Limit, Sense, Verdict
 from swgpar.rating import terminal
 from swgpar.rating.page import rating_page
 from swgpar.rating.sheet import RatedVerdict, RatingSheet, RunEntry
+from swgpar.rating.texts import headline_text
 from swgpar.results.atomic import to_json
 
 STRESS = Answer("largest.fs_vm", 514.8512, "MPa", "stress", error=4.1, place="tooth root")
@@ -45,7 +47,28 @@ def test_the_terminal_shows_numbers_whole(
     assert all(len(line) <= width for line in shown.splitlines())
     for whole in ("514.9 MPa", "±\u00a04.1", "at most 1050", "4.0668 arc minutes"):
         assert whole in shown
-    assert "The drive is not judged" in shown
+    assert "The drive is not judged: life of the bearing." in " ".join(shown.split())
+
+
+def test_the_headline_names_the_rows_that_it_comes_from(sheet: RatingSheet) -> None:
+    limit = Limit(500.0, Sense.AT_MOST, "here")
+    below = Verdict("below", STRESS, LIMIT)
+    rows = {
+        "The drive passes.": (below,),
+        "The drive is within its errors of a limit: near.": (
+            below,
+            Verdict("near", STRESS, Limit(517.0, Sense.AT_MOST, "here")),
+        ),
+        "The drive fails: bad, too.": (
+            below,
+            Verdict("bad", STRESS, limit),
+            Verdict("free", STRESS, None),
+            Verdict("too", STRESS, limit),
+        ),
+    }
+    for words, verdicts in rows.items():
+        rated = tuple(RatedVerdict(one, "rated torque") for one in verdicts)
+        assert headline_text(replace(sheet, rated=rated)) == words
 
 
 def test_the_page_says_what_the_table_says(sheet: RatingSheet) -> None:

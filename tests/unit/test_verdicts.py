@@ -206,6 +206,39 @@ def test_a_row_changes_where_its_limit_is_crossed(name: str) -> None:
         assert judged(name, design, summary(answer, limit + side, 2.0 * step)) == WITHIN
 
 
+ELSEWHERE = {
+    "fatigue of teeth and rim",
+    "fatigue of wall",
+    "life of the flexible spline",
+    "static safety of the bearing",
+    "life of the bearing",
+    "sliding of bolts",
+    "gaping of bolts",
+    "ratcheting",
+    "hysteresis",
+    "clearance of the rigid teeth in the dynamic spline",
+    "resolution",
+}
+"""Rows whose limits are crossed in tests of their own below."""
+
+
+def test_every_row_has_its_limit_crossed() -> None:
+    designs = [rated(**with_bearing()), rated(**with_bolts()), pancake()]
+    names = {one.name for design in designs for one in rating_rows(design)}
+    assert names == CROSSED.keys() | ELSEWHERE | {"bearing"}  # the last one: there is none
+    assert row("bearing", rated()).limit is None
+
+
+def test_clearance_in_the_second_ring_gear() -> None:
+    name, answer = "clearance of the rigid teeth in the dynamic spline", "clearance.dynamic_spline"
+    design = pancake()
+    limit = row(name, design).limit
+    assert limit is not None
+    for share, judgement in ((1.01, FAILS), (0.99, PASSES)):
+        found = summary(answer, share * limit.value)
+        assert limit.value < 0.0 and judged(name, design, found) == judgement
+
+
 @pytest.mark.parametrize("part", ["teeth and rim", "wall"])
 @pytest.mark.parametrize(
     ("safety", "judgement"), [(1.49, FAILS), (1.51, PASSES)], ids=["below", "above"]
@@ -259,6 +292,11 @@ def test_static_safety_and_life_of_the_bearing() -> None:
 def with_bolts(**more: Any) -> dict[str, Any]:
     cup = swgpar.load_design(DESIGN).model_dump(exclude_unset=True)["cup"]
     return {"cup": cup | bolted(8) | more, "deviations": None, "frequencies": None}
+
+
+def pancake() -> DriveDesign:
+    table = read_toml(DRIVERS / "pancake.toml")
+    return load_rated_design(table | {"rating": RATING, "fatigue": {}, "losses": {}})
 
 
 PRELOADED = {"bolt_preload": 1000.0, "joint_friction": 0.15}
@@ -447,9 +485,7 @@ def test_a_load_from_one_side_has_no_period_and_the_sheet_says_it() -> None:
 
 
 def test_a_pancake_drive_keeps_its_period_without_what_it_cannot_have() -> None:
-    table = read_toml(DRIVERS / "pancake.toml")
-    rating = {"rating": RATING, "fatigue": {}, "losses": {}}
-    plan = plan_runs(load_rated_design(table | rating))
+    plan = plan_runs(pancake())
     runs = {run.name: run for run in plan.runs}
     first = runs["rated torque"]
     assert first.design is not None and first.design.steps.samples and not first.design.losses
