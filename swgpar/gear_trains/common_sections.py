@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Self
 
 from annotated_types import Gt
 
-from swgpar.gear_trains.published import made_of_changed
+from swgpar.gear_trains.published import SECTIONS, made_of_changed
 from swgpar.input.design import Design
 from swgpar.input.quantities import Section, not_negative, quantity
 from swgpar.input.require import require
@@ -53,12 +53,18 @@ class TrainDesign(Design):
     system: ClassVar[str] = "gear_train"
 
     published: dict[str, Any] = quantity({}, text="published values by quantity")
+    measured: dict[str, Any] = quantity({}, text="measured values by quantity")
     output: TrainOutput = TrainOutput()
 
     def with_values(self, values: Overrides) -> Self:
-        """As that of `Design`. Published values that do not fit the new design are left out."""
+        """As that of `Design`. Published and measured values that do not fit the new design
+        are left out."""
         table = self.model_dump(exclude_unset=True)
         return made_of_changed(self._maker, table, apply_overrides(table, values))
+
+    def to_compare(self) -> dict[str, dict[str, Any]]:
+        """Values to compare by section: published, measured."""
+        return {name: getattr(self, name) for name in SECTIONS}
 
     def remarks(self) -> list[str]:
         """Sentences about what is allowed and may not be meant."""

@@ -53,12 +53,15 @@ def _print_answers(summary: TrainSummary) -> None:
 
 
 def _print_compared(rows: list[Comparison]) -> None:
-    title = "published against computed"
+    title = "published and measured against computed"
     table = terminal.Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    for name in ("quantity", "published", "computed", "difference"):
-        table.add_column(name, justify="left" if name == "quantity" else "right", no_wrap=True)
+    for name in ("quantity", "source", "value", "computed", "difference"):
+        left = name in ("quantity", "source")
+        table.add_column(name, justify="left" if left else "right", no_wrap=True)
     for row in rows:
         percent = row.difference_percent
         numbers = f"{row.published:.6g}", f"{row.computed:.6g}"
-        table.add_row(row.quantity, *numbers, "" if percent is None else f"{percent:+.2f} %")
+        table.add_row(
+            row.quantity, row.source, *numbers, "" if percent is None else f"{percent:+.2f} %"
+        )
     console.print(table)

@@ -187,6 +187,8 @@ def read(out: Path, stored: StoredSummary, summary: TrainSummary) -> TrainResult
 def _read_compared(path: Path) -> list[Comparison]:
     _, rows = read_rows(path)
     return [
-        Comparison(name, meaning, float(old), float(new), float(percent) if percent else None)
-        for name, meaning, old, new, percent in rows
+        Comparison(
+            name, meaning, float(old), float(new), float(percent) if percent else None, *source
+        )
+        for name, meaning, old, new, percent, *source in rows  # no source in earlier versions
     ]

@@ -82,7 +82,9 @@ def make_train(table: dict[str, Any]) -> TrainDesign:
     model = MODELS[name]
     design = validate(model.Design, table).made_by(make_train)
     model.check_fit(design)
-    check_published(design.published, model.quantities(design))
+    known = model.quantities(design)
+    for section, given in design.to_compare().items():
+        check_published(given, known, section)
     return design
 
 
@@ -116,7 +118,11 @@ def run_train(design: TrainDesign, options: RunOptions) -> TrainResult:
         computed.history,
         computed.tables,
         TrainSummary(values, comm.size, _versions(), seconds, computed.task_s, design, known),
-        compare(design.published, values, known),
+        [
+            row
+            for section, given in design.to_compare().items()
+            for row in compare(given, values, known, section)
+        ],
         None if folder is None else folder.absolute(),
     )
     if folder is not None:

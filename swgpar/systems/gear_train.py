@@ -11,7 +11,7 @@ from typing import Any
 from mpi4py import MPI
 
 from swgpar.gear_trains.common_sections import TrainDesign
-from swgpar.gear_trains.published import made_of_changed, numbered
+from swgpar.gear_trains.published import SECTIONS, made_of_changed, numbered
 from swgpar.gear_trains.result import TrainResult
 from swgpar.gear_trains.train import (
     make_train,
@@ -67,9 +67,9 @@ class GearTrains(System[TrainDesign, TrainResult]):
         return design.output.figures
 
     def without_output(self, table: dict[str, Any]) -> dict[str, Any]:
-        # published values of the file belong to its own design, and may name what a varied one does
-        # not compute
-        table = {key: value for key, value in table.items() if key != "published"}
+        # values to compare of the file belong to its own design, and may name what a varied one
+        # does not compute
+        table = {key: value for key, value in table.items() if key not in SECTIONS}
         return apply_overrides(table, ["output.figures=false"])
 
     def quantities(self, design: TrainDesign) -> dict[str, Quantity]:
@@ -95,7 +95,7 @@ class GearTrains(System[TrainDesign, TrainResult]):
         return 0
 
     def identity(self, design: TrainDesign, recipe: MeshRecipe | None) -> dict[str, Any]:
-        content = design.model_dump(exclude={"output": True, "published": True})
+        content = design.model_dump(exclude={"output": True, **dict.fromkeys(SECTIONS, True)})
         return {"identity": hashlib.sha256(to_json(content)).hexdigest()}
 
     def measure(self, result: TrainResult) -> Measured:

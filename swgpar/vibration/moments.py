@@ -80,9 +80,10 @@ def largest_moments(moments: HasMoments, names: Iterable[str]) -> dict[str, floa
 def percent_errors(
     linearised: HasMoments, simulated: HasMoments, names: Sequence[str]
 ) -> dict[str, float]:
-    """Errors of linearised means and deviations, averaged over the second half of the time."""
+    """Errors of linearised means and deviations, averaged over the second half of the time, of the
+    first values, which have names."""
     errors: dict[str, float] = {}
-    settled = slice(len(linearised.mean) // 2, None)
+    settled = slice(len(linearised.mean) // 2, None), slice(len(names))
     for kind in ("mean", "deviation"):
         ours, theirs = (getattr(one, kind)[settled].mean(axis=0) for one in (linearised, simulated))
         percent = (100.0 * (ours / theirs - 1.0)).tolist()

@@ -71,6 +71,22 @@ REFUSED = [
         'published.overloaded_static = "many" is not one number',
     ),
     (
+        CASCADE,
+        "measured.static_B_12=1",
+        "measured.static_B_12 is not a quantity of this gear train: did you mean",
+    ),
+    (
+        CASCADE,
+        "g3_g4.gaps_B=[0.1]",
+        "g3_g4.gaps_B = [0.1] is out of range: allowed no or 2 numbers, one for each mesh",
+    ),
+    (
+        CASCADE,
+        "g3_g4.gaps_A=[0.1, 5]",
+        "g3_g4.gaps_A = 5 is out of range: allowed 0 to 4.71239 mm (half of the pitch",
+    ),
+    (CASCADE, "population.direction=C", 'population.direction = "C" is not available: allowed'),
+    (
         GEAR_PAIR,
         "gear_1.radius=0",
         "gear_1.radius = 0 is out of range: allowed above 0 to 1000000 mm",
@@ -368,6 +384,19 @@ def test_published_beside_computed() -> None:
     rows = compare(published, {"share": [0.55, 0.25], "count": 1.0}, known)
     assert [row.quantity for row in rows] == ["share[1]", "share[2]", "count"]
     assert [row.difference_percent for row in rows] == [pytest.approx(10.0), 0.0, None]
+    assert {row.source for row in rows} == {"published"}
+
+
+def test_measured_beside_published() -> None:
+    """Both kinds of values of one quantity; those that do not fit a changed design are left out."""
+    design = load_design(CASCADE)
+    assert {"static_B_23"} <= design.measured.keys() & design.published.keys()
+    changed = design.with_values(["load.forces=[23.0]"])
+    assert changed.measured.keys() == {"static_B_23", "static_A_23"}
+    given = ["load.forces=[14.0]", "load.peak=14", f"measured.dynamic_B_14={[0.125] * 8}"]
+    assert load_design(CASCADE, given).measured == {"dynamic_B_14": [0.125] * 8}
+    with pytest.raises(InputError, match="measured.static_B_23 = 1 is not a list of 8 numbers"):
+        load_design(CASCADE, ["measured.static_B_23=1"])
 
 
 def test_streams_are_independent_of_the_order_of_their_use() -> None:

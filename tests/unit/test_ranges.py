@@ -41,7 +41,7 @@ def numbers(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, An
             yield from numbers(value, f"{above}{name}.")
         elif (
             isinstance(value, float) or (isinstance(value, list) and value)
-        ) and not above.startswith("published"):
+        ) and not above.startswith(("published", "measured")):
             yield f"{above}{name}", value
 
 

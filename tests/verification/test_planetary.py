@@ -24,7 +24,7 @@ from swgpar.gear_trains.planetary.model import (
     ring_index,
     ring_pitch_radius,
 )
-from swgpar.gear_trains.planetary.monitored import MONITORED_NAMES, monitored
+from swgpar.gear_trains.planetary.monitored import MONITORED_NAMES, RECORDED, monitored
 from swgpar.gear_trains.planetary.monte_carlo import simulate
 from swgpar.gear_trains.planetary.time_stepping import ModalStates, TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
@@ -33,6 +33,9 @@ from swgpar.vibration.dominant_cycles import dominant_cycles
 from swgpar.vibration.sampling import random_stream
 
 DRIVER = DRIVERS / "planetary.toml"
+
+NAMED = slice(len(MONITORED_NAMES))
+"""The monitored ones of the recorded quantities: none of them is zero by symmetry."""
 
 
 @pytest.fixture(scope="module")
@@ -165,12 +168,12 @@ def test_elements_of_the_ring(turned_by: float) -> None:
         load = train.torque_vector * torque + w.T @ (k * flanks * train.half_backlash)
         q = np.linalg.solve(np.diag(train.stiffness) + w.T @ (k[:, None] * w), load)
         rows, added = monitored(train, steps, step, flanks)
-        values = dict(zip(MONITORED_NAMES, rows @ q + added, strict=True))
+        values = dict(zip(RECORDED, rows @ q + added, strict=True))
         # the deflection of a mesh is its force over its own stiffness, and the backlash
         own = (k * (w @ q - flanks * train.half_backlash) / train.mesh.at(t))[3]
         assert values["ring_mesh_deflection"] == pytest.approx(own - train.half_backlash)
         del values["ring_node_tangential"]  # of another node
-        found.append(list(values.values()))
+        found.append([values[name] for name in MONITORED_NAMES if name in values])
     for values in found[:2]:
         assert values == pytest.approx(found[2], rel=1e-6)
 
@@ -379,7 +382,7 @@ def test_load_reversal(small: PlanetaryDesign) -> None:
         for step in range(1, count + 1):
             torques = np.array([[torque_at((step - 1) * h) + torque_at(step * h)]])
             lost += steps.simulate(step - 1, states, torques, flanks)
-        values, _ = monitored(train, steps, count, flanks)
+        values = monitored(train, steps, count, flanks)[0][NAMED]
         off.append(np.abs(values @ states.q[:, 0] / (values @ expected) - 1.0).max())
     assert lost > count / 4
     assert off[-1] < 0.01
@@ -458,9 +461,9 @@ def test_covariance_by_whole_matrices(small: PlanetaryDesign) -> None:
         added = np.vstack([of_noise, wind.noise_root])
         spread = transition @ spread @ transition.T + added @ added.T
     rows, _ = monitored(train, steps, count, -np.ones(6))
-    values = np.linalg.solve(train.shapes.T, rows.T).T
+    values = np.linalg.solve(train.shapes.T, rows[NAMED].T).T
     expected = np.sqrt(np.einsum("pi,ij,pj->p", values, spread[:n, :n], values))
-    np.testing.assert_allclose(found.deviation[-1], expected, rtol=1e-5)
+    np.testing.assert_allclose(found.deviation[-1, NAMED], expected, rtol=1e-5)
 
 
 def test_linearisation_does_not_depend_on_the_step(small: PlanetaryDesign) -> None:
@@ -469,7 +472,7 @@ def test_linearisation_does_not_depend_on_the_step(small: PlanetaryDesign) -> No
     end, results = 0.4, []
     for count in (50, 100, 200):
         _, _, found = moments(small, end / count, count, count // 10)
-        results.append(np.concatenate([found.mean[-1], found.deviation[-1]]))
+        results.append(np.concatenate([found.mean[-1, NAMED], found.deviation[-1, NAMED]]))
         # of all rows: displacements, velocities and wind together, before the covariance is made
         # symmetric
         assert found.smallest_eigenvalue > -1e-12 and found.asymmetry < 1e-10
@@ -483,8 +486,9 @@ def test_linearised_against_simulated(small: PlanetaryDesign) -> None:
     steps, wind, found = moments(changed(small, "wind", turbulence=0.05), 8e-3, 100, 50)
     sums, lost = simulate(steps, wind, 50, 16_000, random_stream(5))
     assert lost == 0
-    np.testing.assert_allclose(found.mean, sums.mean, rtol=0.02)
-    np.testing.assert_allclose(found.deviation, sums.deviation, rtol=0.02)
+    for kind in ("mean", "deviation"):
+        ours, theirs = getattr(found, kind)[:, NAMED], getattr(sums, kind)[:, NAMED]
+        np.testing.assert_allclose(ours, theirs, rtol=0.02)
 
 
 def test_linearised_against_simulated_on_the_driver(design: PlanetaryDesign) -> None:
@@ -495,12 +499,13 @@ def test_linearised_against_simulated_on_the_driver(design: PlanetaryDesign) -> 
     sums, lost = simulate(steps, wind, 20, 16_000, random_stream(7))
     assert lost == 0
     later = slice(25, None)
-    np.testing.assert_allclose(
-        found.mean[later].mean(axis=0), sums.mean[later].mean(axis=0), rtol=0.02
-    )
-    np.testing.assert_allclose(
-        found.deviation[later].mean(axis=0), sums.deviation[later].mean(axis=0), rtol=0.02
-    )
+    for kind in ("mean", "deviation"):
+        ours, theirs = getattr(found, kind)[later], getattr(sums, kind)[later]
+        named = ours[:, NAMED].mean(axis=0), theirs[:, NAMED].mean(axis=0)
+        np.testing.assert_allclose(*named, rtol=0.02)
+        # all coordinates at all times, over their largest values; less than 1e-11 m is round-off
+        off = np.abs(ours - theirs).max(axis=0) / np.maximum(np.abs(theirs).max(axis=0), 1e-9)
+        assert off.max() < 0.05
     # round-off adds up over the steps in stiff modes, which the trapezoidal rule hardly damps
     assert found.smallest_eigenvalue > -1e-9 and found.asymmetry < 1e-10
 
@@ -511,7 +516,7 @@ def test_impacts_spoil_the_mesh(small: PlanetaryDesign) -> None:
     steps, wind, found = moments(changed(small, "wind", turbulence=0.6), 5e-3, 200, 50)
     sums, lost = simulate(steps, wind, 50, 2000, random_stream(6))
     assert lost > 0.02 * 200 * 2000
-    off = np.abs(found.deviation[-1] / sums.deviation[-1] - 1.0)
+    off = np.abs(found.deviation[-1, NAMED] / sums.deviation[-1, NAMED] - 1.0)
     mesh, turn = (
         MONITORED_NAMES.index("sun_mesh_deflection"),
         MONITORED_NAMES.index("carrier_rotation"),
@@ -544,3 +549,35 @@ def test_patterns_and_rims(design: PlanetaryDesign) -> None:
     assert change["ring_contact_radial"] < 0.5 and change["ring_node_tangential"] < 0.8
     assert 0.95 < change["carrier_rotation"] < 1.0 and 0.95 < change["planet_tangential"] < 1.0
     assert change["sun_rotation"] == pytest.approx(1.0, abs=1e-5)
+
+
+@pytest.mark.parametrize("overrides", [[], ["ring.supports=2"]])
+def test_coordinates(overrides: list[str]) -> None:
+    """The recorded coordinates are those of the parts. Sun and carrier stay in the middle if
+    planets and supports repeat every third of a turn, and only then."""
+    train = PlanetaryModel(load_design(DRIVER, overrides))
+    design, first = train.design, ring_index(train.design)
+    steps = TimeStepper(train, 0.7 / design.carrier.speed, 1)
+    start, flanks = steps.static_equilibrium(1e5)
+    rows, added = monitored(train, steps, 0, flanks)
+    found = dict(zip(RECORDED, rows @ start.q[:, 0] + added, strict=True))
+    x, carrier, planet = train.shapes @ start.q[:, 0], carrier_index(design), planet_index(0)
+    for name, value in {
+        "sun_x": x[0],
+        "sun_y": x[1],
+        "planet_radial": x[planet],
+        "planet_rotation": x[planet + 2],
+        "carrier_x": x[carrier],
+        "carrier_y": x[carrier + 1],
+        "ring_node_1_radial": x[first],
+        "ring_node_1_rotation": x[first + 2] * train.ring.section.radius,
+        "ring_node_2_tangential": x[first + 4],
+        "ring_node_3_radial": x[first + 6],
+        "ring_node_3_rotation": x[first + 8] * train.ring.section.radius,
+    }.items():
+        assert found[name] == pytest.approx(value, rel=1e-12, abs=1e-18)
+    middle = [found[name] for name in ("sun_x", "sun_y", "carrier_x", "carrier_y")]
+    if overrides:
+        assert np.abs(middle).max() > 1e-8
+    else:
+        assert np.abs(middle).max() < 1e-12

@@ -6,13 +6,21 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Literal
 
-from annotated_types import Len
+import numpy as np
+from annotated_types import Ge, Len
 
 from swgpar.gear_trains.common_sections import GearTrain, Positive, TrainDesign, require_steps
 from swgpar.input.quantities import Section, not_negative, positive, quantity
 from swgpar.input.require import require
 
 PINIONS = 8
+PAIRS, SIDES = PINIONS // 2, 2
+MESH_COUNTS = {"rack_pinion": PINIONS, "g1_g1": PAIRS, "g1_g2": PAIRS, "g3_g4": SIDES}
+"""Meshes of the gearbox by kind: rack with pinions 1 to 8; even with odd G1 of a pair; odd G1 with
+G2; G3 with G4."""
+
+Direction = Literal["A", "B"]
+MeshGaps = list[Annotated[float, Ge(0.0)]]
 Ratios = Annotated[list[Positive], Len(PINIONS, PINIONS)]
 Forces = Annotated[list[Positive], Len(1)]
 GRADES: dict[str, Any] = {"ge": 0.0, "le": 12.0}
@@ -51,6 +59,17 @@ class CascadeMesh(Section):
     gap_B: float = not_negative(
         "backlash at the pitch line up to the flanks that carry load in direction B", "mm", 0.0
     )
+    gaps_A: MeshGaps = quantity(
+        [], text="`gap_A` of each mesh of this kind in its place (mm), each 0 or above"
+    )
+    gaps_B: MeshGaps = quantity(
+        [], text="`gap_B` of each mesh of this kind in its place (mm), each 0 or above"
+    )
+
+    def gaps(self, direction: Direction, count: int) -> np.ndarray:
+        """Backlash of the `count` meshes of this kind in a direction, (count,) m."""
+        given = getattr(self, f"gaps_{direction}") or [getattr(self, f"gap_{direction}")] * count
+        return 1e-3 * np.array(given)
 
 
 class FlexUnit(Section):
@@ -61,6 +80,9 @@ class FlexUnit(Section):
     linear_above: float = positive("deformation beyond which the stiffness is constant", "mm")
     initial_stiffness: float = positive("mean stiffness at zero deformation", "N·m/deg")
     radius: float = positive("radius at which the deformation is measured", "mm")
+    largest_deformation: float | None = positive(
+        "largest deformation allowed; with it limit loads are computed", "mm", None
+    )
 
 
 class Shafts(Section):
@@ -116,6 +138,7 @@ class Tolerances(Section):
 
 class Population(Section):
     gearboxes: int = quantity(text="gearboxes with random pitch errors", ge=1, le=1_000_000)
+    direction: Direction = quantity("B", text="direction of the rack force of the population")
     ramp: float = positive("rise time of the rack force of the population in motion", "s")
     hold: float = positive("hold time of that force; load shares are means over it", "s")
     step: float = positive("time step of the population in motion", "s")
@@ -162,12 +185,17 @@ def check_fit(design: CascadeDesign) -> None:
     """Refuse values that do not fit each other."""
     module, other = design.g1_g1.module, design.g1_g2.module
     require(module == other, "g1_g1.module", module, f"{other:g} mm (g1_g2.module)")
-    for name in ("rack_pinion", "g1_g1", "g1_g2", "g3_g4"):
+    for name, count in MESH_COUNTS.items():
         mesh = getattr(design, name)
         half = 0.5 * math.pi * mesh.module
-        for key in ("gap_A", "gap_B"):
-            allowed = f"0 to {half:.6g} mm (half of the pitch, {name}.module)"
-            require(getattr(mesh, key) <= half, f"{name}.{key}", getattr(mesh, key), allowed)
+        within = f"0 to {half:.6g} mm (half of the pitch, {name}.module)"
+        for side in ("A", "B"):
+            gap, gaps = getattr(mesh, f"gap_{side}"), getattr(mesh, f"gaps_{side}")
+            require(gap <= half, f"{name}.gap_{side}", gap, within)
+            allowed = f"no or {count} numbers, one for each mesh"
+            require(len(gaps) in (0, count), f"{name}.gaps_{side}", gaps, allowed)
+            for one in gaps:
+                require(one <= half, f"{name}.gaps_{side}", one, within)
     peak, section = design.load.peak, design.population
     for force in design.load.forces:
         require(force <= peak, "load.forces", force, f"above 0 to {peak:g} kN (load.peak)")

@@ -9,6 +9,9 @@ import numpy as np
 
 from swgpar.gear_trains.cascade.design import CascadeDesign
 
+NEWTON_STEPS = 40
+"""More than the convergence to the last digit takes."""
+
 
 @dataclass(frozen=True)
 class FlexUnits:
@@ -48,6 +51,17 @@ class FlexUnits:
         rest = np.maximum(1.0 - size / self.end, 0.0)
         extra = (self.initial - self.stiffness) * self.end / 3.0 * (1.0 - rest**3)
         return np.sign(twist) * (self.stiffness * size + extra)
+
+    def twist(self, torque: np.ndarray) -> np.ndarray:
+        """Twist in rad at a mean torque (N·m): the inverse of `torque`, by Newton's method.
+
+        The curve bends one way, so that steps from 0 cannot pass the solution of a stiffness that
+        falls, and pass that of one that rises once.
+        """
+        found = np.zeros_like(torque)
+        for _ in range(NEWTON_STEPS):
+            found = found + (torque - self.torque(found)) / self.tangent(found)
+        return found
 
     def tangent(self, twist: np.ndarray) -> np.ndarray:
         """Derivative of `torque`, N·m/rad."""

@@ -12,9 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
+from swgpar.gear_trains.cascade.design import MESH_COUNTS, PAIRS, PINIONS, SIDES, CascadeDesign
 from swgpar.gear_trains.cascade.flex_unit import FlexUnits
-from swgpar.gear_trains.cascade.static_sharing import MESH_COUNTS, PAIRS, SIDES
 from swgpar.gear_trains.kernel import MESH, SHAFT
 
 RACK = 0
@@ -58,10 +57,12 @@ def meshes(design: CascadeDesign) -> np.ndarray:
         [PINION + np.arange(PINIONS), odd, G2 + np.arange(PAIRS) // 2, np.full(SIDES, G4)]
     )
     out["driven_radius"] = pitch_radii(design)[out["driven"]]
-    sections = [getattr(design, kind) for kind, count in MESH_COUNTS.items() for _ in range(count)]
-    scales = {"stiffness": 1.0, "variation": 1.0, "gap_A": 1e-3, "gap_B": 1e-3, "module": 1e-3}
-    for key, scale in scales.items():
-        out[key] = [scale * getattr(section, key) for section in sections]
+    kinds = [(getattr(design, kind), count) for kind, count in MESH_COUNTS.items()]
+    counts = list(MESH_COUNTS.values())
+    for key, scale in {"stiffness": 1.0, "variation": 1.0, "module": 1e-3}.items():
+        out[key] = np.repeat([scale * getattr(section, key) for section, _ in kinds], counts)
+    out["gap_A"] = np.concatenate([section.gaps("A", count) for section, count in kinds])
+    out["gap_B"] = np.concatenate([section.gaps("B", count) for section, count in kinds])
     out["damping"] = design.damping.metal * out["stiffness"]
     return out
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.gear_trains.cascade.design import CascadeDesign
+from swgpar.gear_trains.cascade.design import CascadeDesign, Direction
 from swgpar.gear_trains.cascade.dynamics import Gearbox, ramp
 from swgpar.gear_trains.cascade.layout import DOFS, RACK
-from swgpar.gear_trains.cascade.static_sharing import Direction, even_pinion_mask
+from swgpar.gear_trains.cascade.static_sharing import even_pinion_mask
 
 ROWS = 4000
 """Of the history of one period."""

@@ -1,4 +1,5 @@
-"""Gearboxes with random errors under the largest rack force in direction B, at rest and moving."""
+"""Gearboxes with random errors under the largest rack force in one direction, at rest and
+moving."""
 
 from __future__ import annotations
 
@@ -6,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
+from swgpar.gear_trains.cascade.design import MESH_COUNTS, PINIONS, CascadeDesign
 from swgpar.gear_trains.cascade.dynamics import Gearbox, ramp
 from swgpar.gear_trains.cascade.layout import FLYWHEEL, MESHES, rigid_displacements
-from swgpar.gear_trains.cascade.static_sharing import MESH_COUNTS, static_sharing
+from swgpar.gear_trains.cascade.static_sharing import static_sharing
 from swgpar.gear_trains.cascade.tolerance_stack_up import standard_deviation
 from swgpar.gear_trains.kernel import MESH_ERROR
 from swgpar.vibration.sampling import random_stream
@@ -48,14 +49,20 @@ def static_shares(design: CascadeDesign, errors: np.ndarray) -> np.ndarray:
     ends = np.cumsum(list(MESH_COUNTS.values()))[:-1]
     by_kind = dict(zip(MESH_COUNTS, np.split(errors["amplitude"], ends, axis=1), strict=True))
     force = np.full(len(errors), 1e3 * design.load.peak)
-    return static_sharing(design, "B", errors=by_kind).shares(force)
+    direction = design.population.direction
+    return static_sharing(design, direction, errors=by_kind).shares(force)
+
+
+def rack_force(design: CascadeDesign) -> float:
+    """The rack force of the population in motion, N; negative in direction A."""
+    return (1e3 if design.population.direction == "B" else -1e3) * design.load.peak
 
 
 def steady_velocities(design: CascadeDesign) -> np.ndarray:
-    """Velocities (23,) in m/s at which the generator balances the largest rack force."""
+    """Velocities (23,) in m/s at which the generator balances the rack force of the population."""
     displacements = rigid_displacements(design)
     generator = design.flywheel.generator / design.radius("g4") ** 2
-    return 1e3 * design.load.peak / (generator * displacements[FLYWHEEL] ** 2) * displacements
+    return rack_force(design) / (generator * displacements[FLYWHEEL] ** 2) * displacements
 
 
 def block_shares(design: CascadeDesign, block: int, count: int) -> PopulationShares:
@@ -68,7 +75,7 @@ def block_shares(design: CascadeDesign, block: int, count: int) -> PopulationSha
     section = design.population
     rising, holding = (int(np.ceil(t / section.step)) for t in (section.ramp, section.hold))
     steps = section.step, rising + holding
-    force = ramp(1e3 * design.load.peak, rising * section.step)
+    force = ramp(rack_force(design), rising * section.step)
     start = steady_velocities(design)
     means, largest = np.empty((2, count, PINIONS))
     for k in range(count):

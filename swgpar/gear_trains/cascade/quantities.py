@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
+from swgpar.gear_trains.cascade.design import MESH_COUNTS, PAIRS, PINIONS, CascadeDesign
 from swgpar.gear_trains.cascade.dynamics import natural_frequencies
 from swgpar.gear_trains.cascade.flex_unit import FlexUnits
 from swgpar.gear_trains.cascade.layout import DOFS, FLYWHEEL, masses, rigid_displacements
-from swgpar.gear_trains.cascade.static_sharing import MESH_COUNTS, path_gap_angles
+from swgpar.gear_trains.cascade.static_sharing import path_gap_angles
 from swgpar.gear_trains.cascade.tolerance_stack_up import standard_deviation
 from swgpar.gear_trains.published import number_label
 from swgpar.results.quantity import Quantity
@@ -40,6 +40,13 @@ AT_FORCE = {
 }
 """Load shares at a rack force."""
 
+LIMITS = {
+    "equal": "without gaps and with constant stiffness",
+    "B": "at rest in direction B",
+    "A": "at rest in direction A",
+}
+"""Loads at which the flexible units reach their largest deformation."""
+
 
 def quantities(design: CascadeDesign) -> dict[str, Quantity]:
     """Results that can be compared with published values."""
@@ -61,12 +68,27 @@ def quantities(design: CascadeDesign) -> dict[str, Quantity]:
         "natural_frequencies": Quantity(
             "natural frequencies, the first of the free rotation", "Hz", count=DOFS
         ),
+        "best_even_units": Quantity(
+            "flexible units whose place at the even pinions gives the least largest load share at "
+            "rest, direction B",
+            count=PAIRS,
+        ),
+        "largest_share_best_units": Quantity("largest load share at rest with these units"),
     }
+    if design.flex_unit.largest_deformation is not None:
+        for name, meaning in LIMITS.items():
+            limit = f"when the first flexible unit has its largest deformation, {meaning}"
+            known[f"limit_load_{name}"] = Quantity(f"pinion loads {limit}", "kN", count=PINIONS)
+            known[f"limit_total_{name}"] = Quantity(f"rack force {limit}", "kN")
     for force in design.load.forces:
         for name, meaning in AT_FORCE.items():
             count = 2 if name in ("static_equal_B", "dynamic_mean_B") else PINIONS
             shares = f"load shares {meaning.format(force)}"
             known[f"{name}_{number_label(force)}"] = Quantity(shares, count=count)
+        for side in ("B", "A"):
+            known[f"lateral_{side}_{number_label(force)}"] = Quantity(
+                f"force across the rack at rest at {force:g} kN, direction {side}", "kN"
+            )
     return known
 
 

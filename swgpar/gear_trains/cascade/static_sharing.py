@@ -13,18 +13,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Literal
 
 import numpy as np
 
-from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
+from swgpar.gear_trains.cascade.design import MESH_COUNTS, PINIONS, CascadeDesign, Direction
 from swgpar.gear_trains.cascade.flex_unit import FlexUnits
-
-Direction = Literal["A", "B"]
-PAIRS, SIDES = PINIONS // 2, 2
-MESH_COUNTS = {"rack_pinion": PINIONS, "g1_g1": PAIRS, "g1_g2": PAIRS, "g3_g4": SIDES}
-"""Meshes of the gearbox by kind: rack with pinions 1 to 8; even with odd G1 of a pair; odd G1 with
-G2; G3 with G4."""
 
 
 def even_pinion_mask() -> np.ndarray:
@@ -41,8 +34,8 @@ def path_gap_angles(
     """
     gaps = {}
     for kind, count in MESH_COUNTS.items():
-        nominal = 1e-3 * getattr(getattr(design, kind), f"gap_{direction}")
-        gaps[kind] = nominal + (errors[kind] if errors else np.zeros(count))
+        nominal = getattr(design, kind).gaps(direction, count)
+        gaps[kind] = nominal + (errors[kind] if errors else 0.0)
     pinion = np.arange(PINIONS)
     pair, side = pinion // 2, pinion // 4
     g1, per_g2 = design.radius("g1"), design.g2.teeth / design.g1.teeth
@@ -81,10 +74,24 @@ class StaticSharing:
             low, high = np.where(above, low, middle), np.where(above, middle, high)
         return 0.5 * (low + high)
 
+    def gaps_of(self, carried: np.ndarray) -> np.ndarray:
+        """Differences of the gaps (8,) in rad with which the pinions carry forces (8,) in N; the
+        smallest is 0. A pinion without force has at least the gap that it gets."""
+        twist = self.units.twist(carried * self.radius / self.units.ratios)
+        return twist.max() - twist
+
     def shares(self, force: np.ndarray | float) -> np.ndarray:
         """Load shares (..., 8) at rack forces in N (eq. 8); they sum to one."""
         carried = self.forces(self.travel(force))
         return carried / carried.sum(axis=-1, keepdims=True)
+
+
+def lateral_force(design: CascadeDesign, carried: np.ndarray) -> np.ndarray:
+    """Force (...) across the rack in N of pinion forces (..., 8) in N, from the odd pinions on its
+    one side to the even ones on the other: the radial forces of both do not cancel out."""
+    even = even_pinion_mask()
+    along = carried[..., ~even].sum(axis=-1) - carried[..., even].sum(axis=-1)
+    return along * np.tan(np.radians(design.tolerances.pressure_angle))
 
 
 def static_sharing(

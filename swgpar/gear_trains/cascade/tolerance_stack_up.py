@@ -19,8 +19,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import spearmanr
 
-from swgpar.gear_trains.cascade.design import CascadeDesign
-from swgpar.gear_trains.cascade.static_sharing import MESH_COUNTS
+from swgpar.gear_trains.cascade.design import MESH_COUNTS, CascadeDesign
 from swgpar.vibration.sampling import block_sizes, random_stream
 
 BLOCK_SIZE = 10_000

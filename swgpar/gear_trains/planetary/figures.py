@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from functools import partial
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from swgpar.gear_trains.drawing import MomentCurve, axes, draw_moments
-from swgpar.gear_trains.planetary.monitored import MONITORED
+from swgpar.gear_trains.planetary.monitored import MONITORED, PARTS, RECORDED
 from swgpar.gear_trains.result import TrainResult
-from swgpar.results.figure_set import Drawings, plot_line
+from swgpar.results.figure_set import Drawings, new_figure, plot_line
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+ROUND_OFF = 1e-4
+"""Displacements in µm that are none: round-off of the covariance reaches 1e-5."""
 
 METHODS = {"monte_carlo": ("Monte Carlo", "k"), "linearised": ("linearised", "C0--")}
 
@@ -19,7 +24,8 @@ METHODS = {"monte_carlo": ("Monte Carlo", "k"), "linearised": ("linearised", "C0
 def drawings(result: TrainResult) -> Drawings:
     """All figures of a run."""
     figures = {name: partial(_moments, result, name) for name in MONITORED}
-    figures |= {f"rims_{name}": partial(_rims, result, name) for name in MONITORED}
+    figures |= {f"part_{part}": partial(_part, result, part) for part in PARTS}
+    figures |= {f"rims_{name}": partial(_rims, result, name) for name in (*MONITORED, "sun_x")}
     return figures | {"mesh_forces": partial(_forces, result)}
 
 
@@ -37,13 +43,43 @@ def _moments(result: TrainResult, name: str) -> Figure:
     return draw_moments(MONITORED[name], "time (s)", curves)
 
 
+def _part(result: TrainResult, part: str) -> Figure:
+    """All coordinates of a part."""
+    table = result.history
+    figure = new_figure(figsize=(11.0, 5.0), layout="constrained")
+    figure.suptitle(part.replace("_", " "), fontsize=11)
+    panels = figure.subplots(2, len(PARTS[part]), sharex=True)
+    for column, name in zip(panels.T, PARTS[part], strict=True):
+        column[0].set_title("\n".join(wrap(RECORDED[name], 40)), fontsize=8)
+        for axis, kind in zip(column, ("mean", "deviation"), strict=True):
+            for method, (label, style) in METHODS.items():
+                values = table[f"{method}_{kind}_{name}_um"]
+                plot_line(axis, table["time_s"], values, style, lw=0.8, label=label)
+            _open_zero(axis)
+    panels[0, 0].set_ylabel("mean (µm)")
+    panels[1, 0].set_ylabel("standard deviation (µm)")
+    panels[0, 0].legend(fontsize=8)
+    figure.supxlabel("time (s)", fontsize=10)
+    return figure
+
+
+def _open_zero(axis: Axes) -> None:
+    """Draw what is zero to round-off as a line at zero."""
+    low, high = axis.get_ylim()
+    if max(abs(low), abs(high)) < ROUND_OFF:
+        axis.set_ylim(-ROUND_OFF, ROUND_OFF)
+
+
 def _rims(result: TrainResult, name: str) -> Figure:
     table, curves = result.tables["rims"], []
     for rim in dict.fromkeys(table["rim_mm"].tolist()):
         rows = table["rim_mm"] == rim
         mean, deviation = (table[f"{kind}_{name}_um"][rows] for kind in ("mean", "deviation"))
         curves.append(MomentCurve(table["time_s"][rows], mean, deviation, f"{rim:g} mm"))
-    return draw_moments(f"{MONITORED[name]}, by rim thickness", "time (s)", curves)
+    figure = draw_moments(f"{RECORDED[name]}, by rim thickness", "time (s)", curves)
+    for axis in figure.axes:
+        _open_zero(axis)
+    return figure
 
 
 def _forces(result: TrainResult) -> Figure:

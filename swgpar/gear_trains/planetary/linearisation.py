@@ -31,7 +31,7 @@ CHECKS = 100
 
 @dataclass(frozen=True)
 class TrainMoments(Moments):
-    """Results of the linearisation: moments of the monitored quantities, m, and
+    """Results of the linearisation: moments of the recorded quantities, m, and
 
     force, square : (steps, 2) N and N², mean and mean square of the linearised forces of both
         meshes of planet 1, after every step: the rows may not resolve the tooth cycle
@@ -126,7 +126,7 @@ class _Linearisation:
         self.unsymmetrised, self.covariance = new, 0.5 * (new + new.T)
 
     def monitored(self, step: int) -> tuple[np.ndarray, np.ndarray]:
-        """Mean and standard deviation (monitored,) of the monitored quantities after a step, m."""
+        """Mean and standard deviation (recorded,) of the recorded quantities after a step, m."""
         train = self.stepper.train
         rows, added = monitored(train, self.stepper, step, self.flanks)
         n = train.size

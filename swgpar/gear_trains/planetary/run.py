@@ -10,7 +10,7 @@ from mpi4py import MPI
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
 from swgpar.gear_trains.planetary.linearisation import TrainMoments, linearise_train
 from swgpar.gear_trains.planetary.model import PlanetaryModel, ring_pitch_radius
-from swgpar.gear_trains.planetary.monitored import MONITORED, MONITORED_NAMES
+from swgpar.gear_trains.planetary.monitored import MONITORED, MONITORED_NAMES, RECORDED
 from swgpar.gear_trains.planetary.monte_carlo import BLOCK_SIZE, simulate
 from swgpar.gear_trains.planetary.quantities import OF_RING
 from swgpar.gear_trains.planetary.time_stepping import TimeStepper
@@ -88,8 +88,8 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> Computed:
         logger.warning(sentence)
     history = {
         "time_s": _times(design),
-        **columns([own], MONITORED, "um", "linearised_"),
-        **columns([samples], MONITORED, "um", "monte_carlo_"),
+        **columns([own], RECORDED, "um", "linearised_"),
+        **columns([samples], RECORDED, "um", "monte_carlo_"),
     }
     tables = {"rims": _rims(design, moments), "mesh_forces": _forces(design, own)}
     values = _values(design, moments, samples, sum(separated))
@@ -140,5 +140,5 @@ def _rims(design: PlanetaryDesign, moments: dict[float, TrainMoments]) -> Column
     return {
         "rim_mm": np.repeat(design.ring.rims, design.time.rows),
         "time_s": np.tile(_times(design), len(design.ring.rims)),
-        **columns([moments[rim] for rim in design.ring.rims], MONITORED, "um"),
+        **columns([moments[rim] for rim in design.ring.rims], RECORDED, "um"),
     }
