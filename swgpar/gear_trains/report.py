@@ -12,6 +12,7 @@ from swgpar.gear_trains.published import Comparison
 from swgpar.gear_trains.result import TrainResult, TrainSummary
 from swgpar.log import console
 from swgpar.presentation.answer_text import answer_table, detail_table, value_text
+from swgpar.results.number_tables import Labels, number_tables
 from swgpar.results.page import Table, TableRow
 from swgpar.results.result_page import RunFacts, result_page
 
@@ -53,15 +54,13 @@ def _print_answers(summary: TrainSummary) -> None:
 
 
 def _print_compared(rows: list[Comparison]) -> None:
+    percent = [row.difference_percent for row in rows]
+    columns = {
+        "value": [f"{row.published:.6g}" for row in rows],
+        "computed": [f"{row.computed:.6g}" for row in rows],
+        "difference": ["" if one is None else f"{one:+.2f} %" for one in percent],
+    }
+    labels = Labels("quantity, source", [f"{row.quantity}, {row.source}" for row in rows])
     title = "published and measured against computed"
-    table = terminal.Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    for name in ("quantity", "source", "value", "computed", "difference"):
-        left = name in ("quantity", "source")
-        table.add_column(name, justify="left" if left else "right", no_wrap=True)
-    for row in rows:
-        percent = row.difference_percent
-        numbers = f"{row.published:.6g}", f"{row.computed:.6g}"
-        table.add_row(
-            row.quantity, row.source, *numbers, "" if percent is None else f"{percent:+.2f} %"
-        )
-    console.print(table)
+    for table in number_tables(labels, columns, console.width, title):
+        console.print(table)

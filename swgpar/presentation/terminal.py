@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from rich import box
 from rich.console import Group
 from rich.padding import Padding
 from rich.table import Table
@@ -15,6 +14,7 @@ from swgpar.answers.answer import AnswerGroup
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.log import console
 from swgpar.presentation.answer_text import error_text, remark_text, value_text
+from swgpar.results.number_tables import Labels, number_tables
 
 COLUMNS = {
     "step": ("step", "d"),
@@ -29,9 +29,6 @@ COLUMNS = {
     "newton_iterations": ("Newton", "d"),
 }
 """Columns of the history: title and format of their values."""
-
-BETWEEN = 2
-"""Blanks between columns."""
 
 
 def print_drive(history: Mapping[str, np.ndarray], summary: DriveSummary) -> None:
@@ -57,30 +54,9 @@ def _print_history(history: Mapping[str, np.ndarray]) -> None:
     columns = {}
     for name, (heading, form) in zip(names, COLUMNS.values()):
         columns[heading] = [format(value, form) for value in history[name]]
-    letters = {name: max(map(len, [name, *cells])) for name, cells in columns.items()}
-    for headings in _blocks(letters):
-        table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
-        for heading in headings:
-            table.add_column(heading, justify="right", no_wrap=True)
-        for row in zip(*(columns[heading] for heading in headings), strict=True):
-            table.add_row(*row)
+    (heading, cells), *others = columns.items()
+    for table in number_tables(Labels(heading, cells, "right"), dict(others), console.width, title):
         console.print(table)
-        title = ""
-
-
-def _blocks(letters: Mapping[str, int]) -> list[list[str]]:
-    """Headings of the tables into which a history is divided, so that none is wider than the
-    terminal. Each begins with the first column.
-
-    letters : width of every column
-    """
-    first, *others = letters
-    blocks = [[first]]
-    for name in others:
-        if sum(letters[one] + BETWEEN for one in [*blocks[-1], name]) > console.width - 1:
-            blocks.append([first])
-        blocks[-1].append(name)
-    return blocks
 
 
 def _print_answers(answers: AnswerGroup) -> None:

@@ -9,6 +9,7 @@ from rich import box
 from rich.table import Table
 
 from swgpar.log import console, progress_bar
+from swgpar.results.number_tables import Labels, number_tables
 from swgpar.results.page import number
 from swgpar.studies.case import Job, Outcome
 from swgpar.studies.many_runs import print_line
@@ -68,24 +69,31 @@ class StudyProgress:
 def print_results(results: Sequence[JobResult], comparisons: Sequence[CaseComparison]) -> None:
     """Print the first quantities of all cases, then published beside computed values."""
     quantities = list(shown_quantities(results).items())[:COLUMNS]
-    cases = folded_table("case")  # long names are folded into 80 columns
-    for name, quantity in quantities:
-        cases.add_column(f"{name} {quantity.unit}".rstrip(), justify="right", overflow="fold")
-    cases.add_column("s", justify="right", no_wrap=True)
-    for job, outcome in results:
-        numbers = [*(outcome.values.get(name) for name, _ in quantities), outcome.wall_s]
-        texts = map(number, numbers) if outcome.status == "finished" else ["failed"]
-        cases.add_row(job.title, *texts)
-    console.print(cases)
+    outcomes = [outcome for _, outcome in results]
+    columns = {
+        f"{name} {quantity.unit}".rstrip(): [_cell(one, one.values.get(name)) for one in outcomes]
+        for name, quantity in quantities
+    }
+    columns["s"] = [_cell(one, one.wall_s) for one in outcomes]
+    cases = Labels("case", [job.title for job, _ in results])
+    for table in number_tables(cases, columns, console.width):
+        console.print(table)
     if not comparisons:
         return
-    published = folded_table("case", "quantity", title="published values")
-    for name in ("published", "computed", "%", "error estimate", ""):
-        published.add_column(name, justify="right", no_wrap=True)
-    for each in comparisons:
-        numbers = [each.published, each.computed, each.difference_percent, each.error_estimate]
-        published.add_row(each.case, each.quantity, *map(number, numbers), each.verdict)
-    console.print(published)
+    both = Labels("case, quantity", [f"{each.case}, {each.quantity}" for each in comparisons])
+    columns = {
+        "published": [number(each.published) for each in comparisons],
+        "computed": [number(each.computed) for each in comparisons],
+        "%": [number(each.difference_percent) for each in comparisons],
+        "error estimate": [number(each.error_estimate) for each in comparisons],
+        "verdict": [each.verdict for each in comparisons],
+    }
+    for table in number_tables(both, columns, console.width, "published values"):
+        console.print(table)
+
+
+def _cell(outcome: Outcome, value: float | None) -> str:
+    return number(value) if outcome.status == "finished" else "failed"
 
 
 def folded_table(*texts: str, title: str | None = None) -> Table:
