@@ -45,8 +45,8 @@ PURPOSE = {
     "systems": "registry of what can be computed, drives and gear trains, for the interfaces and "
     "studies",
     "studies": "many runs: cases, schedule, tables, report",
-    "optimisation": "search for the best design: variables, objectives, constraints, report",
     "rating": "rating sheet of a drive: the runs that it needs, verdicts, views",
+    "optimisation": "search for the best design: variables, objectives, constraints, report",
     "api": "the Python interface",
     "cli": "the command line",
 }

@@ -93,7 +93,7 @@ def allowed_values(field: FieldInfo) -> str:
     """Range or choices in words."""
     options = get_args(field.annotation)
     if get_origin(field.annotation) is Literal:
-        return " or ".join(f"`{option}`" for option in options)
+        return " or ".join(f"`{option}`" for option in options if option)
     if field.annotation is bool:
         return "true or false"
     if field.annotation in (str, str | None):

@@ -33,6 +33,11 @@ class Limit:
     sense: Sense
     source: str
 
+    @property
+    def size(self) -> float:
+        """By which distances from it are divided: its magnitude, 1 of the limit 0."""
+        return abs(self.value) or 1.0
+
 
 @dataclass(frozen=True)
 class Verdict:
@@ -69,6 +74,15 @@ class Verdict:
         if answer.error is not None and abs(beyond) <= answer.error:
             return Judgement.WITHIN_ERROR
         return Judgement.FAILS if fails else Judgement.PASSES
+
+    @property
+    def margin(self) -> float | None:
+        """How far the value is from its limit on the good side, over the size of the limit; below 0
+        beyond it. None without a value or a limit."""
+        if self.limit is None or self.answer is None or self.answer.value is None:
+            return None
+        sign = 1.0 if self.limit.sense == Sense.AT_LEAST else -1.0
+        return sign * (self.answer.value - self.limit.value) / self.limit.size
 
     @property
     def why(self) -> str:

@@ -5,22 +5,29 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from mpi4py import MPI
 
 from swgpar.errors import InputError
 from swgpar.input.quantities import unit_of_key
 from swgpar.input.toml_file import apply_overrides, read_toml, with_value
 from swgpar.meshing import MeshRecipe, load_recipe
-from swgpar.optimisation.spec import OptimiseSection, Screen, Specification, Variable
+from swgpar.optimisation.load_cases import CaseOutcome, ProblemCase, make_case
+from swgpar.optimisation.spec import (
+    LoadCaseSection,
+    Objective,
+    OptimiseSection,
+    Screen,
+    Specification,
+    Variable,
+)
+from swgpar.optimisation.start_design import StartDesign, start_design
 from swgpar.results.quantity import Quantity
 from swgpar.run_options import RunOptions
-from swgpar.studies.case import not_known
-from swgpar.studies.job import run_one
 from swgpar.studies.run_file import refusals_of, refuse_mesh
 from swgpar.systems import System, system_of_table
 
@@ -29,7 +36,7 @@ FAILED = 100.0
 value is twice one."""
 
 
-SOUGHT = {"set", "screen", "variable", "objective", "constraint"}
+SOUGHT = {"set", "screen", "load_case", "variable", "objective", "constraint"}
 """Keys that say what is sought; a search is continued with others of the rest."""
 
 
@@ -45,6 +52,7 @@ class Evaluation:
     values : of the variables, by name
     status : one of `STATUS`;  reason : one sentence, empty when feasible
     quantities : those of objectives and constraints by name, as far as they are known
+    verdicts : those that constraints ask for, by name
     violations : of the constraints, by their description; 0 and less is allowed
     wall_s : seconds
     """
@@ -54,6 +62,7 @@ class Evaluation:
     reason: str
     quantities: dict[str, float]
     violations: dict[str, float]
+    verdicts: dict[str, str] = field(default_factory=dict)
     wall_s: float = 0.0
 
 
@@ -61,30 +70,30 @@ class Evaluation:
 class Problem:
     """A checked problem.
 
-    table, run_table : content of the design file with `set`, and the same as it is run, without
-    output
+    table : content of the design file with `set`
+    cases : load cases, in the order of the file; one without a name where it has none
+    start : the design of the file as a point of the search
     mesh, recipe : of a drive
-    units : of the variables, by name
-    known : quantities by name, derived ones included;  derived : names of those that follow without
-    a run
+    units : of the variables and quantities, by name
+    known : quantities by name, derived ones included
     """
 
     section: OptimiseSection
     system: System[Any, Any]
     table: dict[str, Any]
-    run_table: dict[str, Any]
+    cases: tuple[ProblemCase, ...]
+    start: StartDesign
     mesh: Path | None
     recipe: MeshRecipe | None
     units: dict[str, str]
     known: dict[str, Quantity]
-    derived: frozenset[str]
 
     @property
     def identity(self) -> str:
         """A number that stands for what is computed: a search is only continued with the same."""
         content = (
             self.section.model_dump(include=SOUGHT),
-            self.run_table,
+            [case.table for case in self.cases],
             self.recipe and self.recipe.model_dump(),
         )
         text = json.dumps(content, sort_keys=True, default=str)
@@ -99,56 +108,99 @@ class Problem:
         return table
 
     def evaluate(self, values: dict[str, Any], comm: MPI.Comm) -> Evaluation:
-        """Run a design; collective. A design that is refused or fails is an outcome."""
-        quantities: dict[str, float] = {}
+        """Compute the load cases of a design; collective. A design that is refused or fails is an
+        outcome."""
+        found = _Found(self, values)
+        designs = []
         try:
-            design = self.system.load(self.applied(self.run_table, values))
-            if self.derived:
-                derived = self.system.check(design)
-                quantities = {name: float(derived[name]) for name in self.derived}
+            for case in self.cases:
+                design = case.load(self.applied(case.table, values))
+                designs.append(design)
+                found.note(case, CaseOutcome(case.derive(design)))
         except InputError as error:
-            return self._ended(values, str(error), quantities)
-        if any(amount > 0.0 for amount in self._violations(quantities).values()):
-            return self._ended(values, "", quantities)
+            return found.ended(str(error))
+        if found.violated:
+            return found.ended("")
         mesh = str(self.mesh or "")
         options = RunOptions(recipe=self.recipe, recipe_name=mesh, plain=True, comm=comm)
-        outcome = run_one(self.system, design, options)
-        names = self.section.quantities
-        quantities |= {
-            name: float(outcome.values[name]) for name in names if name in outcome.values
+        with self.system.shared() as system:
+            for case, design in zip(self.cases, designs):
+                outcome = case.compute(design, system, options)
+                found.note(case, outcome)
+                if failure := found.failure(case, outcome):
+                    return found.ended(failure)
+        return found.ended("")
+
+
+class _Found:
+    """What is known of a design, load case by load case."""
+
+    def __init__(self, problem: Problem, values: dict[str, Any]) -> None:
+        self._problem, self._values = problem, values
+        self._quantities: dict[str, float] = {}
+        self._verdicts: dict[str, str] = {}
+        self._distances: dict[str, float] = {}
+        self._seconds = 0.0
+
+    def note(self, case: ProblemCase, outcome: CaseOutcome) -> None:
+        """A load case has been computed."""
+        self._quantities |= {
+            one.name: float(outcome.values[one.quantity])
+            for one in case.wanted
+            if one.quantity in outcome.values and not one.is_verdict
         }
-        missing = [name for name in names if not np.isfinite(quantities.get(name, np.nan))]
-        growing = [name for name in names if name in outcome.unbounded]
-        failure = outcome.reason
-        if missing:
-            failure = failure or f"the run has no value of {missing[0]}"
-        elif growing:  # a smaller number there is no better design
-            failure = f"{growing[0]} has no limit: it grows with every finer mesh"
-        return self._ended(values, failure, quantities, outcome.wall_s or 0.0)
+        self._verdicts |= outcome.verdicts
+        self._distances |= outcome.distances
+        self._seconds += outcome.wall_s
 
-    def _violations(self, quantities: dict[str, float]) -> dict[str, float]:
+    def failure(self, case: ProblemCase, outcome: CaseOutcome) -> str:
+        """Why the case does not give what is asked of it; empty where it does."""
+        where = f"load case {case.section.name}: " if case.section.name else ""
+        if outcome.reason:
+            return f"{where}{outcome.reason}"
+        for one in case.wanted:
+            value = self._quantities.get(one.name, math.nan)
+            if one.is_verdict:
+                continue
+            if math.isnan(value):
+                return f"{where}the run has no value of {one.quantity}"
+            if math.isinf(value) and isinstance(one, Objective):
+                return f"{where}{one.quantity} is without end"
+            if one.quantity in outcome.unbounded:  # a smaller number there is no better design
+                return f"{where}{one.quantity} has no limit: it grows with every finer mesh"
+        return ""
+
+    @property
+    def _violations(self) -> dict[str, float]:
         violations: dict[str, float] = {}
-        for constraint in self.section.constraint:
-            value = quantities.get(constraint.quantity, np.nan)
-            if np.isfinite(value):
+        for constraint in self._problem.section.constraint:
+            value = self._quantities.get(constraint.name, math.nan)
+            if not constraint.is_verdict and not math.isnan(value):
                 violations |= constraint.violations(value)
-        return violations
+        return violations | self._distances
 
-    def _ended(
-        self,
-        values: dict[str, Any],
-        failure: str,
-        quantities: dict[str, float],
-        wall_s: float = 0.0,
-    ) -> Evaluation:
-        violations, status, reason = self._violations(quantities), "feasible", ""
-        broken = [text for text, amount in violations.items() if amount > 0.0]
+    @property
+    def violated(self) -> list[str]:
+        """Descriptions of the constraints that are known to be violated."""
+        return [text for text, amount in self._violations.items() if amount > 0.0]
+
+    def ended(self, failure: str) -> Evaluation:
+        """The evaluation. failure : empty where all cases have given what is asked of them"""
+        violations, status, reason = self._violations, "feasible", ""
         if failure:
             status, reason = "failed", failure
             violations["failed"] = FAILED
-        elif broken:
-            status, reason = "infeasible", f"{', '.join(broken)} is not kept"
-        return Evaluation(values, status, reason, quantities, violations, wall_s)
+        elif self.violated:
+            status, reason = "infeasible", f"{', '.join(self.violated)} is not kept"
+        return Evaluation(
+            self._values,
+            status,
+            reason,
+            self._quantities,
+            violations,
+            self._verdicts,
+            self._seconds,
+        )
 
 
 def make_problem(spec: Specification, screen: bool = False) -> Problem:
@@ -162,9 +214,9 @@ def _make(spec: Specification, section: OptimiseSection, screen: Screen | None) 
     table = apply_overrides(read_toml(spec.folder / section.design), section.set)
     cheaper = screen.set if screen else []
     system = system_of_table(table)
-    # what the file does not ask for itself is left out, as in studies
-    quiet = system.without_output(apply_overrides(table, cheaper))
-    quiet = apply_overrides(quiet, [*section.set, *cheaper])
+    rated = apply_overrides(table, cheaper)
+    # what the file does not ask for itself is left out of runs, as in studies
+    quiet = apply_overrides(system.without_output(rated), [*section.set, *cheaper])
     mesh, recipe = (screen.mesh if screen else "") or section.mesh, None
     if "mesh" not in system.options:
         refuse_mesh("optimise.mesh", mesh, system)
@@ -172,24 +224,31 @@ def _make(spec: Specification, section: OptimiseSection, screen: Screen | None) 
         raise InputError("optimise.mesh is missing: give a mesh recipe")
     else:
         recipe = load_recipe(spec.mesh(mesh))
-    design = system.load(quiet)
-    known, derived = dict(system.quantities(design)), set()
-    for name in section.quantities:
-        if name not in known:
-            if name not in system.check(design):
-                raise not_known("optimise: ", known, system, name)
-            known[name] = Quantity("by swgpar check", "")
-            derived.add(name)
+    cases = []
+    for case in section.load_case or [LoadCaseSection.model_construct(name="")]:
+        wanted = [one for one in section.wanted if one.case == case.name]
+        cases.append(make_case(case, system, (quiet, rated), wanted))
+    known = {
+        one.name: case.known[one.quantity]
+        for case in cases
+        for one in case.wanted
+        if one.quantity in case.known
+    }
+    designs = [case.design for case in cases]
+    units = {name: quantity.unit for name, quantity in known.items()}
+    for variable in section.variable:
+        found = (unit_of_key(design, variable.name) for design in designs)
+        units[variable.name] = next(filter(None, found), "")
     problem = Problem(
         section=section,
         system=system,
         table=table,
-        run_table=quiet,
+        cases=tuple(cases),
+        start=start_design(section.variable, designs),
         mesh=spec.mesh(mesh) if mesh else None,
         recipe=recipe,
-        units={variable.name: unit_of_key(design, variable.name) for variable in section.variable},
+        units=units,
         known=known,
-        derived=frozenset(derived),
     )
     for variable in section.variable:
         _require_keys(problem, variable)
@@ -205,8 +264,9 @@ def _require_keys(problem: Problem, variable: Variable) -> None:
     does not fit the others is no matter here."""
     for value in variable.choices or (variable.low, variable.high):
         tried = int(value) if variable.integer else value
-        try:
-            problem.system.load(problem.applied(problem.run_table, {variable.name: tried}))
-        except InputError as error:
-            if any(words in str(error) for words in NO_KEY):
-                raise
+        for case in problem.cases:
+            try:
+                case.load(problem.applied(case.table, {variable.name: tried}))
+            except InputError as error:
+                if any(words in str(error) for words in NO_KEY):
+                    raise

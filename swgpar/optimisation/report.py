@@ -8,10 +8,18 @@ from collections.abc import Mapping
 from typing import Any
 
 from swgpar.optimisation import figures
+from swgpar.optimisation.comparison import (
+    DesignComparison,
+    bound_sentences,
+    comparison,
+    start_sentence,
+)
+from swgpar.optimisation.optimisation_data import OptimisationData
 from swgpar.optimisation.problem import STATUS, Problem
-from swgpar.optimisation.result import OptimisationResult
 from swgpar.optimisation.spec import Specification
 from swgpar.results.page import Picture, Table, TableRow
+from swgpar.results.quantity import Quantity
+from swgpar.studies.figures import as_png
 from swgpar.studies.runs_page import FigureSection, runs_page, table_of_runs
 
 IMPORTANCE = (
@@ -19,29 +27,45 @@ IMPORTANCE = (
     "from the others (PED-ANOVA)."
 )
 
+PARALLEL = (
+    "Every design that has been computed is a line. An axis is a variable between its bounds, or a "
+    "quantity. Marks on an axis are limits, and the side beyond them is not allowed."
+)
+
+COLUMNS = 6
+"""Designs beside each other in a table of the best ones."""
+
 
 def make_report(
-    spec: Specification, problem: Problem, result: OptimisationResult, designs: Mapping[int, str]
+    spec: Specification, problem: Problem, result: OptimisationData, designs: Mapping[int, str]
 ) -> bytes:
     """The whole page; call it on one rank. designs : texts of the winning design files by number"""
     ranked = _ranked(problem, result)
-    left_out = ("status", "best", "wall_s", "reason")
-    best = [{k: v for k, v in row.items() if k not in left_out} for row in ranked if row["best"]]
-    units = problem.units | {name: quantity.unit for name, quantity in problem.known.items()}
+    shown = comparison(result, result.compared) if result.compared else None
     return runs_page(
         "optimisation/optimise.html.j2",
         "Optimisation",
         spec,
-        lambda: _figures(problem, result) if ranked else [],
+        lambda: _figures(result) if ranked else [],
         [each.wall_s for each in result.evaluations.values()],
         counts=Counter(row["status"] for row in ranked),
         statuses=STATUS,
+        load_cases=_load_cases(problem),
         variables=_variables(problem),
         quantities=_quantities(problem),
-        best=table_of_runs(best, units) if best else None,
+        compared=[_beside(part) for part in shown.parts(COLUMNS)] if shown else [],
+        best=result.best,
+        bounds=bound_sentences(result),
+        without_start=start_sentence(result) if ranked else "",
         designs=designs,
-        evaluations=table_of_runs(ranked, units, ranked=True) if ranked else None,
+        evaluations=table_of_runs(ranked, result.units, ranked=True) if ranked else None,
     )
+
+
+def _beside(part: DesignComparison) -> Table:
+    """The table of a part of the comparison."""
+    rows = [TableRow([row.name, row.wanted, *row.cells]) for row in part.rows]
+    return Table(["evaluation", "sought", *part.heads], rows)
 
 
 def _variables(problem: Problem) -> Table:
@@ -53,23 +77,39 @@ def _variables(problem: Problem) -> Table:
 
 
 def _quantities(problem: Problem) -> Table:
-    wanted: list[tuple[str, str]] = [(o.quantity, o.goal) for o in problem.section.objective]
-    wanted += [(c.quantity, ", ".join(c.limits)) for c in problem.section.constraint]
+    wanted: list[tuple[str, str]] = [(o.name, o.goal) for o in problem.section.objective]
+    wanted += [(c.name, c.words) for c in problem.section.constraint]
     rows = []
     for name, goal in wanted:
-        quantity = problem.known[name]
+        quantity = problem.known.get(name, Quantity("worst verdict of the rating sheet", ""))
         rows.append(TableRow([name, goal, quantity.meaning, quantity.unit]))
     return Table(["quantity", "goal or limit", "meaning", "unit"], rows)
 
 
-def _ranked(problem: Problem, result: OptimisationResult) -> list[dict[str, Any]]:
+def _load_cases(problem: Problem) -> Table | None:
+    """The load cases; None where the file has none."""
+    rows = [
+        TableRow(
+            [
+                one.name,
+                "rating sheet" if one.rate else "run",
+                ", ".join(one.set),
+                ", ".join(one.without),
+            ]
+        )
+        for one in problem.section.load_case
+    ]
+    return Table(["load case", "computed", "keys", "without"], rows) if rows else None
+
+
+def _ranked(problem: Problem, result: OptimisationData) -> list[dict[str, Any]]:
     """Rows of optimise.csv: feasible designs with their rank by the first objective, infeasible
     ones, failed ones."""
     first = problem.section.objective[0]
 
     def order(row: dict[str, Any]) -> tuple[int, float]:
         if row["status"] == "feasible":
-            return 0, first.sign * row[first.quantity]
+            return 0, first.sign * row[first.name]
         violations = result.evaluations[row["evaluation"]].violations.values()
         return STATUS.index(row["status"]), max(violations, default=0.0)
 
@@ -79,15 +119,24 @@ def _ranked(problem: Problem, result: OptimisationResult) -> list[dict[str, Any]
     ]
 
 
-def _figures(problem: Problem, result: OptimisationResult) -> list[FigureSection]:
-    progress = Picture(figures.progress(problem, result), "objectives by evaluation")
-    fronts = figures.pareto(problem, result)
-    pareto = [Picture(png, "objectives against each other") for png in fronts]
-    importance = []
-    if result.importance:
-        importance = [Picture(figures.importance(result), "importance of the variables")]
+def _figures(result: OptimisationData) -> list[FigureSection]:
+    found = figures.drawings(result)
+
+    def pictures(begin: str, text: str) -> list[Picture]:
+        names = [name for name in found if name.startswith(begin)]
+        return [Picture(as_png(found[name]()), text) for name in names]
+
     return [
-        FigureSection("Progress", [progress]),
-        FigureSection("Pareto front", pareto),
-        FigureSection("Importance of the variables", importance, IMPORTANCE),
+        FigureSection("Progress", pictures(figures.PROGRESS, "objectives by evaluation")),
+        FigureSection(
+            "Parallel coordinates",
+            pictures(figures.PARALLEL, "variables and quantities of all designs"),
+            PARALLEL,
+        ),
+        FigureSection("Pareto front", pictures(figures.PARETO, "objectives against each other")),
+        FigureSection(
+            "Importance of the variables",
+            pictures(figures.IMPORTANCE, "importance of the variables"),
+            IMPORTANCE,
+        ),
     ]

@@ -1,62 +1,30 @@
-"""What an optimisation gives."""
+"""The result of an optimisation that users have: its data with figures."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from mpi4py import MPI
 
-from swgpar.optimisation.problem import Evaluation
+from swgpar.optimisation.figures import drawings
+from swgpar.optimisation.optimisation_data import OptimisationData
+from swgpar.results.figure_set import FigureSet, NamedFigures
 
 
-@dataclass(frozen=True)
-class OptimisationResult:
-    """What an optimisation gives; the same on every rank.
+class OptimisationResult(OptimisationData):
+    """What an optimisation gives, with figures; the same on every rank.
 
-    Attributes
-    ----------
-    evaluations : dict of Evaluation
-        All designs that were tried, by number.
-    best : list of int
-        Numbers of the best design, or of those of the Pareto front; empty where no design is
-        feasible.
-    importance : dict
-        Share of every variable in every objective; empty with few feasible designs.
-    designs : dict of dict
-        Content of the design files of `best`, by number.
-    folder : Path
-        Holds optimise.csv, optimise.html, the storage and the winning design files.
-    wall_s : float
-        Seconds of this call.
+    Attributes are those of `OptimisationData`: ``evaluations``, ``best``, ``start``, ``at_bounds``
+    and further ones.
 
     Examples
     --------
     >>> found = swgpar.optimise("drivers/optimise/parabolic_cam.toml", "results/cam")
-    >>> found.evaluations[found.best[0]].quantities
+    >>> found.evaluations[found.best[0]].quantities, found.evaluations[found.start].quantities
+    >>> [one.text for one in found.at_bounds[found.best[0]]]
+    >>> found.plot.parallel_coordinates().savefig("designs.png")
     """
 
-    evaluations: dict[int, Evaluation]
-    best: list[int]
-    importance: dict[str, dict[str, float]]
-    designs: dict[int, dict[str, Any]]
-    folder: Path
-    wall_s: float
-
     @property
-    def rows(self) -> list[dict[str, Any]]:
-        """Rows of optimise.csv: number, variables, status, quantities, wall seconds, reason."""
-        quantities = list(
-            dict.fromkeys(name for each in self.evaluations.values() for name in each.quantities)
-        )
-        return [
-            {
-                "evaluation": number,
-                **each.values,
-                "status": each.status,
-                "best": int(number in self.best),
-                **{name: each.quantities.get(name) for name in quantities},
-                "wall_s": each.wall_s,
-                "reason": each.reason,
-            }
-            for number, each in sorted(self.evaluations.items())
-        ]
+    def plot(self) -> FigureSet:
+        """The figures: ``plot.progress()``, ``plot.parallel_coordinates()`` and so on return
+        matplotlib figures, ``plot.names`` lists them."""
+        return NamedFigures(drawings(self), MPI.COMM_SELF)

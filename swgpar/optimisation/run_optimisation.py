@@ -4,6 +4,7 @@ and best designs."""
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,8 @@ from mpi4py import MPI
 from swgpar import log, watch
 from swgpar.input.arguments import given_path
 from swgpar.input.toml_file import to_toml
-from swgpar.optimisation.problem import Problem, make_problem
+from swgpar.optimisation.bounds import at_bounds
+from swgpar.optimisation.problem import Evaluation, Problem, make_problem
 from swgpar.optimisation.report import make_report
 from swgpar.optimisation.result import OptimisationResult
 from swgpar.optimisation.search import JOURNAL, Search, open_storage
@@ -99,7 +101,7 @@ def optimise(
             watch.saved("evaluations", len(search.evaluations()), wanted)
         return search
 
-    first = section.first
+    first = [*filter(None, [problem.start.values]), *section.first]
     if screen:
         search = searched(cheaper, SCREEN, first, screen.evaluations)
         evaluations = search.evaluations()
@@ -108,14 +110,28 @@ def optimise(
     content = None
     if comm.rank == 0:
         best, evaluations = search.best(), search.evaluations()
-        designs = {n: problem.applied(problem.table, evaluations[n].values) for n in best}
-        seconds = time.perf_counter() - begin
         content = OptimisationResult(
-            evaluations, best, search.importance(), designs, folder.absolute(), seconds
+            evaluations=evaluations,
+            best=best,
+            start=_number(evaluations, problem.start.values),
+            without_start=problem.start.reason,
+            at_bounds={n: at_bounds(section.variable, evaluations[n].values) for n in best},
+            importance=search.importance(),
+            designs={n: problem.applied(problem.table, evaluations[n].values) for n in best},
+            section=section,
+            units=problem.units,
+            folder=folder.absolute(),
+            wall_s=time.perf_counter() - begin,
         )
     result = comm.bcast(content)
     _write(spec, problem, result, comm)
     return result
+
+
+def _number(evaluations: Mapping[int, Evaluation], values: Mapping[str, Any] | None) -> int | None:
+    """Number of the first evaluation of a design; None where it has none."""
+    same = (n for n in sorted(evaluations) if evaluations[n].values == values)
+    return next(same, None)
 
 
 def _claim(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:

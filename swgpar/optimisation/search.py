@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 JOURNAL = "optimise.journal"
 """The embedded storage: a file to which every rank appends, also on network file systems."""
 
-KEPT = ("status", "reason", "quantities", "wall_s")
+KEPT = ("status", "reason", "quantities", "verdicts", "wall_s")
 """What a trial keeps of an `Evaluation` beside its values and violations."""
 
 T = TypeVar("T")
@@ -224,7 +224,7 @@ class Search:
         for text, amount in evaluation.violations.items():
             trial.set_constraint(text, amount)
         values = [
-            evaluation.quantities.get(objective.quantity, objective.sign * float("inf"))
+            evaluation.quantities.get(objective.name, objective.sign * float("inf"))
             for objective in self.problem.section.objective
         ]
         self.study.tell(trial, values)
@@ -241,7 +241,7 @@ class Search:
         collective."""
         first = self.problem.section.objective[0]
         values = {
-            number: first.sign * each.quantities[first.quantity]
+            number: first.sign * each.quantities[first.name]
             for number, each in self.evaluations().items()
             if each.status == "feasible"
         }
@@ -262,7 +262,7 @@ class Search:
             for trial in trials:
                 one = {"distributions": trial.distributions, "value": trial.values[index]}
                 study.add_trial(optuna.trial.create_trial(params=trial.params, **one))
-            shares[objective.quantity] = optuna.importance.get_param_importances(
+            shares[objective.name] = optuna.importance.get_param_importances(
                 study, evaluator=optuna.importance.PedAnovaImportanceEvaluator()
             )
         return shares

@@ -3,6 +3,8 @@ searched."""
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from pathlib import Path
 from typing import Any, Literal
 
@@ -30,6 +32,13 @@ class Variable(Section):
         """Name in tables: the first key."""
         return self.keys[0]
 
+    def taken(self, value: Any) -> Any:
+        """The value as the variable has it, 2 for 2.0 where whole numbers are meant; None where it
+        is no choice, or beyond a bound."""
+        kinds = (int, float) if self.choices or self.integer else ()
+        others = [kind(value) for kind in kinds if type(value) in kinds and kind(value) == value]
+        return next((one for one in (value, *others) if self.takes(one)), None)
+
     def takes(self, value: Any) -> bool:
         """Whether a value is one of the choices, or within the bounds."""
         if self.choices:
@@ -48,11 +57,40 @@ class Variable(Section):
         return f"{show(self.low)} to {show(self.high)}{whole}"
 
 
-class Objective(Section):
+class LoadCaseSection(Section):
+    """One `[[optimise.load_case]]`: what is computed of every design."""
+
+    name: str = quantity(text="name: letters, digits, _ and -")
+    rate: bool = quantity(
+        False, text="the rating sheet of the design, which has [rating], in place of one run"
+    )
+    without: list[str] = quantity(
+        [], text="sections of the design file that the case does not have"
+    )
+    set: list[str] = quantity([], text='"section.key=value" of this case')
+
+
+class Wanted(Section):
+    """What objectives and constraints have in common."""
+
+    case: str = quantity("", text="name of the load case, where there are load cases")
+    quantity: str = quantity(text="quantity of a run, of swgpar check, or of a rating sheet")
+
+    @property
+    def name(self) -> str:
+        """Name in tables: the quantity, after its load case if there is one."""
+        return f"{self.case}: {self.quantity}" if self.case else self.quantity
+
+    @property
+    def is_verdict(self) -> bool:
+        """Whether a verdict is meant, and no number."""
+        return False
+
+
+class Objective(Wanted):
     """One `[[optimise.objective]]`."""
 
     goal: Literal["minimise", "maximise"] = quantity("minimise", text="what is sought")
-    quantity: str = quantity(text="quantity of a run, or of swgpar check")
 
     @property
     def sign(self) -> float:
@@ -60,14 +98,29 @@ class Objective(Section):
         return 1.0 if self.goal == "minimise" else -1.0
 
 
-class Constraint(Section):
+HEADLINE = "headline"
+"""Name of the worst verdict of a rating sheet."""
+
+
+class Constraint(Wanted):
     """One `[[optimise.constraint]]`."""
 
     at_most: float | None = quantity(
         None, text="largest value allowed, in the unit of the quantity"
     )
     at_least: float | None = quantity(None, text="least value allowed")
-    quantity: str = quantity(text="quantity of a run, or of swgpar check")
+    verdict: Literal["", "passes", "not judged", "within its error"] = quantity(
+        "", text=f'worst verdict allowed of a row of a rating sheet, or of its "{HEADLINE}"'
+    )
+
+    @property
+    def is_verdict(self) -> bool:
+        return bool(self.verdict)
+
+    @property
+    def words(self) -> str:
+        """What it asks for."""
+        return self.verdict or ", ".join(self.limits)
 
     @property
     def limits(self) -> dict[str, tuple[float, float]]:
@@ -82,7 +135,7 @@ class Constraint(Section):
     def violations(self, value: float) -> dict[str, float]:
         """How far a value is beyond the limits, over their sizes; 0 and less is allowed."""
         return {
-            f"{self.quantity} {words}": sign * (value - limit) / (abs(limit) or 1.0)
+            f"{self.name} {words}": sign * (value - limit) / (abs(limit) or 1.0)
             for words, (limit, sign) in self.limits.items()
         }
 
@@ -115,6 +168,7 @@ class OptimiseSection(RunsSection):
     storage: str = quantity("", text="URL of a database; else a file in the folder of the results")
     first: list[dict[str, Any]] = quantity([], text="designs that are tried first: values by key")
     screen: Screen | None = None
+    load_case: list[LoadCaseSection] = quantity([], text="the load cases; without any it is one")
     variable: list[Variable] = quantity([], text="the variables")
     objective: list[Objective] = quantity([], text="the objectives")
     constraint: list[Constraint] = quantity([], text="the constraints")
@@ -122,13 +176,20 @@ class OptimiseSection(RunsSection):
     @property
     def quantities(self) -> list[str]:
         """Names of the quantities of objectives and constraints."""
-        names = [objective.quantity for objective in self.objective]
-        return list(dict.fromkeys(names + [constraint.quantity for constraint in self.constraint]))
+        return list(dict.fromkeys(one.name for one in self.wanted if not one.is_verdict))
+
+    @property
+    def wanted(self) -> list[Wanted]:
+        """Objectives and constraints."""
+        return [*self.objective, *self.constraint]
 
 
 class _File(Section):
     optimise: OptimiseSection
 
+
+NAME = r"[A-Za-z0-9_-]+"
+"""Names of load cases."""
 
 Specification = RunFile[OptimiseSection]
 """The checked content of an optimisation file."""
@@ -157,11 +218,12 @@ def _check(section: OptimiseSection) -> None:
     for variable in section.variable:
         _check_variable(variable, seen)
     for constraint in section.constraint:
-        if constraint.at_most is None and constraint.at_least is None:
+        if not constraint.words:
             raise InputError(
                 f"optimise.constraint {show(constraint.quantity)} has no limit: give at_most or "
-                "at_least"
+                "at_least, or the verdict of a row of a rating sheet"
             )
+    _check_load_cases(section)
     named = {variable.name: variable for variable in section.variable}
     for number, first in enumerate(section.first, start=1):
         for key, value in first.items():
@@ -169,6 +231,40 @@ def _check(section: OptimiseSection) -> None:
             if key not in named:
                 raise InputError(f"{where} is no variable: allowed {', '.join(named)}")
             require(named[key].takes(value), where, value, named[key].range_text)
+
+
+def _check_load_cases(section: OptimiseSection) -> None:
+    varied = {key for variable in section.variable for key in variable.keys}
+    cases = {case.name: case for case in section.load_case}
+    for name, count in Counter(case.name for case in section.load_case).items():
+        where = f"optimise.load_case: name = {show(name)}"
+        if not re.fullmatch(NAME, name):
+            raise InputError(f"{where} is no name: allowed letters, digits, _ and -")
+        if count > 1:
+            raise InputError(f"{where} is given twice: allowed are different names")
+        for override in cases[name].set:
+            key, _ = split_override(override)
+            if key in varied:
+                raise InputError(
+                    f"optimise.load_case {show(name)}: {show_key(key)} is a variable, and has one "
+                    "value in all load cases"
+                )
+    for one in section.wanted:
+        kind = "objective" if isinstance(one, Objective) else "constraint"
+        where = f"optimise.{kind} {show(one.quantity)}"
+        if one.case not in (cases or {"": None}):
+            given = f"case = {show(one.case)} is no load case" if one.case else "case is missing"
+            names = ", ".join(cases) or "none without [[optimise.load_case]]"
+            raise InputError(f"{where}: {given}: allowed {names}")
+        rated = bool(cases) and cases[one.case].rate
+        if one.is_verdict and not rated:
+            raise InputError(
+                f"{where}: verdict has no meaning for a run: allowed of load cases with rate = true"
+            )
+        if isinstance(one, Constraint) and one.verdict and one.limits:
+            raise InputError(f"{where} has a verdict and a limit: allowed is one of both")
+        if rated and one.quantity == HEADLINE and not one.is_verdict:
+            raise InputError(f"{where} is a verdict and no number: give verdict in a constraint")
 
 
 def _check_variable(variable: Variable, seen: set[str]) -> None:

@@ -6,12 +6,21 @@ from collections import Counter
 from collections.abc import Mapping
 
 from swgpar.log import console
+from swgpar.optimisation.comparison import (
+    DesignComparison,
+    bound_sentences,
+    comparison,
+    start_sentence,
+)
+from swgpar.optimisation.optimisation_data import OptimisationData
 from swgpar.optimisation.problem import STATUS, Evaluation
-from swgpar.optimisation.result import OptimisationResult
 from swgpar.optimisation.spec import OptimiseSection
 from swgpar.results.page import number
 from swgpar.studies.many_runs import note_ended, print_line
 from swgpar.studies.terminal import folded_table
+
+SHOWN = 20
+"""Designs in the tables at the end: optimise.csv has all."""
 
 
 class OptimiseProgress:
@@ -38,7 +47,7 @@ class OptimiseProgress:
     def _take(self, evaluation: Evaluation) -> None:
         self._done += 1
         for objective in self._objectives if evaluation.status == "feasible" else ():
-            name, choose = objective.quantity, min if objective.sign > 0.0 else max
+            name, choose = objective.name, min if objective.sign > 0.0 else max
             value = evaluation.quantities[name]
             self._best[name] = choose(value, self._best.get(name, value))
 
@@ -52,27 +61,40 @@ class OptimiseProgress:
         words = [f"{self._name}  {self._done}/{self._wanted}  evaluation {index}"]
         words.append(f"{evaluation.wall_s:.1f} s")
         for objective in self._objectives:
-            name = objective.quantity
+            name = objective.name
             if name in evaluation.quantities:
                 best = f" (best {self._best[name]:.5g})" if name in self._best else ""
                 words.append(f"{name} {evaluation.quantities[name]:.5g}{best}")
         print_line([*words, ": ".join(filter(None, (evaluation.status, evaluation.reason)))])
 
 
-def print_result(result: OptimisationResult) -> None:
-    """Print the best designs."""
+LONGEST = 11
+"""Letters of a number in a table, of a verdict and of a status."""
+
+NAMES = 0.4
+"""Part of the terminal's width that names may take."""
+
+
+def print_result(result: OptimisationData) -> None:
+    """Print the start design beside the best ones, and which variables are at a bound."""
     counts = Counter(each.status for each in result.evaluations.values())
     console.print(", ".join(f"{counts[status]} {status}" for status in STATUS))
-    best = {
-        index: {**result.evaluations[index].values, **result.evaluations[index].quantities}
-        for index in result.best[:20]
-    }
-    if not best:
-        return
-    table = folded_table(title="best")
-    names = list(best[result.best[0]])
-    for name in ("evaluation", *names):
-        table.add_column(name, justify="right", overflow="fold")
-    for index, values in best.items():
-        table.add_row(str(index), *(number(values[name]) for name in names))
+    if result.compared:
+        found = comparison(result, result.compared[:SHOWN])
+        width = min(max(len(row.name) for row in found.rows), int(NAMES * console.width))
+        columns = (console.width - width - 2) // (LONGEST + 1)
+        for part in found.parts(columns):
+            _print_part(part, width)
+    for sentence in (start_sentence(result), *bound_sentences(result)):
+        if sentence:
+            console.print(sentence, markup=False)
+
+
+def _print_part(part: DesignComparison, width: int) -> None:
+    table = folded_table()
+    table.add_column("evaluation", overflow="fold", width=width)
+    for head in part.heads:
+        table.add_column(head, justify="right", overflow="fold", max_width=LONGEST)
+    for row in part.rows:
+        table.add_row("\n".join(filter(None, (row.name, row.wanted))), *map(number, row.cells))
     console.print(table)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from mpi4py import MPI
 
 from swgpar import watch
 from swgpar.analysis.accuracy import not_refinable
-from swgpar.analysis.model_sources import LoadedDrives
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.summary import DriveSummary
@@ -26,7 +26,10 @@ from swgpar.run_options import RunOptions
 from swgpar.studies.case import Outcome
 from swgpar.studies.job import run_one
 from swgpar.studies.many_runs import claim_folder, do_runs, note_ended, print_line
-from swgpar.systems.drive import DRIVE, Drives
+from swgpar.systems.drive import DRIVE
+
+if TYPE_CHECKING:
+    from swgpar.systems import System
 
 JSON, CSV, PAGE = "rating.json", "rating.csv", "rating.html"
 """Names of the sheet in its folder."""
@@ -41,8 +44,9 @@ class _Book:
     """What has become of the runs, and the sheet that follows.
 
     plan : the runs;  rows : of the sheet;  recipe : of the meshes;  options : of the rating
-    places : folders of the runs, by their names. A run that is changed has another one, so that
-    those that are done are found again
+    folder : of the sheet, None in memory
+    places : folders of the runs, by their names, empty in memory. A run that is changed has another
+    one, so that those that are done are found again
     outcomes : of the runs that have ended, by their names
     """
 
@@ -55,19 +59,29 @@ class _Book:
         options: RunOptions,
     ) -> None:
         self.design, self.plan, self.rows = design, plan, rows
-        self.folder, self.accuracy = options.out or Path(), options.accuracy
+        self.options = options
         self.places = {
-            run.name: f"{RUNS}/{run.folder(_identity(run, recipe))}" for run in plan.runs
+            run.name: f"{RUNS}/{run.folder(_identity(run, recipe))}" if options.out else ""
+            for run in plan.runs
         }
         self.outcomes: dict[str, Outcome] = {}
         self.summaries: dict[LoadCase, DriveSummary] = {}
 
-    def note(self, run: PlannedRun, outcome: Outcome, comm: MPI.Comm) -> None:
-        """A run has ended; every rank reads its summary."""
+    def compute(self, run: PlannedRun, system: System[Any, Any], comm: MPI.Comm) -> Outcome:
+        """Do a run; collective."""
+        folder = self.options.out
+        given = replace(
+            self.options,
+            out=folder and folder / self.places[run.name],
+            accuracy=accuracy_of(run, self.options.accuracy),
+            comm=comm,
+            terminal=False,
+        )
+        outcome = run_one(system, run.design, given, run.refusal)
         self.outcomes[run.name] = outcome
-        if outcome.status == "finished":
-            result = DRIVE.open(self.folder / self.places[run.name], comm)
-            self.summaries |= dict.fromkeys(run.cases, result.summary)
+        if isinstance(outcome.answers, DriveSummary):
+            self.summaries |= dict.fromkeys(run.cases, outcome.answers)
+        return outcome
 
     def _missing(self, case: LoadCase) -> str:
         """Why there is no answer for a case."""
@@ -90,7 +104,9 @@ class _Book:
             status="refused" if run.refusal else status,
             folder=self.places[run.name],
             reason=run.refusal or ("" if outcome is None else outcome.reason),
-            left_out=", ".join(filter(None, (run.left_out, without_accuracy(run, self.accuracy)))),
+            left_out=", ".join(
+                filter(None, (run.left_out, without_accuracy(run, self.options.accuracy)))
+            ),
             wall_s=None if outcome is None else outcome.wall_s,
         )
 
@@ -108,7 +124,7 @@ class _Book:
             ),
             tuple(map(self._entry, self.plan.runs)),
             self.design.model_dump(),
-            self.folder.absolute(),
+            self.options.out and self.options.out.absolute(),
         )
 
 
@@ -118,39 +134,48 @@ def rate_drive(design: DriveDesign, options: RunOptions) -> RatingSheet:
     folder, comm = options.out, options.comm
     if folder is None:
         raise InputError("out is missing: a rating keeps its runs in a folder")
-    plan, rows = on_all(comm, lambda: (plan_runs(design), rating_rows(design, options.accuracy)))
-    recipe = options.recipe
-    if recipe is None:
-        name = MESHES[design.drive.model]
-        recipe = load_recipe(name)
-        options = replace(options, recipe=recipe, recipe_name=name)
+    book = _begin(design, options)
+    plan, count = book.plan, len(book.plan.runs)
     _claim(folder, options)
-    book, count = _Book(design, plan, rows, recipe, options), len(plan.runs)
-    drives = LoadedDrives()
-    system = Drives(drives)
     watch.saved("runs", 0, count)
 
     def run(index: int, own: MPI.Comm, _: object) -> None:
         planned = plan.runs[index]
         watch.doing(f"run {index + 1} of {count}: {planned.name}")
-        given = replace(
-            options,
-            out=folder / book.places[planned.name],
-            accuracy=accuracy_of(planned, options.accuracy),
-            comm=own,
-            terminal=False,
-        )
-        outcome = run_one(system, planned.design, given, planned.refusal)
-        book.note(planned, outcome, own)
-        _write(book.sheet(), own)
+        outcome = book.compute(planned, system, own)
+        _write(book.sheet(), folder, own)
         if own.rank == 0:
             note_ended("runs", index + 1, count)
             if options.terminal:
                 print_line(_words(index, count, planned, outcome))
 
-    do_runs(comm, "ranks", count, run, None)
-    drives.destroy()
+    with DRIVE.shared() as system:
+        do_runs(comm, "ranks", count, run, None)
     return book.sheet()
+
+
+def rate_in_memory(
+    design: DriveDesign, options: RunOptions, system: System[Any, Any]
+) -> RatingSheet:
+    """The rating sheet of a drive without files; collective. system : that its runs share"""
+    book = _begin(design, options)
+    for run in book.plan.runs:
+        book.compute(run, system, options.comm)
+    return book.sheet()
+
+
+def _begin(design: DriveDesign, options: RunOptions) -> _Book:
+    """The book before any run, with the recipe of the package where the options have none."""
+
+    def planned() -> tuple[RatingPlan, list[RatingRow]]:
+        return plan_runs(design), rating_rows(design, options.accuracy)
+
+    recipe = options.recipe
+    if recipe is None:
+        name = MESHES[design.drive.model]
+        recipe = load_recipe(name)
+        options = replace(options, recipe=recipe, recipe_name=name)
+    return _Book(design, *on_all(options.comm, planned), recipe, options)
 
 
 def _identity(run: PlannedRun, recipe: MeshRecipe) -> str:
@@ -194,9 +219,9 @@ def _claim(folder: Path, options: RunOptions) -> None:
     )
 
 
-def _write(sheet: RatingSheet, comm: MPI.Comm) -> None:
+def _write(sheet: RatingSheet, folder: Path, comm: MPI.Comm) -> None:
     """Write the files of the sheet; collective."""
     page = rating_page(sheet) if comm.rank == 0 else b""
-    write_from_root(comm, sheet.folder / JSON, to_json(sheet.content))
-    write_from_root(comm, sheet.folder / CSV, format_csv(sheet.rows))
-    write_from_root(comm, sheet.folder / PAGE, page)
+    write_from_root(comm, folder / JSON, to_json(sheet.content))
+    write_from_root(comm, folder / CSV, format_csv(sheet.rows))
+    write_from_root(comm, folder / PAGE, page)

@@ -58,6 +58,7 @@ class RatingRow:
     missing : why no run gives an answer, or why there is no limit; empty otherwise
     lower_bound : says of a summary why the answer is a lower bound; empty where it is none
     of_strength : whether it is about the strength of the drive
+    unit : of the answer
     """
 
     name: str
@@ -67,6 +68,7 @@ class RatingRow:
     missing: str = ""
     lower_bound: Callable[[DriveSummary], str] = lambda _: ""
     of_strength: bool = False
+    unit: str = ""
 
     def verdict(self, summary: DriveSummary | None, without: str) -> Verdict:
         """The verdict by the summary of the row's run. without : why there is no summary, or what
@@ -132,6 +134,7 @@ def _strength(
             None if wall else of_yield,
             wall or ("" if of_yield else NO_STRENGTHS),
             of_strength=not wall,
+            unit="MPa",
         )
         yield RatingRow(
             f"fatigue of {part}",
@@ -149,6 +152,7 @@ def _strength(
         spline_life,
         _required(section.life, Sense.AT_LEAST, "life"),
         lower_bound=lambda _: ALWAYS_AT_PEAK if often else "",
+        unit="h",
     )
     pressure, most = _named("contact.pressure"), _flank_pressure(section)
     yield RatingRow(
@@ -158,6 +162,7 @@ def _strength(
         most,
         "" if most else NO_FLANK_PRESSURE,
         of_strength=most is not None,
+        unit="MPa",
     )
     first = None
     if strengths is not None:
@@ -171,6 +176,7 @@ def _strength(
         first,
         "" if first else NO_STRENGTHS,
         of_strength=True,
+        unit="MPa",
     )
 
 
@@ -192,6 +198,7 @@ def _yield_of_ring(design: DriveDesign, section: RatingSection) -> RatingRow:
         limit,
         "" if limit else NO_RING_STRENGTH,
         of_strength=True,
+        unit="MPa",
     )
 
 
@@ -218,7 +225,8 @@ def _bearing(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]
         "static safety of the bearing", LoadCase.LARGEST, static_safety, limit, of_strength=True
     )
     life = _required(section.life, Sense.AT_LEAST, "life")
-    yield RatingRow("life of the bearing", LoadCase.AVERAGE, _named("bearing.life_hours"), life)
+    answer = _named("bearing.life_hours")
+    yield RatingRow("life of the bearing", LoadCase.AVERAGE, answer, life, unit="h")
 
 
 def _bolts(design: DriveDesign) -> Iterator[RatingRow]:
@@ -253,13 +261,15 @@ def _ratcheting(loads: RatingLoads) -> RatingRow:
         limit,
         lower_bound=_without_peak,
         of_strength=limit is not None,
+        unit="N·m",
     )
 
 
 def _stiffness(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
     for name in ("K1", "K2", "K3"):
         limit = _required(getattr(section, name), Sense.AT_LEAST, name)
-        yield RatingRow(f"stiffness {name}", LoadCase.STIFFNESS, _named(f"stiffness.{name}"), limit)
+        answer = _named(f"stiffness.{name}")
+        yield RatingRow(f"stiffness {name}", LoadCase.STIFFNESS, answer, limit, unit="N·m/rad")
     without_friction = design.contact.friction == 0.0
     yield RatingRow(
         "hysteresis",
@@ -267,10 +277,11 @@ def _stiffness(design: DriveDesign, section: RatingSection) -> Iterator[RatingRo
         _named("stiffness.hysteresis"),
         _required(section.hysteresis, Sense.AT_MOST, "hysteresis"),
         lower_bound=lambda _: NO_FRICTION if without_friction else "",
+        unit="arc minutes",
     )
     limit = _required(section.lost_motion, Sense.AT_MOST, "lost_motion")
     answer = _named("stiffness.lost_motion")
-    yield RatingRow("lost motion", LoadCase.STIFFNESS, answer, limit)
+    yield RatingRow("lost motion", LoadCase.STIFFNESS, answer, limit, unit="arc minutes")
 
 
 def _motion(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
@@ -281,6 +292,7 @@ def _motion(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
         _named("transmission_error.peak_to_peak"),
         _required(section.transmission_error, Sense.AT_MOST, "transmission_error"),
         lower_bound=lambda _: IDEAL if ideal else "",
+        unit="arcsec",
     )
     limit = _required(section.efficiency, Sense.AT_LEAST, "efficiency")
     losses = "" if design.losses else NO_LOSSES
@@ -288,13 +300,14 @@ def _motion(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
     yield RatingRow("efficiency", LoadCase.RATED, answer, limit, losses)
     limit = _required(section.no_load_torque, Sense.AT_MOST, "no_load_torque", 1000.0)
     answer = _named("losses.no_load_torque")
-    yield RatingRow("no-load torque", LoadCase.NO_LOAD, answer, limit, losses)
+    yield RatingRow("no-load torque", LoadCase.NO_LOAD, answer, limit, losses, unit="N·mm")
     speed, limit = section.largest_speed, None
     if speed is not None:
         lobes = design.wave_generator.lobes
         source = f"{lobes} lobes times rating.largest_speed"
         limit = Limit(lobes * speed / 60.0, Sense.AT_LEAST, source)
-    yield RatingRow("lowest natural frequency", LoadCase.MODES, _named("frequency.1"), limit)
+    answer = _named("frequency.1")
+    yield RatingRow("lowest natural frequency", LoadCase.MODES, answer, limit, unit="Hz")
 
 
 def _computation(design: DriveDesign, accuracy: float) -> Iterator[RatingRow]:
@@ -306,6 +319,7 @@ def _computation(design: DriveDesign, accuracy: float) -> Iterator[RatingRow]:
             LoadCase.RATED,
             _named(f"clearance.{clearance.ring}"),
             limit,
+            unit="mm",
         )
     limit = Limit(accuracy, Sense.AT_MOST, "largest error of the stress at the teeth")
     answer = "the error of the largest tension at the teeth has no estimate"

@@ -22,7 +22,7 @@ class RunEntry:
     status : "finished", "failed", "refused" or "waits";  reason : of the last three
     left_out : what the design asks for and the run does not have
     wall_s : seconds, None of a run that has not finished;  folder : its name below that of the
-    sheet
+    sheet, empty in memory
     """
 
     name: str
@@ -52,7 +52,7 @@ class RatingSheet:
     rated : verdicts in the order of the sheet
     runs : in their order
     design : the whole design, defaults included, by section
-    folder : of the files
+    folder : of the files, None of a sheet in memory
 
     Examples
     --------
@@ -64,7 +64,7 @@ class RatingSheet:
     rated: tuple[RatedVerdict, ...]
     runs: tuple[RunEntry, ...]
     design: Mapping[str, Any]
-    folder: Path
+    folder: Path | None
 
     @property
     def verdicts(self) -> tuple[Verdict, ...]:

@@ -56,7 +56,7 @@ _for_files: ContextVar[bool] = ContextVar("for_files", default=False)
 
 
 @contextmanager
-def _drawn_for_files() -> Iterator[None]:
+def drawn_for_files() -> Iterator[None]:
     """Figures made here are for files, and no window shows them."""
     token = _for_files.set(True)
     try:
@@ -181,7 +181,7 @@ class FigureSet(ABC):
             if not writes and not self._gathered:
                 continue
             try:
-                with _drawn_for_files():
+                with drawn_for_files():
                     figure = self.drawings[name]()
                 if writes:
                     exact = name in self.exact_size

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from swgpar.results.figure_set import line_through
+from swgpar.results.figure_set import line_through, new_figure
 from swgpar.results.history import COLUMNS, loaded_increments
 from swgpar.results.quantity import with_unit
 from swgpar.studies.case import Case, Outcome
@@ -123,11 +123,9 @@ def axes_grid(
     count: int, width: float = 4.2, height: float = 3.6, columns: int = 3
 ) -> tuple[Figure, list[Axes]]:
     """A figure with panels of a width and height (inches), so many side by side."""
-    from matplotlib.figure import Figure
-
     columns = min(columns, count)
     rows = -(-count // columns)
-    figure = Figure(figsize=(width * columns, height * rows), layout="constrained")
+    figure = new_figure(figsize=(width * columns, height * rows), layout="constrained")
     return figure, [figure.add_subplot(rows, columns, k + 1) for k in range(count)]
 
 

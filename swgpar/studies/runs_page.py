@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from swgpar.results.figure_set import import_matplotlib
+from swgpar.results.figure_set import drawn_for_files, import_matplotlib
 from swgpar.results.page import RANK, Picture, Table, TableRow, page
 from swgpar.results.quantity import with_unit
 from swgpar.studies.run_file import RunFile
@@ -48,7 +48,8 @@ def runs_page(
     failed_figures = ""
     try:
         import_matplotlib()
-        sections = draw()
+        with drawn_for_files():
+            sections = draw()
     except Exception as error:  # a picture that fails must not cost the report
         failed_figures = str(error)
     common = {"kind": kind, "section": file.section, "text": file.text, "version": __version__}

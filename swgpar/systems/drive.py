@@ -6,9 +6,10 @@ the evaluations.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from mpi4py import MPI
 
@@ -129,6 +130,14 @@ class Drives(System[DriveDesign, "DriveResult"]):
         }
         asked = {name: getattr(design.output, name) for name in ("root_stress", "contact_errors")}
         return found | {name: True for name, is_asked in asked.items() if is_asked}
+
+    @contextmanager
+    def shared(self) -> Iterator[Self]:
+        from swgpar.analysis.model_sources import LoadedDrives
+
+        models = LoadedDrives()
+        yield type(self)(models)
+        models.destroy()  # after an error of one rank the others would wait here
 
     def measure(self, result: DriveResult) -> Measured:
         summary = result.summary

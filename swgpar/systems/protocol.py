@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, Self, TypeVar
 
 import numpy as np
 from mpi4py import MPI
@@ -50,6 +51,7 @@ class Measured:
 
     values : all quantities by name, without those that the run does not have
     unbounded : names of those that grow with every finer mesh
+    answers : of the run, with errors and places, by name
     wall_s : seconds, None where they are not known
     elements, newton_mean : of the mesh, and Newton iterations of an increment; None without a mesh
     history : columns of the history that are drawn against the angle of the wave generator; empty
@@ -59,6 +61,7 @@ class Measured:
     values: dict[str, float] = field(default_factory=dict)
     wall_s: float | None = None
     unbounded: frozenset[str] = frozenset()
+    answers: Mapping[str, Answer] = field(default_factory=dict)
     elements: int | None = None
     newton_mean: float | None = None
     history: Mapping[str, np.ndarray] = field(default_factory=dict)
@@ -68,7 +71,7 @@ class Measured:
         """The answers that have a value. more : further fields"""
         values = {n: answer.value for n, answer in answers.items() if answer.value is not None}
         unbounded = frozenset(n for n, answer in answers.items() if answer.no_error == NO_LIMIT)
-        return cls(values=values, wall_s=wall_s, unbounded=unbounded, **more)
+        return cls(values=values, wall_s=wall_s, unbounded=unbounded, answers=answers, **more)
 
 
 D = TypeVar("D", bound=Design)
@@ -150,6 +153,12 @@ class System(ABC, Generic[D, R]):
     @abstractmethod
     def identity(self, design: D, recipe: MeshRecipe | None) -> dict[str, Any]:
         """What is computed, for restarts: "identity", and what finished runs must share besides."""
+
+    @contextmanager
+    def shared(self) -> Iterator[Self]:
+        """The system for runs of one design under several loads: they share what they can inside of
+        the `with` block. Collective over the ranks of the runs."""
+        yield self
 
     @abstractmethod
     def measure(self, result: R) -> Measured:

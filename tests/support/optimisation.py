@@ -1,4 +1,4 @@
-"""An optimisation file: the gear pair with few samples, in two variables."""
+"""Optimisation files: the gear pair with few samples, in two variables."""
 
 from __future__ import annotations
 
@@ -31,3 +31,8 @@ goal = "maximise"
 quantity = "damping ratio 1"
 at_most = 0.5
 """
+
+FROM_START = OPTIMISATION.replace(
+    'keys = ["gear_1.mass", "gear_2.mass"]\nlow = -50.0', 'keys = ["gear_1.mass"]\nlow = 20.0'
+)
+"""The same in keys of one value each, so that the design file is a point of the search."""
