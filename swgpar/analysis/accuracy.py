@@ -49,7 +49,7 @@ def require_accuracy(accuracy: float) -> None:
 
 def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
     """The design with the angles of the period that suit an accuracy, unless it says them itself;
-    not with bolts, whose period is long, and not with a bearing, whose balls pass.
+    not with bolts, whose period is long.
 
     Raises InputError where the accuracy is out of range.
     """
@@ -58,7 +58,7 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
         design.kinematics.period_angle
     )
     given, kinematics = "samples" in design.steps.model_fields_set, design.kinematics
-    if given or not whole_period or kinematics.pitches > 1 or design.bearing is not None:
+    if given or not whole_period or kinematics.pitches > 1:
         return design
     samples = next(count for least, count in SAMPLES if accuracy >= least)
     while kinematics.states(samples) < samples:  # some angles would show the same state

@@ -70,9 +70,9 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
     steps, solver, stiffness = design.steps, design.solver, design.stiffness
     points, changes, left_out = program_points(design), {}, []
 
-    # balls pass, a load from one side stands still: no angle of another period has the same state.
-    # The period of teeth and bolts is long, and so few angles do not show it
-    repeats = design.bearing is None and design.repeats and design.kinematics.pitches == 1
+    # a load from one side stands still: no angle of another period has the same state. The period
+    # of teeth and bolts is long, and so few angles do not show it
+    repeats = design.repeats and design.kinematics.pitches == 1
 
     def leave_out(key: str, value: int | bool, words: str) -> None:
         if key not in steps.model_fields_set and value != getattr(steps, key):

@@ -39,7 +39,8 @@ def remarks(design: DriveDesign) -> list[str]:
             f"load.torque = {torque:g} N·m counts as none: up to {0.001 * negligible:.3g} N·m it "
             f"is too small beside the bending of the flexible spline"
         )
-    samples, repeats = design.steps.samples, design.kinematics.repeats
+    samples = design.steps.samples
+    repeats = design.kinematics.repeats(samples)
     shown = design.kinematics.states(samples)
     if shown < samples:
         sentences.append(

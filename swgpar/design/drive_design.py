@@ -119,14 +119,21 @@ class DriveDesign(DriveSections):
 
     @property
     def cage_speed(self) -> float:
-        """Speed of the cage over that of the wave generator.
+        """Speed of the cage over that of the wave generator in the rotation that is computed.
 
-        With `steps.samples` it is 1: the balls are then fixed to the cam, because only then the
-        drive repeats after a period. Otherwise it is the key, or that of balls that roll on a race
-        that rotates with the flexible spline.
+        With `steps.samples` the balls go on by whole passings in a period of the teeth, so that the
+        drive repeats after it.
         """
-        if self.steps.samples:
-            return 1.0
+        if not self.steps.samples:
+            return self.rolling_speed
+        kinematics = self.kinematics
+        passings = kinematics.ball_passings(self.steps.samples)
+        return 1.0 + passings * 2.0 * np.pi / self.bearing.balls / kinematics.period_angle
+
+    @property
+    def rolling_speed(self) -> float:
+        """Speed of the cage over that of the wave generator: the key, or that of balls that roll on
+        a race that rotates with the flexible spline."""
         if self.bearing.cage_speed is not None:
             return self.bearing.cage_speed
         return self.bearing_sizes.rolling_speed(self.kinematics.spline_speed)

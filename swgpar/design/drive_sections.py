@@ -80,9 +80,12 @@ class DriveSections(Design):
     @property
     def kinematics(self) -> Kinematics:
         """Speeds and angles."""
-        lobes, alike = self.wave_generator.lobes, self.lobes_are_alike
+        wave, bearing = self.wave_generator, self.bearing
         pancake, bolts = self.dynamic_spline is not None, self.cup.bolts if self.is_bolted else 0
-        return make_kinematics(self.drive, lobes, alike, pancake, bolts)
+        balls = 0 if bearing is None else bearing.balls
+        passes = bearing is not None and bearing.cage_speed != 1.0
+        alike = wave.lobes_are_alike
+        return make_kinematics(self.drive, wave.lobes, alike, pancake, bolts, balls, passes)
 
     @property
     def lobes_are_alike(self) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from swgpar.design.ball_phases import ball_passings
 from swgpar.design.sections import Drive, GearName
 
 
@@ -15,13 +16,15 @@ class Kinematics:
     """What the layout and the numbers of teeth make of the motion of a drive.
 
     teeth_fs, teeth_rg : numbers of teeth; a dynamic spline has those of the flexible spline
-    lobes, lobes_are_alike : of the wave generator, with its balls
+    lobes, lobes_are_alike : of the wave generator, without its balls
     output_gear : the gear that is the output
     standing_gear : the gear that stands in the frame in which the drive is computed: the fixed one,
     or the driven ring gear
     wave_generator_is_fixed : whether the ring gear is the input. Everything is then computed in the
     frame of the ring gear.
     bolts : that hold the flexible spline, evenly spaced; 0 without
+    balls, balls_pass : number of balls of the bearing, 0 without one, and whether they roll past
+    the wave generator
     """
 
     teeth_fs: int
@@ -32,6 +35,8 @@ class Kinematics:
     standing_gear: GearName
     wave_generator_is_fixed: bool
     bolts: int = 0
+    balls: int = 0
+    balls_pass: bool = False
 
     def teeth(self, gear: GearName) -> int:
         """Number of teeth of a gear."""
@@ -90,18 +95,33 @@ class Kinematics:
         """Period of the motion, rad of the wave generator against the standing gear."""
         return self.pitches * self.pitch_angle
 
-    @property
-    def repeats(self) -> int:
-        """How often the drive comes to the same state within a period, apart from names of teeth
-        and lobes: where like lobes do not divide the teeth, or those that are alike, they reach the
-        middle of one after another."""
+    def ball_passings(self, samples: int) -> int:
+        """By how many places the balls go on past the wave generator in a period of which so many
+        angles are computed; 0 without balls that pass."""
+        if not self.balls_pass:
+            return 0
+        return ball_passings(samples, self.teeth_fs / self.balls, self.pitches)
+
+    def repeats(self, samples: int) -> int:
+        """How often the drive comes to the same state within a period of so many angles, apart from
+        names of teeth, lobes and balls.
+
+        Where like lobes do not divide the teeth, or those that are alike, they reach the middle of
+        one after another. The balls must be at the same places of the lobes then.
+        """
         if not self.lobes_are_alike:
             return 1
-        return self.lobes // math.gcd(self.lobes, self.alike)
+        teeth, passings = self.alike, self.ball_passings(samples)
+        like = [
+            lobe
+            for lobe in range(self.lobes)
+            if lobe * (passings * teeth + self.balls) % self.lobes == 0
+        ]
+        return len({lobe * teeth % self.lobes for lobe in like})
 
     def states(self, samples: int) -> int:
         """How many different states so many angles show, evenly spaced in a period."""
-        return samples // math.gcd(samples, self.repeats)
+        return samples // math.gcd(samples, self.repeats(samples))
 
     def apart(self, samples: int) -> int:
         """The largest number of angles, evenly spaced in a period and at most `samples`, of which
@@ -141,7 +161,13 @@ class Kinematics:
 
 
 def make_kinematics(
-    drive: Drive, lobes: int, lobes_are_alike: bool, pancake: bool, bolts: int
+    drive: Drive,
+    lobes: int,
+    lobes_are_alike: bool,
+    pancake: bool,
+    bolts: int,
+    balls: int,
+    balls_pass: bool,
 ) -> Kinematics:
     """The motion of a drive. In a pancake drive the dynamic spline is the output or stands where
     the flexible spline does in others."""
@@ -151,5 +177,14 @@ def make_kinematics(
         output, standing = standing, output
     fixed = drive.layout == "wave_generator_fixed"
     return Kinematics(
-        drive.teeth_fs, drive.teeth_rg, lobes, lobes_are_alike, output, standing, fixed, bolts
+        drive.teeth_fs,
+        drive.teeth_rg,
+        lobes,
+        lobes_are_alike,
+        output,
+        standing,
+        fixed,
+        bolts,
+        balls,
+        balls_pass,
     )

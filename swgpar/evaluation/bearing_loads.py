@@ -91,10 +91,11 @@ class BallLoads(AnswerGroup):
     wg_angle_deg, cam_angle_deg : angles of the wave generator and from the major axis, where the
     load of a ball is the largest
     cage_speed : of the cage over that of the wave generator
-    balls_fixed_to_cam : whether `steps.samples` has fixed the balls to the cam
+    balls_fixed_to_cam : whether the balls turn with the cam
     ball_passing_deg : rotation after which the next ball is at the same place of the cam, None if
     fixed to it
-    covers_ball_passing : whether the run covers it
+    ball_places : of the balls between two neighbours that `steps.samples` shows, 0 without
+    covers_ball_passing : whether the run covers a passing
     errors : by names of answers
     load_ripple : None without load;  torsional_share, radial_share : None without a torque
     """
@@ -117,6 +118,7 @@ class BallLoads(AnswerGroup):
     cage_speed: float
     balls_fixed_to_cam: bool
     ball_passing_deg: float | None
+    ball_places: int = 0
     covers_ball_passing: bool
     load_ripple: float | None = answer(
         "bearing.load_ripple", "range of the largest ball load over its mean"
@@ -154,7 +156,12 @@ class BallLoads(AnswerGroup):
 
     def remarks(self) -> Iterator[str]:
         if self.balls_fixed_to_cam:
-            yield "the balls are fixed to the cam: ball passing is left out"
+            yield "the balls turn with the cam and do not pass"
+        elif self.ball_places:
+            yield (
+                f"a ball passes every {self.ball_passing_deg:.3g} degrees: the angles of the "
+                f"period have {self.ball_places} places of the balls"
+            )
         elif not self.covers_ball_passing:
             yield (
                 f"a ball passes every {self.ball_passing_deg:.3g} degrees: the run covers less "
@@ -226,7 +233,9 @@ def evaluate_bearing(
     loads = np.array([row["load_N"] for row in loaded]).reshape(-1, design.bearing.balls)
     largest = max(loaded, key=lambda row: row["load_N"])
     peaks = loads.max(axis=1)
-    passing = ball_passing_angle(design.cage_speed, design.bearing.balls)
+    passing = ball_passing_angle(design.rolling_speed, design.bearing.balls)
+    samples = design.steps.samples
+    places = samples if design.kinematics.ball_passings(samples) else 0
     span = np.radians(np.ptp([row["wg_angle_deg"] for row in loaded]))
     found = BallLoads(
         largest_load_N=largest["load_N"],
@@ -236,10 +245,11 @@ def evaluate_bearing(
         cam_angle_deg=largest["cam_angle_deg"],
         mean_load_N=float(loads.mean()),
         unloaded_balls=int((loads <= 0.0).sum(axis=1).max()),
-        cage_speed=design.cage_speed,
+        cage_speed=design.rolling_speed,
         balls_fixed_to_cam=bool(np.isinf(passing)),
         ball_passing_deg=None if np.isinf(passing) else float(np.degrees(passing)),
-        covers_ball_passing=bool(span >= passing * (1.0 - 1e-6)),
+        ball_places=places,
+        covers_ball_passing=places > 1 or bool(span >= passing * (1.0 - 1e-6)),
         load_ripple=float(np.ptp(peaks) / peaks.mean()) if peaks.any() else None,
         torsional_share=shares.get("torsional"),
         radial_share=shares.get("radial"),

@@ -58,8 +58,9 @@ def require_samples(sequence: LoadSequence, sections: Sequence[str]) -> None:
 
 
 def places(kinematics: Kinematics, rows: Sequence[Row]) -> np.ndarray:
-    """Places (n,) of rows in the part of the period after which the state repeats, 0 to 1."""
-    part = np.degrees(kinematics.period_angle) / kinematics.repeats
+    """Places (n,) of the rows of a period in the part of it after which the state repeats, 0 to
+    1."""
+    part = np.degrees(kinematics.period_angle) / kinematics.repeats(len(rows))
     return np.round(column(rows, "wg_angle_deg") / part % 1.0, PLACE_DIGITS) % 1.0
 
 
@@ -72,7 +73,11 @@ def sampling_error(
     sequence: LoadSequence, rows: list[Row], names: tuple[str, ...]
 ) -> dict[str, float]:
     """Differences of the means over the period from those over every other place of its samples;
-    empty for a single place."""
+    empty for a single place.
+
+    With balls that pass they are at least the standard deviation over the number of samples: waves
+    in which teeth and balls move together have the phase of every other place by chance.
+    """
     period = of_period(sequence, rows)
     place = places(sequence.kinematics, period)
     half = in_order(place)[::2]
@@ -80,10 +85,13 @@ def sampling_error(
         return {}
     gaps = np.diff(place[half], append=place[half[0]] + 1.0)
     weights = 0.5 * (gaps + np.roll(gaps, 1))
-    return {
-        name: abs(float(values.mean() - weights @ values[half]))
-        for name, values in ((name, column(period, name)) for name in names)
-    }
+    passes = sequence.kinematics.ball_passings(len(period)) != 0
+    found = {}
+    for name in names:
+        values = column(period, name)
+        error = abs(float(values.mean() - weights @ values[half]))
+        found[name] = max(error, float(values.std()) / len(values)) if passes else error
+    return found
 
 
 def continued(sequence: LoadSequence, rows: list[Row]) -> list[Row]:

@@ -135,7 +135,8 @@ def test_period_and_work() -> None:
     """With balls that are fixed to the cam the state repeats after a pitch of the ring gear, and
     the work of input and output agree: the torque of the input swings by four times its mean on
     this mesh, and its mean over twelve angles is good to 2 %."""
-    design = small("plane", "steps.samples=8", "wave_generator.C=0.98")
+    fixed = "wave_generator.bearing.cage_speed=1"
+    design = small("plane", "steps.samples=8", "wave_generator.C=0.98", fixed)
     stepper = jumped(design)
     before, first = loads(stepper), row(stepper)
     step = design.kinematics.period_angle / SAMPLES

@@ -98,7 +98,7 @@ def test_losses_and_fatigue_with_a_bearing() -> None:
     assert losses.parts_Nmm.bearing == pytest.approx(expected, rel=1e-9)
     assert (
         result.summary.fatigue.least["goodman"].safety > 0.0
-        and result.summary.bearing.balls_fixed_to_cam
+        and result.summary.bearing.ball_places == 2
     )
     with console.capture() as captured:
         print_drive(result.history, result.summary)

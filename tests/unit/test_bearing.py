@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import gcd
+
 import numpy as np
 import pytest
 
@@ -13,6 +15,7 @@ from swgpar import load_design
 from swgpar.checks.remarks import remarks
 from swgpar.contact.point_contact import ball_spring, point_contact
 from swgpar.contact.smooth_curve import shape_functions, smooth_curve
+from swgpar.design.ball_phases import ball_passings
 from swgpar.errors import InputError
 from swgpar.evaluation.bearing_life import BearingSeries, million_turns
 from swgpar.evaluation.bearing_loads import ball_passing_angle
@@ -306,12 +309,16 @@ def test_few_balls_for_the_lobes() -> None:
 
 
 def test_balls_that_differ_from_lobe_to_lobe() -> None:
-    """Where lobes do not divide the balls, all of the drive is modelled, and all angles of a period
-    show different states."""
-    sampled = ("steps.samples=4", "steps.rotation=9.0", "drive.teeth_fs=41", "drive.teeth_rg=43")
-    for balls, repeats in ((20, 2), (19, 1)):
-        given = (*PLANE, *BEARING, *sampled, f"wave_generator.bearing.balls={balls}")
-        assert load_design(DESIGN, given).kinematics.repeats == repeats
+    """Where lobes do not divide the balls, all of the drive is modelled. The second lobe reaches
+    the teeth of the first one after half of a period. The balls have gone on by half of a place
+    then, if they pass, and a number that is odd has them at this place at the second lobe."""
+    sampled = ("steps.rotation=9.0", "drive.teeth_fs=41", "drive.teeth_rg=43")
+    fixed = "wave_generator.bearing.cage_speed=1"
+    for balls, keys, repeats in ((20, (), 1), (19, (), 2), (20, (fixed,), 2), (19, (fixed,), 1)):
+        given = (*PLANE, *BEARING, *sampled, *keys, f"wave_generator.bearing.balls={balls}")
+        kinematics = load_design(DESIGN, [*given, "steps.samples=4"]).kinematics
+        assert kinematics.repeats(4) == repeats
+        assert kinematics.apart(4) == (4 if repeats == 1 else 3)
     for balls, copies in ((20, 1), (21, 3)):
         given = (*MODELS["plane"], *BEARING, f"wave_generator.bearing.balls={balls}")
         assert load_design(DESIGN, given).copies == copies
@@ -326,5 +333,29 @@ def test_cage_speed() -> None:
         load_design(DESIGN, [*PLANE, *BEARING, "wave_generator.bearing.cage_speed=0.4"]).cage_speed
         == 0.4
     )
-    sampled = load_design(DESIGN, [*PLANE, *BEARING, "steps.samples=4", "steps.rotation=9.0"])
-    assert sampled.cage_speed == 1.0 and np.isinf(ball_passing_angle(sampled.cage_speed, 20))
+    period = (*PLANE, *BEARING, "steps.samples=4", "steps.rotation=9.0")
+    sampled, pitch = load_design(DESIGN, period), 2.0 * np.pi / 42
+    assert sampled.rolling_speed == design.rolling_speed
+    # a ball has the place of its neighbour after one period
+    assert (sampled.cage_speed - 1.0) * pitch == pytest.approx(2.0 * np.pi / 20, rel=1e-12)
+    fixed = load_design(DESIGN, [*period, "wave_generator.bearing.cage_speed=1"])
+    assert fixed.cage_speed == 1.0 and np.isinf(ball_passing_angle(fixed.cage_speed, 20))
+
+
+@pytest.mark.parametrize("samples", range(2, 17))
+def test_angles_of_a_period_show_all_places_of_balls(samples: int) -> None:
+    """Teeth and balls take evenly spaced places each, and no wave in which both move together by
+    their first orders is taken for the mean, where there are angles enough."""
+    for teeth_per_ball, pitches in ((2.0, 1), (4.5, 1), (7.3, 1), (2.0, 7)):
+        if gcd(samples, pitches) > 1:
+            continue
+        number = np.arange(samples)
+        balls = ball_passings(samples, teeth_per_ball, pitches) * number % samples
+        teeth = pitches * number % samples
+        assert sorted(balls) == sorted(teeth) == list(number)
+        if samples > 3:
+            assert len(set((teeth + balls) % samples)) > 1
+
+
+def test_one_angle_has_no_passing() -> None:
+    assert ball_passings(1, 4.5) == 0

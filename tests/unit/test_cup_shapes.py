@@ -461,7 +461,7 @@ def test_attachments_that_do_not_fit_are_refused(changes: Changes, key: str, wor
 def test_the_period_of_teeth_and_bolts(bolts: int, pitches: int, repeats: int) -> None:
     """40 teeth; an odd number of bolts is the same after half a turn of two lobes."""
     kinematics, alike = shaped(bolted(bolts, 1.0)).kinematics, shaped(CLAMPED).kinematics
-    assert (kinematics.pitches, kinematics.repeats) == (pitches, repeats)
+    assert (kinematics.pitches, kinematics.repeats(0)) == (pitches, repeats)
     assert kinematics.period_angle == pytest.approx(pitches * alike.period_angle)
     assert kinematics.pitch_angle == alike.pitch_angle == alike.period_angle
 

@@ -98,13 +98,13 @@ def test_lobes_that_do_not_divide_the_teeth_repeat_a_state_within_the_period(
     kinematics: Kinematics,
 ) -> None:
     """With two lobes and an odd number of teeth six angles show three states, five show five."""
-    assert kinematics.repeats == 1 and kinematics.apart(6) == 6
+    assert kinematics.repeats(0) == 1 and kinematics.apart(6) == 6
     odd = dataclasses.replace(kinematics, teeth_fs=41, teeth_rg=43)
-    assert odd.repeats == 2 and odd.apart(6) == 5 and odd.apart(4) == 3
-    assert dataclasses.replace(odd, lobes_are_alike=False).repeats == 1
+    assert odd.repeats(0) == 2 and odd.apart(6) == 5 and odd.apart(4) == 3
+    assert dataclasses.replace(odd, lobes_are_alike=False).repeats(0) == 1
     three = dataclasses.replace(odd, teeth_fs=40, lobes=3)
-    assert three.repeats == 3 and three.apart(6) == 5 and three.apart(4) == 4
-    assert dataclasses.replace(three, teeth_fs=39, teeth_rg=42).repeats == 1
+    assert three.repeats(0) == 3 and three.apart(6) == 5 and three.apart(4) == 4
+    assert dataclasses.replace(three, teeth_fs=39, teeth_rg=42).repeats(0) == 1
     values = np.arange(6.0)
     coarse = CoarsePeriod(PeriodCurves(values.tolist(), values.tolist()), factor=1.6)
     rows = rows_of(odd, values, values)
@@ -141,7 +141,7 @@ def test_a_run_takes_angles_that_show_different_states() -> None:
     assert taken.steps.samples == 5
     result = swgpar.run(taken.with_values({"steps.samples": 4}), RECIPE, progress=False)
     kinematics = taken.kinematics
-    assert kinematics.repeats == 2
+    assert kinematics.repeats(0) == 2
     history = {name: result.history[name][:4] for name in ("wg_angle_deg", "output_angle_deg")}
     errors = transmission_error(*history.values(), kinematics.ratio)
     torques = result.history[INPUT_TORQUE][:4]
