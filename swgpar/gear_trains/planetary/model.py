@@ -169,10 +169,17 @@ class PlanetaryModel:
     def mesh_stiffness(self, times: np.ndarray) -> np.ndarray:
         """Stiffnesses (times, m) N/m of the meshes with the part of the ring between its nodes in
         series."""
-        out = np.array([self.mesh.at(t) for t in times])
-        ring = out[:, self.design.planet.count :]
+        return self._in_series(np.array([self.mesh.at(t) for t in times]), times)
+
+    def mean_stiffness(self, t: float) -> np.ndarray:
+        """Mean stiffnesses (m,) N/m of the meshes where they are at a time in s, likewise."""
+        return self._in_series(self.mesh.mean[None].copy(), np.array([t]))[0]
+
+    def _in_series(self, stiffness: np.ndarray, times: np.ndarray) -> np.ndarray:
+        """Change stiffnesses (times, m) of the meshes to those with the ring between its nodes."""
+        ring = stiffness[:, self.design.planet.count :]
         ring /= 1.0 + ring * (self.local_flexibility(times) @ self._on_ring)
-        return out
+        return stiffness
 
     def modal_deflection_rows(self, times: np.ndarray) -> np.ndarray:
         """Deflections (times, m, n) of the meshes per mode."""

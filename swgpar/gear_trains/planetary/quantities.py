@@ -9,11 +9,15 @@ import numpy as np
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
 from swgpar.gear_trains.planetary.model import PlanetaryModel, base_radii
 from swgpar.gear_trains.planetary.monitored import MONITORED
+from swgpar.gear_trains.planetary.natural_modes import natural_modes
 from swgpar.gear_trains.planetary.time_stepping import TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
 from swgpar.gear_trains.published import SAMPLING_ERROR, STATISTICS, number_label
 from swgpar.results.quantity import Quantity
 from swgpar.vibration.backlash import force
+
+LISTED = 12
+"""Natural frequencies that are answers; a train has 21 at least."""
 
 OF_RING = ("ring_contact_radial", "ring_node_tangential")
 """Monitored displacements of the ring."""
@@ -36,6 +40,9 @@ def quantities(design: PlanetaryDesign) -> dict[str, Quantity]:
             f"{harmonic} outward ring displacement at planet 1"
         ),
         "dominant_cycles_ring_node": Quantity(f"{harmonic} tangential displacement of a ring node"),
+        "natural_frequencies": Quantity(
+            "lowest natural frequencies with all meshes in contact", "Hz", count=LISTED
+        ),
         "out_of_contact": Quantity(
             "share of steps and samples in which a mesh is not in contact on its loaded flank"
         ),
@@ -75,8 +82,7 @@ def derived(design: PlanetaryDesign) -> dict[str, float]:
         train.mesh_stiffness(np.zeros(1))[0],
     )
     forces = force(k, deflection_rows @ start.q[:, 0], train.half_backlash)
-    whole = np.diag(train.stiffness) + deflection_rows.T @ (k[:, None] * deflection_rows)
-    frequencies = np.sqrt(np.linalg.eigvalsh(whole).clip(0.0)) / (2.0 * np.pi)
+    frequencies = natural_modes(train).frequency
     lowest = float(frequencies[frequencies > 1.0][0])
     sun, planets, centres = base_radii(design)
     return {
