@@ -117,7 +117,7 @@ def _campbell(result: TrainResult[PlanetaryDesign]) -> Figure:
     lowest, highest = frequencies[[0, -1]]
     teeth, harmonics = design.ring.teeth, range(1, design.mesh.harmonics + 1)
     speed = np.geomspace(
-        min(design.carrier.speed, 2.0 * np.pi * lowest / (teeth * harmonics[-1])),
+        0.7 * min(design.carrier.speed, 2.0 * np.pi * lowest / (teeth * harmonics[-1])),
         max(design.carrier.speed, 2.0 * np.pi * highest / teeth),
         200,
     )
