@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swgpar.load.load_states import Stage
-from swgpar.results.figure_set import panels, plot_line
+from swgpar.results.figure_set import from_zero, panels, plot_line
 from swgpar.results.table import Columns
 
 if TYPE_CHECKING:
@@ -38,8 +38,9 @@ def draw_ball_loads(balls: Columns, bearing: BallLoads | None, title: str) -> Fi
     upper.set_title(f"loads of {count} balls at {len(increments)} angles")
     peaks = balls["load_N"].reshape(len(increments), -1).max(axis=1)
     plot_line(lower, balls["wg_angle_deg"][first], peaks, "o-", ms=4)
-    fixed = ", balls fixed to the cam" if bearing and bearing.balls_fixed_to_cam else ""
-    lower.set(xlabel=title, ylabel="largest ball load (N)" + fixed)
+    lower.set(xlabel=title, ylabel="largest ball load (N)")
+    if bearing and bearing.balls_fixed_to_cam:
+        lower.set_title("balls fixed to the cam: ball passing is left out", fontsize=10)
     for axes in (upper, lower):
-        axes.set_ylim(bottom=0.0)
+        from_zero(axes)
     return figure

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.results.figure_set import new_figure, panels, plot_line
+from swgpar.results.figure_set import from_zero, new_figure, panels, plot_line
 from swgpar.results.table import Columns
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def draw_pairs(pairs: Columns, lobes: int = 2) -> Figure:
                         mfc=fill,
                         label=label,
                     )
-        axes.set_ylim(bottom=0.0)
+        from_zero(axes)
     upper.set(ylabel="normal force (N)", title="pairs of flanks in contact, at all computed angles")
     lower.set(ylabel="largest pressure (MPa)", xlabel="tooth, from the major axis (degrees)")
     figure.legend(
@@ -89,7 +89,7 @@ def draw_load_sharing(pairs: Columns, history: Columns, title: str, lobes: int =
         plot_line(lower, angles, count, "o-", drawstyle="steps-mid", ms=4)
     lower.set(xlabel=title, ylabel="pairs in contact")
     for axes in (upper, lower):
-        axes.set_ylim(bottom=0.0)
+        from_zero(axes)
     return figure
 
 

@@ -33,7 +33,15 @@ from swgpar.presentation.fatigue_figures import draw_haigh, sector_picture
 from swgpar.presentation.program_figures import torque_against_rotation
 from swgpar.presentation.sections import PlaneBody
 from swgpar.results.field_sources import chosen_increment
-from swgpar.results.figure_set import FEWEST, Drawings, FigureSet, new_figure, panels, plot_line
+from swgpar.results.figure_set import (
+    FEWEST,
+    Drawings,
+    FigureSet,
+    from_zero,
+    new_figure,
+    panels,
+    plot_line,
+)
 from swgpar.results.history import COLUMNS
 from swgpar.results.sector_fields import SectorFields
 
@@ -102,7 +110,7 @@ class DriveFigures(FigureSet):
             plot_line(axes, x, y, "k^--", ms=4, lw=0.8, label=label)
         axes.set_title("largest stresses (nodal averages)" + self._over_period())
         axes.set_ylabel("stress (MPa)")
-        axes.set_ylim(bottom=0.0)
+        from_zero(axes)
 
     def torque(self) -> Figure:
         """Input torque (N·mm) against the angle of the wave generator, beside that of the energy

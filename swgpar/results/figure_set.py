@@ -137,6 +137,15 @@ def plot_line(axes: Axes, x: ArrayLike, y: ArrayLike, style: str = "-", **option
     return line
 
 
+HEADROOM = 0.05
+"""Share of a panel above its largest value."""
+
+
+def from_zero(axes: Axes) -> None:
+    """Let the vertical axis begin at 0, with room above the largest value, also of a constant."""
+    axes.set_ylim(0.0, axes.dataLim.ymax * (1.0 + HEADROOM) or 1.0)
+
+
 PICTURE = 6
 """Figures over axes that take as long as a picture of the drive."""
 

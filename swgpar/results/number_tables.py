@@ -42,7 +42,8 @@ def number_tables(
     }
     longest = max(map(len, [labels.heading, *labels.texts]))
     room = width - 2 - max(letters.values(), default=0) - BETWEEN
-    first = max(min(longest, LABEL), min(longest, room, width // 3))
+    whole = width - 2 - sum(count + BETWEEN for count in letters.values())  # beside all columns
+    first = min(longest, max(LABEL, min(room, width // 3), whole))
     for names in _blocks(letters, width - 2 - first):
         table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
         table.add_column(labels.heading, width=first, justify=labels.justify, overflow="fold")

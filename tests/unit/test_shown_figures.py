@@ -23,7 +23,7 @@ from swgpar.gear_trains.drawing import MomentCurve, draw_moments
 from swgpar.presentation.ball_figure import draw_ball_loads
 from swgpar.presentation.contact_figures import draw_load_sharing
 from swgpar.presentation.program_figures import torque_against_rotation
-from swgpar.results.figure_set import plot_line
+from swgpar.results.figure_set import from_zero, plot_line
 from swgpar.results.history import Curves
 
 CONF = """
@@ -121,6 +121,14 @@ def test_no_line_goes_through_two_points(
     assert len(_joined(draw_load_sharing(pairs, history, "angle"), 1)) == lines
     figure = draw_moments("title", "time", [MomentCurve(angle, angle, angle, "label")])
     assert len(_joined(figure)) == len(_joined(figure, 1)) == lines
+
+
+def test_a_constant_does_not_lie_on_the_edge_of_its_panel() -> None:
+    axes = Figure().subplots()
+    plot_line(axes, [0.0, 1.0, 2.0], [54.0, 54.0, 54.0])
+    from_zero(axes)
+    low, high = axes.get_ylim()
+    assert low == 0.0 and 55.0 < high < 60.0
 
 
 @pytest.mark.parametrize("points, mark", [(3, "o"), (40, "None")])
