@@ -56,8 +56,11 @@ def headline_text(sheet: RatingSheet) -> str:
 
 
 def counts_text(sheet: RatingSheet) -> str:
-    """How many rows have a judgement."""
-    return ", ".join(f"{judgement}: {count}" for judgement, count in sheet.counts.items())
+    """How many rows have a judgement, and how many runs wait."""
+    counts = [f"{judgement}: {count}" for judgement, count in sheet.counts.items()]
+    if waiting := sum(run.status == "waits" for run in sheet.runs):
+        counts.append(f"runs that wait: {waiting}")
+    return ", ".join(counts)
 
 
 def run_text(run: RunEntry) -> str:

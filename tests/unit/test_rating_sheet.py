@@ -16,7 +16,7 @@ from swgpar.answers.verdict import Limit, Sense, Verdict
 from swgpar.rating import terminal
 from swgpar.rating.page import rating_page
 from swgpar.rating.sheet import RatedVerdict, RatingSheet, RunEntry
-from swgpar.rating.texts import headline_text
+from swgpar.rating.texts import counts_text, headline_text
 from swgpar.results.atomic import to_json
 
 STRESS = Answer("largest.fs_vm", 514.8512, "MPa", "stress", error=4.1, place="tooth root")
@@ -69,6 +69,12 @@ def test_the_headline_names_the_rows_that_it_comes_from(sheet: RatingSheet) -> N
     for words, verdicts in rows.items():
         rated = tuple(RatedVerdict(one, "rated torque") for one in verdicts)
         assert headline_text(replace(sheet, rated=rated)) == words
+
+
+def test_runs_that_wait_are_counted(sheet: RatingSheet) -> None:
+    assert "wait" not in counts_text(sheet)
+    waits = RunEntry("stiffness", None, "waits", "runs/stiffness")
+    assert counts_text(replace(sheet, runs=(*sheet.runs, waits))).endswith("runs that wait: 1")
 
 
 def test_the_page_says_what_the_table_says(sheet: RatingSheet) -> None:
