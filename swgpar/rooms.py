@@ -48,6 +48,7 @@ PURPOSE = {
     "rating": "rating sheet of a drive: the runs that it needs, verdicts, views",
     "optimisation": "search for the best design: variables, objectives, constraints, report",
     "api": "the Python interface",
+    "app": "a drive in the browser: form, section of the teeth, plane state, queue of jobs",
     "cli": "the command line",
 }
 """Purpose of each room, in the order of the rooms."""

@@ -19,7 +19,7 @@ __all__ = ["main", "parser"]
 SOLVING = ("run", "rate", "study", "optimise")
 """Commands that compute on all ranks, with options of PETSc."""
 
-WITHOUT_PETSC = ("new", "check")
+WITHOUT_PETSC = ("new", "check", "app")
 """Commands that need no PETSc: it does not start with them."""
 
 GARBAGE = 20_000

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import inspect
 from collections.abc import Callable, Iterable
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -127,6 +128,18 @@ def _view(arguments: argparse.Namespace) -> None:
     result.view()
 
 
+def _app(arguments: argparse.Namespace) -> None:
+    if find_spec("nicegui") is None:
+        raise InputError("app needs NiceGUI, which is not installed: pip install swgpar[app]")
+    if MPI.COMM_WORLD.size > 1:
+        raise InputError(
+            f"app runs on one rank, not on {MPI.COMM_WORLD.size}: it starts mpirun for its jobs"
+        )
+    from swgpar.app.server import serve
+
+    serve(Path(arguments.source), arguments.port, show=not arguments.no_browser)
+
+
 def _design(arguments: argparse.Namespace) -> Design:
     """The design, or source, of the command with the values of --set; collective."""
     path = arguments.source if arguments.command == "export" else arguments.design
@@ -172,6 +185,18 @@ def _print(lines: Iterable[str]) -> None:
 
 COMMANDS: dict[str, Callable[[argparse.Namespace], None]] = {
     command.__name__.removeprefix("_"): command
-    for command in (_new, _run, _rate, _study, _optimise, _mesh, _check, _report, _view, _export)
+    for command in (
+        _new,
+        _run,
+        _rate,
+        _study,
+        _optimise,
+        _mesh,
+        _check,
+        _report,
+        _view,
+        _export,
+        _app,
+    )
 }
 """By name."""

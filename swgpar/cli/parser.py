@@ -122,6 +122,15 @@ EXPORT_EXAMPLES = """examples:
   swgpar export results/stiffness --ripple results/period --format fmu --out results/fmu
 """
 
+APP = """Open a design in the browser: change keys, see the teeth and their gaps, compute. The page is on this machine only,
+behind the address that the command prints. It needs the extra swgpar[app]."""
+
+APP_EXAMPLES = """examples:
+  swgpar app drivers/cup_45deg.toml
+  swgpar app my_workspace
+  swgpar app my_workspace --port 8080 --no-browser
+"""
+
 REPORT = "Draw the figures of a finished run again, and write its report.html."
 
 REPORT_EXAMPLES = """example:
@@ -178,7 +187,7 @@ def parser() -> _Parser:
     commands = top.add_subparsers(
         dest="command",
         required=True,
-        metavar="new | check | mesh | run | rate | study | optimise | report | view | export",
+        metavar="new | check | mesh | run | rate | study | optimise | report | view | export | app",
     )
     _add_new(commands)
     _add_run(commands)
@@ -211,6 +220,12 @@ def parser() -> _Parser:
     _add_export(commands)
     view = _add_command(commands, "view", VIEW, VIEW_EXAMPLES)
     view.add_argument("out", help="results folder")
+    app = _add_command(commands, "app", APP, APP_EXAMPLES)
+    text = "workspace folder, or a design file in it (default: this folder)"
+    app.add_argument("source", nargs="?", default=".", help=text)
+    app.add_argument("--port", type=int, metavar="N", help="of the page (default: a free one)")
+    text = "print the address without opening a browser"
+    app.add_argument("--no-browser", action="store_true", help=text)
     return top
 
 

@@ -15,18 +15,15 @@ from typing import NamedTuple
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import GEARS, GearName
-from swgpar.geometry.cams import cam_outlines
+from swgpar.design.sections import GEARS
 from swgpar.geometry.paired_lines import thicknesses
-from swgpar.geometry.rotation import rotated
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.recipe import CupRecipe
+from swgpar.presentation.body_curves import body_curves
 from swgpar.profiles import ToothProfile
 
 SIZE = 560.0
 """Width of a drawing, pixels; it shrinks with the page."""
-
-FLANK_POINTS = 12
 
 Pixels = tuple[float, float]
 
@@ -109,55 +106,9 @@ class Sheet:
 
 def draw_drive(design: DriveDesign) -> list[Sheet]:
     """All drawings of a design."""
-    curves = _curves(design)
+    curves = body_curves(design)
     sheets = [_front(design, curves), _teeth(design, curves)]
     return [*sheets, _meridian(design)] if design.has_cup else sheets
-
-
-def _tooth(design: DriveDesign, gear: GearName) -> np.ndarray:
-    """One tooth (n, 2), mm, centred on +y, from its clockwise to its counter-clockwise root."""
-    profile = design.profile(gear)
-    ends = profile.breaks
-    s = np.concatenate(
-        [np.linspace(a, b, FLANK_POINTS // len(ends) + 3)[:-1] for a, b in zip(ends[:-1], ends[1:])]
-    )
-    flank = profile.point(np.append(s, ends[-1]))[::-1]
-    return np.concatenate([flank, (flank * [-1.0, 1.0])[::-1]])
-
-
-def _curves(design: DriveDesign) -> dict[str, list[np.ndarray]]:
-    """Closed curves of the gears and the cam, mm, the spline deflected with its major axis along
-    +y."""
-    drive = design.drive
-    angle = 2.0 * np.pi / drive.teeth_rg * (np.arange(drive.teeth_rg) + 0.5)
-    ring = rotated(_tooth(design, "ring_gear")[None], angle[:, None]).reshape(-1, 2)
-    outer = design.geometry.gears["ring_gear"].outer_radius
-    r = design.inner_radius + 0.5 * design.flexible_spline.rim
-
-    line = design.tooth_motion().line
-
-    def moved(psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Points of the mid-line (n, 2) that were at the angles psi, and the rotation of the ring
-        there."""
-        place = line.position(psi)
-        return np.column_stack([place.real, place.imag]), psi + line.tilt(psi)[0]
-
-    place, turned = moved(2.0 * np.pi / drive.teeth_fs * np.arange(drive.teeth_fs))
-    tooth = _tooth(design, "flexible_spline") - [0.0, r]
-    teeth = place[:, None] + rotated(tooth[None], turned[:, None])
-    place, turned = moved(np.linspace(0.0, 2.0 * np.pi, 721)[:-1])
-    inside = place + rotated(np.array([[0.0, -0.5 * design.flexible_spline.rim]]), turned)
-    curves = {"housing": [_circle(design.geometry.outer_radius), _circle(outer)]}
-    return (curves if design.housing else {}) | {
-        "ring_gear": [_circle(outer), ring],
-        "flexible_spline": [teeth.reshape(-1, 2), inside],
-        "wave_generator": cam_outlines(design.cam(), 720),
-    }
-
-
-def _circle(radius: float) -> np.ndarray:
-    angle = np.linspace(0.0, 2.0 * np.pi, 361)[:-1]
-    return radius * np.column_stack([np.cos(angle), np.sin(angle)])
 
 
 def _front(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:

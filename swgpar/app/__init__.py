@@ -1,0 +1,1 @@
+"""The drive in the browser: keys, section of the teeth, runs of a workspace folder."""

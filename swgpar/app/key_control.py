@@ -1,0 +1,86 @@
+"""The control of one key of the design: its field, its slider, the sentence of a refused entry."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from nicegui import ui
+
+from swgpar.app.fields import FormField
+
+SLIDERS = 3.0
+"""A slider goes from 0 to this multiple of the value that its key has when the form is drawn."""
+
+STEPS = 600
+"""Places of a slider."""
+
+
+class KeyControl:
+    """The control of one key.
+
+    field : of the design that is shown
+    change : called with the field and a new entry
+    """
+
+    def __init__(self, field: FormField, change: Callable[[FormField, Any], None]) -> None:
+        self.field, self._change, self._shown = field, change, False
+        self.slider: ui.slider | None = None
+        with ui.element("div").classes("w-full q-mb-sm"):
+            self.entry = self._make_entry()
+            help_text = "; ".join(text for text in (field.text, field.allowed) if text)
+            self.entry.classes("w-full").props("dense").tooltip(help_text)
+            self.entry.props["data-key"] = field.key
+            self.entry.props["aria-label"] = f"{field.key}, {field.unit}".rstrip(", ")
+            if field.kind == "number" and isinstance(field.value, float) and field.value > 0.0:
+                self.slider = self._make_slider(field.value)
+            self.refusal = ui.label().classes("text-negative text-caption").props("role=alert")
+        self.show(field, None)
+
+    def show(self, field: FormField, refused: tuple[Any, str] | None) -> None:
+        """Show the value of the design, or an entry that was refused with its sentence."""
+        self.field, self._shown = field, True
+        value = refused[0] if refused is not None else _as_entry(field)
+        if self.entry.value != value:
+            self.entry.value = value
+        if self.slider is not None and isinstance(field.value, float):
+            self.slider.value = field.value
+        self.refusal.text = "" if refused is None else refused[1]
+        self.refusal.set_visibility(refused is not None)
+        self._shown = False
+
+    def _make_entry(self) -> Any:
+        """A switch, a choice, or a field of text that is taken over when it is left."""
+        field = self.field
+        label = f"{field.name}, {field.unit}" if field.unit else field.name
+        if field.kind == "switch":
+            return ui.switch(label, value=bool(field.value), on_change=self._changed)
+        if field.kind == "choice":
+            choices = [*field.choices, *([""] if field.optional else [])]
+            return ui.select(choices, value=_as_entry(field), label=label, on_change=self._changed)
+        entry = ui.input(label, value=_as_entry(field))
+        entry.on("change", self._changed)
+        return entry
+
+    def _make_slider(self, value: float) -> ui.slider:
+        high = min(SLIDERS * value, self.field.high)
+        slider = ui.slider(min=max(0.0, self.field.low), max=high, step=high / STEPS, value=value)
+        slider.props["data-slider"] = slider.props["aria-label"] = self.field.key
+        slider.props("dense").on("change", self._slid)
+        return slider
+
+    def _changed(self) -> None:
+        if not self._shown and self.entry.value != _as_entry(self.field):
+            entry = self.entry.value
+            self._change(self.field, None if entry == "" and self.field.optional else entry)
+
+    def _slid(self) -> None:
+        if self.slider is not None:
+            self._change(self.field, f"{self.slider.value:.6g}")
+
+
+def _as_entry(field: FormField) -> Any:
+    """The value of a field as its control has it."""
+    if field.kind == "switch":
+        return bool(field.value)
+    return "" if field.value is None else str(field.value)

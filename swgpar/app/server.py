@@ -1,0 +1,107 @@
+"""The server of the app: one page on the loopback address, behind a token."""
+
+from __future__ import annotations
+
+import secrets
+import socket
+from pathlib import Path
+
+from nicegui import app, ui
+
+from swgpar.api.designs import new
+from swgpar.app.access import TokenGate
+from swgpar.app.jobs import JobQueue
+from swgpar.app.page import AppState, Page
+from swgpar.app.plane_state import PlaneWorker
+from swgpar.app.workspace import Workspace
+from swgpar.errors import InputError
+
+RESULTS = "results"
+"""Folder of the workspace with the results of the jobs."""
+
+STYLE = """
+.swgpar-columns { flex-wrap: nowrap }
+.swgpar-form { width: 330px; max-height: calc(100vh - 80px); overflow-y: auto; flex: none }
+.swgpar-section { flex: 1 1 400px; min-width: 0 }
+.swgpar-plot { height: calc(100vh - 190px); min-height: 320px }
+.swgpar-answers { width: 340px; flex: none }
+.swgpar-log { white-space: pre-wrap; font-family: monospace; font-size: 11px }
+@media (max-width: 1000px) {
+  .swgpar-columns { flex-wrap: wrap }
+  .swgpar-form, .swgpar-answers, .swgpar-section { width: 100%; max-height: none; flex: 1 1 100% }
+  .swgpar-plot { height: 60vh }
+}
+"""
+
+
+def free_port() -> int:
+    """A port of the loopback address that nothing listens on."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def require_port(port: int) -> int:
+    """Refuse a port that cannot be listened on."""
+    if not 1024 <= port <= 65535:
+        raise InputError(f"port = {port} is out of range: allowed 1024 to 65535")
+    with socket.socket() as probe:
+        try:
+            probe.bind(("127.0.0.1", port))
+        except OSError as error:
+            raise InputError(f"port = {port} cannot be used: {error.strerror}") from None
+    return port
+
+
+def open_workspace(source: Path) -> Workspace:
+    """The workspace of a folder, or that of the folder of a design file.
+
+    A folder without designs gets a new one. Raises InputError where there is no such folder.
+    """
+    folder = source if source.is_dir() else source.parent
+    if not folder.is_dir():
+        raise InputError(f"{source} is not there: give a folder or a design file")
+    workspace = Workspace(folder)
+    workspace.bring_back()
+    if source.is_file() and source.stem not in workspace.variants:
+        workspace.open(source)
+    if not workspace.variants:
+        workspace.add("drive", new(ratio=100.0, diameter=50.8, torque=30.0))
+    workspace.shown = workspace.shown or sorted(workspace.variants)[0]
+    return workspace
+
+
+def serve(source: Path, port: int | None = None, *, show: bool = True) -> None:
+    """Serve the app until it is stopped.
+
+    source : folder, or design file in it;  port : default a free one
+    show : whether to open a browser
+    """
+    workspace = open_workspace(source)
+    worker = PlaneWorker()
+    app.on_shutdown(worker.close)
+    state = AppState(workspace, JobQueue(workspace.folder), worker)
+    worker.want(state.variant.design)
+    results = workspace.folder / RESULTS
+    results.mkdir(exist_ok=True)
+    app.add_static_files(f"/{RESULTS}", results)
+    token = secrets.token_urlsafe(24)
+    port = free_port() if port is None else require_port(port)
+    app.add_middleware(TokenGate, token=token, port=port)
+
+    def root() -> None:
+        ui.add_css(STYLE)
+        Page(state)
+
+    address = f"http://127.0.0.1:{port}/?token={token}"
+    print(f"swgpar app: {address}", flush=True)
+    ui.run(
+        root,
+        host="127.0.0.1",
+        port=port,
+        title=f"swgpar: {workspace.folder.name}",
+        show=address if show else False,
+        reload=False,
+        dark=None,
+        show_welcome_message=False,
+    )

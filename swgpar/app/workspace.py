@@ -1,0 +1,155 @@
+"""The folder that the app works in: named variants of a design, with undo and redo."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from swgpar.api.ratings import load_rated_design
+from swgpar.api.runs import load_design
+from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import InputError, OutputError
+from swgpar.input.quantities import show
+from swgpar.input.toml_file import apply_overrides, read_toml
+from swgpar.results.atomic import write_file
+
+NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,59}")
+"""Names of variants, which name files and folders."""
+
+KEPT = "variants"
+"""Folder of the workspace with the design files of all variants as they are."""
+
+UNDONE = 200
+"""Changes of a variant that can be undone."""
+
+
+def require_name(name: str) -> str:
+    """The name of a variant. Raises InputError where it cannot name a file of the workspace."""
+    if not NAME.fullmatch(name):
+        raise InputError(
+            f"name = {show(name)} is not allowed: letters, digits, _ and -, at most 60"
+        )
+    return name
+
+
+def drive_of(table: dict[str, Any], values: Mapping[str, Any]) -> DriveDesign:
+    """A checked drive from the content of its file and other values of its keys. Raises
+    InputError, also for gear trains."""
+    changed = apply_overrides(table, values)
+    if "rating" in changed:
+        return load_rated_design(changed)
+    design = load_design(changed)
+    if not isinstance(design, DriveDesign):
+        raise InputError("the app shows drives: the file is that of a gear train")
+    return design
+
+
+@dataclass
+class Variant:
+    """A design under a name, and its former and later states.
+
+    before, after : designs that undo and redo lead to, the nearest one last
+    """
+
+    name: str
+    design: DriveDesign
+    before: list[DriveDesign] = field(default_factory=list)
+    after: list[DriveDesign] = field(default_factory=list)
+
+    def change(self, values: Mapping[str, Any]) -> None:
+        """Set keys of the design; a value of None leaves the key out. Raises InputError, and keeps
+        the design, where the values do not fit."""
+        table = self.design.model_dump(exclude_unset=True)
+        for key in [key for key, value in values.items() if value is None]:
+            *sections, name = key.split(".")
+            inner = table
+            for part in sections:
+                inner = inner.get(part, {})
+            inner.pop(name, None)
+        given = {key: value for key, value in values.items() if value is not None}
+        changed = drive_of(table, given)
+        if changed.model_dump() == self.design.model_dump():
+            return
+        self.before = [*self.before[1 - UNDONE :], self.design]
+        self.after.clear()
+        self.design = changed
+
+    def undo(self) -> bool:
+        """Go back by one change; whether there was one."""
+        return self._step(self.before, self.after)
+
+    def redo(self) -> bool:
+        """Take back an undo; whether there was one."""
+        return self._step(self.after, self.before)
+
+    def _step(self, source: list[DriveDesign], other: list[DriveDesign]) -> bool:
+        if not source:
+            return False
+        other.append(self.design)
+        self.design = source.pop()
+        return True
+
+    @property
+    def text(self) -> str:
+        """Its design file."""
+        return tomli_w.dumps(self.design.model_dump(exclude_unset=True, exclude_none=True))
+
+
+class Workspace:
+    """Variants of one folder, one of which is shown. Every change is kept in the folder
+    `KEPT`, so that a server that is killed loses none.
+
+    folder : resolved;  variants : by name;  shown : name of the one that is shown
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder.resolve()
+        self.variants: dict[str, Variant] = {}
+        self.shown = ""
+
+    @property
+    def variant(self) -> Variant:
+        """The one that is shown."""
+        return self.variants[self.shown]
+
+    def add(self, name: str, design: DriveDesign) -> Variant:
+        """A new variant, which is shown. Raises InputError where the name is taken or not
+        allowed."""
+        if require_name(name) in self.variants:
+            raise InputError(f"name = {show(name)} is taken by another variant")
+        self.variants[name] = Variant(name, design)
+        self.shown = name
+        return self.variants[name]
+
+    def open(self, path: Path) -> Variant:
+        """The variant of a design file of the folder, under the file's name."""
+        return self.add(path.stem, drive_of(read_toml(path), {}))
+
+    def keep(self) -> None:
+        """Write the variant that is shown into `KEPT`."""
+        folder = self.folder / KEPT
+        folder.mkdir(exist_ok=True)
+        write_file(folder / f"{self.shown}.toml", self.variant.text.encode())
+
+    def bring_back(self) -> None:
+        """Open what an earlier server has kept; files that are no design any more are left."""
+        for path in sorted((self.folder / KEPT).glob("*.toml")):
+            with suppress(InputError):
+                self.open(path)
+
+    def save(self, *, overwrite: bool = False) -> Path:
+        """Write the variant that is shown to NAME.toml. Raises OutputError where there is such a
+        file, unless it is to be replaced."""
+        path = self.folder / f"{self.shown}.toml"
+        if path.is_symlink():
+            raise OutputError(f"{path} is a link: the app writes files of its folder only")
+        if path.exists() and not overwrite:
+            raise OutputError(f"{path} exists: save under another name, or replace it")
+        write_file(path, self.variant.text.encode())
+        return path
