@@ -44,7 +44,7 @@ def _environment() -> dict[str, str]:
 
 
 @dataclass
-class Job:
+class AppJob:
     """One command.
 
     arguments : of `swgpar`;  ranks : of mpirun, 1 without it
@@ -75,24 +75,24 @@ class JobQueue:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.jobs: list[Job] = []
+        self.jobs: list[AppJob] = []
         self._running: subprocess.Popen[bytes] | None = None
         with contextlib.suppress(OSError, ValueError, TypeError):
             for entry in json.loads((folder / RECORD).read_text(encoding="utf-8"))["jobs"]:
-                self.jobs.append(Job(**{**entry, "state": JobState(entry["state"])}))
+                self.jobs.append(AppJob(**{**entry, "state": JobState(entry["state"])}))
 
-    def add(self, arguments: Sequence[str], out: str, ranks: int = 1) -> Job:
+    def add(self, arguments: Sequence[str], out: str, ranks: int = 1) -> AppJob:
         """A job at the end of the queue. Raises InputError where there is no mpirun for its
         ranks."""
         if ranks > 1 and shutil.which("mpirun") is None:
             raise InputError(f"ranks = {ranks}: mpirun is not found")
         number = 1 + max((job.number for job in self.jobs), default=0)
-        job = Job(number, list(arguments), ranks, out)
+        job = AppJob(number, list(arguments), ranks, out)
         self.jobs.append(job)
         self.step()
         return job
 
-    def cancel(self, job: Job) -> None:
+    def cancel(self, job: AppJob) -> None:
         """End a job; what it has written can be continued with --restart."""
         if job.state == JobState.RUNS:
             with contextlib.suppress(ProcessLookupError):
@@ -117,14 +117,14 @@ class JobQueue:
             self._write()
         return changed
 
-    def last_lines(self, job: Job, count: int = 12) -> str:
+    def last_lines(self, job: AppJob, count: int = 12) -> str:
         """The end of what a job has printed."""
         with contextlib.suppress(OSError):
             text = self._log(job).read_text(encoding="utf-8", errors="replace")
             return "\n".join(text.splitlines()[-count:])
         return ""
 
-    def _start(self, job: Job) -> None:
+    def _start(self, job: AppJob) -> None:
         command = [sys.executable, "-m", "swgpar.cli", *job.arguments]
         if job.ranks > 1:
             command = ["mpirun", "-n", str(job.ranks), *command]
@@ -142,7 +142,7 @@ class JobQueue:
             )
         job.process, job.state = self._running.pid, JobState.RUNS
 
-    def _ended(self, job: Job) -> int | None:
+    def _ended(self, job: AppJob) -> int | None:
         """Exit code of a job that has ended; of one that an earlier server has started 0 where its
         results are complete."""
         if self._running is not None and self._running.pid == job.process:
@@ -157,11 +157,11 @@ class JobQueue:
         )
         return 0 if done.exists() else 1
 
-    def _last_line(self, job: Job) -> str:
+    def _last_line(self, job: AppJob) -> str:
         lines = self.last_lines(job).splitlines()
         return lines[-1] if lines else "it has printed nothing"
 
-    def _log(self, job: Job) -> Path:
+    def _log(self, job: AppJob) -> Path:
         return self.folder / "logs" / f"{job.number}.log"
 
     def _write(self) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 from nicegui import ui
 
 from swgpar.app.fields import FormField, form_fields
-from swgpar.app.jobs import Job, JobQueue, JobState
+from swgpar.app.jobs import AppJob, JobQueue, JobState
 from swgpar.app.key_control import KeyControl
 from swgpar.app.plane_state import PlaneWorker
 from swgpar.app.section_picture import section_picture
@@ -229,7 +229,7 @@ class Page:
         """What follows from the design without a run."""
         design = self.state.variant.design
         for remark in remarks(design):
-            ui.label(remark).classes("text-warning")
+            ui.label(remark).classes("text-orange-9")
         rows = [
             {"name": name, "value": f"{value:.6g}"}
             for name, value in derived_geometry(design).items()
@@ -250,7 +250,7 @@ class Page:
         for job in reversed(self.state.queue.jobs[-8:]):
             self._job(job)
 
-    def _job(self, job: Job) -> None:
+    def _job(self, job: AppJob) -> None:
         with ui.card().tight().classes("w-full q-pa-sm"):
             ui.label(f"{job.number}: {job.state}").classes("text-bold")
             ui.label(job.typed).classes("text-caption")
@@ -280,7 +280,7 @@ class Page:
             ui.notify(str(error), type="warning")
         self.jobs.refresh()
 
-    def _cancel(self, job: Job) -> None:
+    def _cancel(self, job: AppJob) -> None:
         self.state.queue.cancel(job)
         self.jobs.refresh()
 

@@ -41,6 +41,7 @@ def section_figure(design: DriveDesign, picture: SectionPicture) -> dict[str, An
             "dragmode": "pan",
             "margin": {"l": 45, "r": 10, "t": 10, "b": 40},
             "showlegend": False,
+            "font": {"color": "#7a7a7a"},
             "hovermode": "closest",
             "paper_bgcolor": "rgba(0,0,0,0)",
             "plot_bgcolor": "rgba(0,0,0,0)",

@@ -19,6 +19,10 @@ from swgpar.errors import InputError
 RESULTS = "results"
 """Folder of the workspace with the results of the jobs."""
 
+RECONNECT = 60.0
+"""s for which a window that has lost its connection can come back: while a job runs, this process
+has little of the machine."""
+
 STYLE = """
 .swgpar-columns { flex-wrap: nowrap }
 .swgpar-form { width: 330px; max-height: calc(100vh - 80px); overflow-y: auto; flex: none }
@@ -30,6 +34,7 @@ STYLE = """
   .swgpar-columns { flex-wrap: wrap }
   .swgpar-form, .swgpar-answers, .swgpar-section { width: 100%; max-height: none; flex: 1 1 100% }
   .swgpar-plot { height: 60vh }
+  .swgpar-section { order: -1 }
 }
 """
 
@@ -94,7 +99,7 @@ def serve(source: Path, port: int | None = None, *, show: bool = True) -> None:
         Page(state)
 
     address = f"http://127.0.0.1:{port}/?token={token}"
-    print(f"swgpar app: {address}", flush=True)
+    app.on_startup(lambda: print(f"swgpar app: {address}", flush=True))
     ui.run(
         root,
         host="127.0.0.1",
@@ -104,4 +109,5 @@ def serve(source: Path, port: int | None = None, *, show: bool = True) -> None:
         reload=False,
         dark=None,
         show_welcome_message=False,
+        reconnect_timeout=RECONNECT,
     )

@@ -1,0 +1,120 @@
+"""The app in a headless browser."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from urllib.request import urlopen
+
+import pytest
+
+from support.paths import DESIGN
+
+CHROMIUM = shutil.which("chromium")
+sync_api = pytest.importorskip("playwright.sync_api")
+pytest.importorskip("nicegui")
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs chromium")
+
+SOON = 60_000
+"""ms; a loaded machine is slow."""
+
+
+class Served:
+    """A server in a workspace, and its address."""
+
+    def __init__(self, folder: Path) -> None:
+        command = [sys.executable, "-P", "-m", "swgpar.cli", "app", str(folder), "--no-browser"]
+        # NiceGUI serves otherwise within a test
+        alone = {name: value for name, value in os.environ.items() if "PYTEST" not in name}
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=alone)
+        assert self.process.stdout is not None
+        self.address = self.process.stdout.readline().split()[-1]
+        for _ in range(600):  # it listens a moment after it has said so
+            with suppress(OSError), urlopen(self.address):
+                return
+            time.sleep(0.1)
+
+    def kill(self) -> None:
+        self.process.send_signal(signal.SIGKILL)
+        self.process.wait()
+
+
+@pytest.fixture(scope="module")
+def page() -> Iterator[sync_api.Page]:
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield browser.new_page(viewport={"width": 1300, "height": 850})
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("workspace")
+    shutil.copy(DESIGN, folder / "one.toml")
+    return folder
+
+
+@pytest.fixture
+def served(folder: Path, page: sync_api.Page) -> Iterator[Served]:
+    served = Served(folder / "one.toml")
+    page.goto(served.address)
+    page.wait_for_selector(".js-plotly-plot", timeout=SOON)
+    yield served
+    served.kill()
+
+
+def enter(page: sync_api.Page, key: str, text: str) -> None:
+    field = page.locator(f'input[data-key="{key}"]')
+    field.fill(text)
+    field.press("Tab")
+
+
+def test_a_change_a_wrong_value_and_a_killed_server(
+    page: sync_api.Page, served: Served, folder: Path
+) -> None:
+    """A key is changed, the clearance follows; a wrong value has its sentence; the plane state
+    comes; after a kill everything is there again."""
+    status = page.get_by_role("status")
+    sync_api.expect(status).to_contain_text("smallest clearance", timeout=SOON)
+    before = status.inner_text()
+    enter(page, "drive.module", "1,02")
+    sync_api.expect(status).not_to_have_text(before, timeout=SOON)
+    after = status.inner_text()
+    enter(page, "drive.module", "-3")
+    refusal = page.get_by_role("alert").filter(has_text="drive.module = -3 is out of range")
+    sync_api.expect(refusal).to_be_visible(timeout=SOON)
+    assert status.inner_text() == after
+    page.wait_for_selector(".swgpar-plane td", timeout=SOON)
+    served.kill()
+    again = Served(folder)
+    try:
+        page.goto(again.address)
+        page.wait_for_selector(".js-plotly-plot", timeout=SOON)
+        sync_api.expect(page.get_by_role("status")).to_have_text(after, timeout=SOON)
+        page.get_by_role("button", name="copy").click()
+        sync_api.expect(page.get_by_label("variant")).to_have_value("one_2", timeout=SOON)
+    finally:
+        again.kill()
+    assert (folder / "variants" / "one_2.toml").exists()
+    assert "module = 1.02" in (folder / "variants" / "one.toml").read_text(encoding="utf-8")
+
+
+def test_the_page_is_closed_without_the_token(served: Served, page: sync_api.Page) -> None:
+    other = page.context.browser.new_context().new_page()
+    answer = other.goto(served.address.partition("?")[0])
+    assert answer is not None and answer.status == 403
+    other.context.close()
+
+
+def test_a_server_ends_with_its_signal(folder: Path) -> None:
+    served = Served(folder)
+    served.process.send_signal(signal.SIGTERM)
+    assert served.process.wait(timeout=60.0) in (0, 143)
+    assert not os.path.exists(f"/proc/{served.process.pid}")

@@ -1,0 +1,241 @@
+"""The app without a browser: form, section of the teeth, variants, queue of jobs, token."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import swgpar
+from support.paths import DESIGN, DRIVERS
+from swgpar.app.access import COOKIE, TokenGate
+from swgpar.app.fields import FormField, form_fields
+from swgpar.app.jobs import JobQueue, JobState
+from swgpar.app.plane_state import plane_table
+from swgpar.app.section_picture import section_picture
+from swgpar.app.section_plot import section_figure
+from swgpar.app.workspace import Variant, Workspace
+from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import InputError, OutputError
+
+ADDENDUM = "drive.addendum_coef"
+DESIGNS = ["cup_45deg.toml", "three_lobes.toml", "rating.toml"]
+
+
+def drive(path: Path = DESIGN) -> DriveDesign:
+    design = swgpar.load_design(path)
+    assert isinstance(design, DriveDesign)
+    return design
+
+
+def fields(design: DriveDesign) -> dict[str, FormField]:
+    return {field.key: field for field in form_fields(design)}
+
+
+def test_every_plain_key_of_a_design_has_a_field() -> None:
+    """With the value of the design, its unit and its range."""
+    design = drive(DRIVERS / "rating.toml")
+    found = fields(design)
+    field = found["wave_generator.bearing.ball_diameter"]
+    assert (field.value, field.unit, field.kind) == (4.0, "mm", "number")
+    assert field.allowed.startswith("allowed above 0")
+    for key, one in found.items():
+        value: Any = design
+        for part in key.split("."):
+            value = getattr(value, part)
+        assert one.value == value
+
+
+@pytest.mark.parametrize(
+    ("key", "entry", "value"),
+    [
+        ("drive.module", "0,45", 0.45),
+        ("drive.module", "1.5e-1", 0.15),
+        ("drive.module", "wide", "wide"),
+        ("drive.teeth_fs", "80", 80),
+        ("drive.teeth_fs", "80.5", 80.5),
+        ("flexible_spline.addendum_coef", "", None),
+        ("drive.layout", "spline_fixed", "spline_fixed"),
+    ],
+)
+def test_what_an_entry_means(key: str, entry: str, value: Any) -> None:
+    assert fields(drive())[key].parsed(entry) == value
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("angle", [0.0, 17.0, 271.0])
+def test_gaps_of_the_picture_are_those_of_the_rigid_teeth(name: str, angle: float) -> None:
+    """None is smaller than the clearance of a turn; near it there is one at each angle."""
+    design = drive(DRIVERS / name)
+    picture = section_picture(design, angle)
+    smallest = picture.clearance.nearest.distance
+    pitch = 2.0 * np.pi / design.drive.teeth_fs
+    assert smallest - 1e-9 <= picture.gaps.gap.min() < smallest + 0.05 * design.drive.module * pitch
+    # flanks are drawn where their gaps are taken: on the outline of the spline
+    outline = picture.curves["flexible_spline"][0]
+    for place in picture.gaps.place[:: design.drive.teeth_fs // 4]:
+        ahead = np.roll(outline, -1, axis=0) - outline
+        along = ((place - outline) * ahead).sum(1) / (ahead**2).sum(1)
+        foot = outline + np.clip(along, 0.0, 1.0)[:, None] * ahead
+        assert np.hypot(*(place - foot).T).min() < 0.02 * design.drive.module
+
+
+def test_the_picture_repeats_after_a_pitch_of_the_ring_gear() -> None:
+    """Then another tooth of the flexible spline is at each place."""
+    design = drive()
+    first = section_picture(design, 0.0)
+    later = section_picture(design, 360.0 / design.drive.teeth_rg)
+    teeth = design.drive.teeth_fs
+    gaps = [picture.gaps.gap.reshape(2, teeth) for picture in (first, later)]
+    assert gaps[1] == pytest.approx(np.roll(gaps[0], 1, axis=1), abs=1e-9)
+
+
+def test_an_overlap_is_marked() -> None:
+    design = drive(DRIVERS / "cup_45deg.toml")
+    tight = design.with_values({"ring_gear.c_P": 1.01})
+    picture = section_picture(tight)
+    assert picture.clearance.overlaps
+    marks = section_figure(tight, picture)["data"][-1]
+    assert "x" in marks["marker"]["symbol"]
+    assert any("overlap" in text for text in marks["text"])
+
+
+def test_changes_are_undone_and_redone() -> None:
+    variant = Variant("one", drive())
+    before = variant.design.drive.addendum_coef
+    variant.change({ADDENDUM: 0.55})
+    variant.change({ADDENDUM: 0.55})
+    assert len(variant.before) == 1
+    assert variant.undo() and variant.design.drive.addendum_coef == before
+    assert not variant.undo()
+    assert variant.redo() and variant.design.drive.addendum_coef == 0.55
+    with pytest.raises(InputError, match="is out of range"):
+        variant.change({"drive.module": -3.0})
+    assert variant.design.drive.module > 0.0
+    variant.change({ADDENDUM: 0.56})
+    assert not variant.redo()
+
+
+def test_a_key_is_left_out() -> None:
+    variant = Variant("one", drive().with_values({"flexible_spline.addendum_coef": 0.55}))
+    variant.change({"flexible_spline.addendum_coef": None})
+    assert "addendum_coef" not in variant.design.model_dump(exclude_unset=True)["flexible_spline"]
+
+
+def test_a_workspace_keeps_every_change(tmp_path: Path) -> None:
+    """A later one brings all variants back; a file of the user is not replaced unasked."""
+    workspace = Workspace(tmp_path)
+    workspace.add("one", drive())
+    workspace.variant.change({ADDENDUM: 0.55})
+    workspace.keep()
+    later = Workspace(tmp_path)
+    later.bring_back()
+    assert later.variants["one"].design.drive.addendum_coef == 0.55
+    path = later.save()
+    assert drive(path).drive.addendum_coef == 0.55
+    with pytest.raises(OutputError, match="exists"):
+        later.save()
+
+
+@pytest.mark.parametrize("name", ["../out", "", "a b", ".hidden", "x" * 61, "a/b", "--help"])
+def test_names_that_are_no_files_of_the_workspace_are_refused(tmp_path: Path, name: str) -> None:
+    with pytest.raises(InputError, match="is not allowed"):
+        Workspace(tmp_path).add(name, drive())
+
+
+def test_a_variant_that_is_a_link_is_not_written(tmp_path: Path) -> None:
+    outside = tmp_path / "outside.toml"
+    folder = tmp_path / "workspace"
+    folder.mkdir()
+    (folder / "one.toml").symlink_to(outside)
+    workspace = Workspace(folder)
+    workspace.add("one", drive())
+    with pytest.raises(OutputError, match="is a link"):
+        workspace.save(overwrite=True)
+    assert not outside.exists()
+
+
+def waited(queue: JobQueue, done: Callable[[], bool]) -> None:
+    for _ in range(600):
+        queue.step()
+        if done():
+            return
+        time.sleep(0.1)
+    raise AssertionError("the jobs have not ended")
+
+
+def test_jobs_follow_each_other(tmp_path: Path) -> None:
+    """One that fails has its sentence; a cancelled one never begins; the record survives."""
+    queue = JobQueue(tmp_path)
+    good = queue.add(["check", str(DESIGN)], "results/1")
+    bad = queue.add(["check", "none.toml"], "results/2")
+    never = queue.add(["check", str(DESIGN)], "results/3")
+    assert good.state == JobState.RUNS and bad.state == JobState.WAITS
+    queue.cancel(never)
+    waited(queue, lambda: bad.state not in (JobState.WAITS, JobState.RUNS))
+    assert (good.state, bad.state) == (JobState.FINISHED, JobState.FAILED)
+    assert never.state == JobState.CANCELLED
+    assert "none.toml cannot be read" in bad.reason
+    assert [job.state for job in JobQueue(tmp_path).jobs] == [job.state for job in queue.jobs]
+    assert good.typed == f"swgpar check {DESIGN}"
+
+
+def test_the_plane_model_of_a_cup_is_a_design() -> None:
+    for name in ("cup_45deg.toml", "silk_hat.toml", "rating.toml"):
+        design = drive(DRIVERS / name)
+        plane = swgpar.load_design(plane_table(design))
+        assert isinstance(plane, DriveDesign)
+        assert plane.drive.model == "plane" and plane.load.torque == design.load.torque
+
+
+def answered(scope: dict[str, Any]) -> list[dict[str, Any]]:
+    """What the gate sends to a request."""
+    sent: list[dict[str, Any]] = []
+
+    async def page(scope: Any, receive: Any, send: Any) -> None:
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    async def receive() -> dict[str, Any]:
+        return {"type": "http.request"}
+
+    base = {"type": "http", "query_string": b"", "headers": [(b"host", b"127.0.0.1:8000")]}
+    asyncio.run(TokenGate(page, "secret", 8000)(base | scope, receive, send))
+    return sent
+
+
+def test_the_token_opens_the_page_and_sets_the_cookie() -> None:
+    (start,) = answered({"query_string": b"token=secret"})
+    assert start["status"] == 200
+    headers = dict(start["headers"])
+    assert f"{COOKIE}=secret".encode() in headers[b"set-cookie"]
+    assert b"default-src 'self'" in headers[b"content-security-policy"]
+    cookie = (b"cookie", f"{COOKIE}=secret".encode())
+    (start,) = answered({"headers": [(b"host", b"127.0.0.1:8000"), cookie]})
+    assert start["status"] == 200
+
+
+@pytest.mark.parametrize(
+    "scope",
+    [
+        {},
+        {"query_string": b"token=wrong"},
+        {"query_string": b"token=secret", "headers": [(b"host", b"elsewhere.example")]},
+        {
+            "query_string": b"token=secret",
+            "headers": [(b"host", b"127.0.0.1:8000"), (b"origin", b"http://elsewhere.example")],
+        },
+        {"headers": [(b"host", b"127.0.0.1:8000"), (b"cookie", b"swgpar_token=\xff")]},
+    ],
+)
+def test_other_requests_are_refused(scope: dict[str, Any]) -> None:
+    assert answered(scope)[0]["status"] == 403
+    (closed,) = answered({"type": "websocket", **scope})
+    assert closed["type"] == "websocket.close"
