@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import threading
 import time
 from concurrent.futures import Future, ProcessPoolExecutor
 from dataclasses import dataclass
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
+from multiprocessing.connection import wait
 from typing import Any
 
 from swgpar.design.drive_design import DriveDesign
@@ -91,12 +94,29 @@ def solve_plane(table: dict[str, Any]) -> PlaneState:
     return PlaneState(answers, time.perf_counter() - begin)
 
 
+def _make_pool() -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=_end_with_parent)
+
+
+def _end_with_parent() -> None:
+    """Let this process end when the server does, also where that is killed."""
+    parent = parent_process()
+    if parent is None:
+        return
+
+    def watch() -> None:
+        wait([parent.sentinel])
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
 class PlaneWorker:
     """Computes one state at a time; the latest design that is asked for comes next, those between
     are left out."""
 
     def __init__(self) -> None:
-        self._pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"))
+        self._pool = _make_pool()
         self._running: Future[PlaneState] | None = None
         self._next: dict[str, Any] | None = None
         self._wanted: dict[str, Any] | None = None
@@ -126,7 +146,7 @@ class PlaneWorker:
             )
             if failure is not None:  # the process has ended
                 self._pool.shutdown(wait=False)
-                self._pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"))
+                self._pool = _make_pool()
             self._running, new = None, True
         if self._running is None and self._next is not None:
             self._running = self._pool.submit(solve_plane, self._next)

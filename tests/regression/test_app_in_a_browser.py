@@ -113,8 +113,18 @@ def test_the_page_is_closed_without_the_token(served: Served, page: sync_api.Pag
     other.context.close()
 
 
-def test_a_server_ends_with_its_signal(folder: Path) -> None:
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+def test_a_server_ends_with_its_processes(folder: Path, number: signal.Signals) -> None:
+    """Also where it is killed."""
     served = Served(folder)
-    served.process.send_signal(signal.SIGTERM)
-    assert served.process.wait(timeout=60.0) in (0, 143)
-    assert not os.path.exists(f"/proc/{served.process.pid}")
+    children = Path(f"/proc/{served.process.pid}/task/{served.process.pid}/children")
+    worker = [int(child) for child in children.read_text().split()]
+    assert worker
+    served.process.send_signal(number)
+    assert served.process.wait(timeout=60.0) in (0, 143, -number)
+    for _ in range(300):
+        left = [child for child in worker if Path(f"/proc/{child}").exists()]
+        if not left:
+            return
+        time.sleep(0.1)
+    raise AssertionError(f"processes {left} go on")
