@@ -182,6 +182,13 @@ def make_case(
 
     tables : content of the design file as it is run, and as it is rated
     """
+    given = tables[1]
+    for name in section.without:
+        if _section(given, name) is None:
+            raise InputError(
+                f"optimise.load_case {show(section.name)}: without = {show(name)} is no section "
+                f"that the design file has: allowed {', '.join(map(show_key, given))}"
+            )
     kind, table = (RatingCase, tables[1]) if section.rate else (RunCase, tables[0])
     try:
         return kind(section, system, table, wanted)
@@ -190,13 +197,17 @@ def make_case(
         raise InputError(f"{where}{error}") from None
 
 
+def _section(table: Any, name: str) -> Any:
+    """The section of a dotted name in the content of a design file; None where there is none."""
+    for part in name.split("."):
+        table = table.get(part) if isinstance(table, Mapping) else None
+    return table
+
+
 def _without(table: dict[str, Any], name: str) -> dict[str, Any]:
-    """The content of a design file without one of its sections, which is there."""
+    """The content of a design file without a section, if it is there."""
     first, _, rest = name.partition(".")
-    if first not in table or (rest and not isinstance(table[first], dict)):
-        raise InputError(
-            f"without = {show(name)} is no section that the design file has: allowed "
-            f"{', '.join(map(show_key, table))}"
-        )
+    if _section(table, name) is None:
+        return table
     others = {key: value for key, value in table.items() if key != first}
     return {**others, first: _without(table[first], rest)} if rest else others

@@ -15,6 +15,7 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.api.ratings import load_rated_design
 from swgpar.input.toml_file import to_toml
+from swgpar.rating.rows import rating_rows
 
 pytest.importorskip("optuna")
 
@@ -76,6 +77,9 @@ def test_load_cases_and_a_rating_sheet(tmp_path: Path) -> None:
     place = tmp_path / f"rating_{WORLD.rank}"
     sheet = swgpar.rate(rated, place, mesh=RECIPE, comm=MPI.COMM_SELF)
     rows = {one.name: one for one in sheet.verdicts}
+    units = {one.name: one.unit for one in rating_rows(rated)}
+    answers = {name: one.answer for name, one in rows.items() if one.answer is not None}
+    parallel_assert({name: one.unit for name, one in answers.items()}.items() <= units.items())
     expected = {
         "peak: sharing.largest_force": peak.value,
         "wind-up: stiffness.K1": wound.value,
