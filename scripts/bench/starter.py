@@ -6,12 +6,14 @@ Rows of drives that are not computed are kept.
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from page import markdown, read_results, write_results
 
 import swgpar
+from swgpar.answers.verdict import Judgement, Verdict
 from swgpar.checks.remarks import remarks
 
 STARTS = (
@@ -36,6 +38,7 @@ ROWS = (
     "fatigue of teeth and rim",
     "yield of wall",
     "fatigue of wall",
+    "yield of the ring gear",
     "yield below the flanks",
     "static safety of the bearing",
 )
@@ -44,7 +47,7 @@ ROWS = (
 
 def checked(ratio: float, diameter: float) -> dict[str, Any]:
     """What `swgpar check` says of a start."""
-    design = swgpar.new(ratio=ratio, diameter=diameter, torque=1.0)
+    design = swgpar.new(ratio=ratio, diameter=diameter, torque=1e-3)
     derived = swgpar.check(design)
     found = {name: derived[label] for name, label in CHECKED.items()}
     return {
@@ -65,8 +68,24 @@ def rated(ratio: float, diameter: float, torque: float, mesh: str, out: Path) ->
     row: dict[str, Any] = {"ratio": ratio, "diameter": diameter, "torque": torque, "mesh": mesh}
     for name in ROWS:
         answer = verdicts[name].answer
-        row |= {name: answer and answer.value, f"{name}: verdict": str(verdicts[name].judgement)}
-    return row | {"headline": str(sheet.headline)}
+        row |= {name: answer and answer.value}
+    against = [
+        verdict
+        for verdict in sheet.verdicts
+        if verdict.limit is not None or verdict.of_strength
+        if verdict.judgement != Judgement.PASSES
+    ]
+    flanks = verdicts["yield below the flanks"].answer
+    return row | {
+        "error of the pressure": flanks and flanks.error,
+        "strength": _names(one for one in against if one.of_strength),
+        "others": _names(one for one in against if not one.of_strength),
+        "headline": str(sheet.headline),
+    }
+
+
+def _names(verdicts: Iterable[Verdict]) -> str:
+    return "; ".join(f"{verdict.name} {verdict.judgement}" for verdict in verdicts)
 
 
 def table_of_checks(rows: list[dict[str, Any]]) -> str:
@@ -83,13 +102,17 @@ def table_of_checks(rows: list[dict[str, Any]]) -> str:
 def table_of_ratings(rows: list[dict[str, Any]]) -> str:
     """Table of the strength rows of the sheets."""
     head = ["ratio", "D, mm", "T, N·m", "T / D³, N/mm²", "mesh", "von Mises at the teeth, MPa"]
-    head += ["safety", "von Mises of the wall, MPa", "safety", "pressure, MPa", "bearing", "sheet"]
-    found = [head]
+    head += ["safety", "of the wall, MPa", "safety", "of the ring gear, MPa", "pressure, MPa"]
+    found = [[*head, "bearing", "strength", "other limits"]]
     for row in rows:
         cells = [f"{row[key]:g}" for key in ("ratio", "diameter", "torque")]
         cells += [f"{1000.0 * row['torque'] / row['diameter'] ** 3:.3f}", row["mesh"]]
         values = [f"{row[name]:.3g}" if row[name] is not None else "" for name in ROWS]
-        found.append([*cells, *values, row["headline"]])
+        pressed, error = row["yield below the flanks"], row["error of the pressure"]
+        if pressed is not None:
+            text = f"{pressed:.0f}" if error is None else f"{pressed:.0f} ± {error:.0f}"
+            values[ROWS.index("yield below the flanks")] = text
+        found.append([*cells, *values, row["strength"] or "all pass", row["others"] or "all pass"])
     return markdown(found)
 
 

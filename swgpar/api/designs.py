@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from mpi4py import MPI
 
+from swgpar import log
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.api.runs import DesignLike, MeshLike, load_design, load_mesh
 from swgpar.checks.starter import (
@@ -22,6 +23,7 @@ from swgpar.checks.starter import (
 from swgpar.checks.starter_cam import CamType
 from swgpar.checks.starter_file import as_toml
 from swgpar.checks.starter_teeth import Profile
+from swgpar.checks.starter_torques import overload
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
 from swgpar.input.arguments import given_path, given_texts
@@ -50,7 +52,8 @@ def new(
     lobes: Lobes = 2,
     overwrite: bool = False,
 ) -> DriveDesign:
-    """A checked design to start from; collective when it is written.
+    """A checked design to start from; collective when it is written. A torque that is more than
+    its rating allows is a warning of the log, which names the torque that it carries.
 
     Parameters
     ----------
@@ -102,6 +105,8 @@ def new(
                     "another name"
                 )
         write_from_root(comm, path, as_toml(request, design, table, path.name).encode())
+    if (too_much := overload(request, design)) and MPI.COMM_WORLD.rank == 0:
+        log.logger.warning("%s", too_much)
     return design
 
 

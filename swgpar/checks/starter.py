@@ -51,7 +51,7 @@ LEAST_RATIO, LARGEST_RATIO = 15.0, 320.0
 PRESSURE_ANGLE = {2: 20.0, 3: 14.0}
 """By lobes, degrees. Three lobes lead a tooth on a path that is 1.5 times as steep."""
 
-FACE_WIDTH = 0.17
+FACE_WIDTH = 0.2
 LENGTH = 0.5
 FILLET = 0.02
 BORE, HUB = 0.17, 0.30
@@ -107,9 +107,16 @@ slope."""
 CROWNING, SLOPE, FLANK_CROWNING = 0.1, 0.09, 0.045
 """Micro-geometry of the reference drive (Table 7.4), modules."""
 
-CONJUGATE_CROWNING = {"cup": 0.065, "short": 0.12, "hat": 0.065}
-"""Crowning of S-shaped flanks by the shape, modules. The ring gear is conjugate at mid-width. In
-the cone of the cup rigid flanks without crowning overlap by that much at the ends."""
+CONJUGATE_CROWNING = 0.04
+"""Crowning of S-shaped flanks in a usual cup, modules, in proportion to its cone. The ring gear is
+conjugate at mid-width. The cone tilts the flanks most near the major axis: with this crowning
+contacts there end within the face width."""
+
+OPEN_END = 1.0
+"""Radial deflection at the open end of a cup with S-shaped teeth, modules."""
+
+LEAST_DEFLECTION = 0.83
+"""Of these at mid-width, modules: below, the roots of the teeth leave no land."""
 
 SAMPLES = 4
 """Angles of a period: with a bearing fatigue needs them."""
@@ -246,7 +253,7 @@ def _table(request: Request, play: float) -> dict[str, Any]:
     """Content of the design file with a backlash."""
     lobes = request.lobes
     teeth = round(lobes * request.ratio) - (0 if request.layout == "ring_fixed" else lobes)
-    sizes = tooth_sizes(request.profile, lobes, teeth)
+    sizes = tooth_sizes(request.profile, lobes, teeth, coned=_is_coned(request))
     if request.diameter is not None:
         module = request.diameter / teeth
     else:
@@ -275,6 +282,7 @@ def _table(request: Request, play: float) -> dict[str, Any]:
             **({"lobes": 3} if lobes == 3 else {}),
             "face_width": width,
             **cam_keys(request.cam, inner, module, lobes),
+            **_deflection(request, module),
         },
     }
     if request.model == "cup":
@@ -296,13 +304,35 @@ def _table(request: Request, play: float) -> dict[str, Any]:
     return table
 
 
+def _length(request: Request) -> float:
+    """Length of the cup over the pitch diameter."""
+    return SHORT_LENGTH if request.shape == "short" else LENGTH
+
+
+def _is_coned(request: Request) -> bool:
+    """Whether teeth and deflection follow the cone of a cup."""
+    kinds = request.model, request.profile, request.cam
+    return kinds == ("cup", "s_shaped", "elliptical")
+
+
+def _deflection(request: Request, module: float) -> dict[str, float]:
+    """The deflection at mid-width with which S-shaped teeth move by `OPEN_END` at the open end of a
+    cup, whose deflection grows linearly from the closed end. module : mm"""
+    if not _is_coned(request):
+        return {}
+    from_end = _length(request) + 0.5 * FACE_WIDTH
+    share = from_end / (from_end + 0.5 * FACE_WIDTH)
+    share = max(share * OPEN_END, LEAST_DEFLECTION)
+    return {"deflection": rounded(0.5 * request.lobes * share * module)}
+
+
 def _cup(request: Request, sizes: ToothSizes, module: float, pitch: float) -> dict[str, Any]:
     """Sections [cup] and [micro_geometry]. module, pitch : mm, pitch diameter"""
-    length = SHORT_LENGTH if request.shape == "short" else LENGTH
+    length = _length(request)
     rim = sizes.rim * module
     # the cone of the deflected wall is steeper the shorter the wall is
     cone = (LENGTH + 0.5 * FACE_WIDTH) / (length + 0.5 * FACE_WIDTH)
-    flanks = CONJUGATE_CROWNING[request.shape] if request.profile == "s_shaped" else FLANK_CROWNING
+    flanks = CONJUGATE_CROWNING * cone if request.profile == "s_shaped" else FLANK_CROWNING
     micro = {"wg_crowning": CROWNING, "wg_slope": SLOPE * cone, "fs_crowning": flanks}
     cup = {
         "length": rounded(length * pitch),

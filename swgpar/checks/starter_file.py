@@ -7,6 +7,7 @@ from typing import Any
 
 from swgpar.checks.starter import END, HUB, WALL, Request
 from swgpar.checks.starter_teeth import RIM
+from swgpar.checks.starter_torques import torque_text
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import printable
 from swgpar.input.quantities import Section
@@ -36,6 +37,7 @@ def as_toml(request: Request, design: DriveDesign, table: dict[str, Any], name: 
         f"# sources that the sections name ({SOURCES}): sizes of the blank are shares of the",
         f"# pitch diameter, {drive.module * drive.teeth_fs:.5g} mm, those of the teeth multiples "
         "of the module.",
+        f"# {torque_text(request, design)}",
         f"#   swgpar check {name}",
         f"#   mpirun -n 2 swgpar run {name} --out {shlex.quote(f'results/{stem}')}",
         f"#   mpirun -n 2 swgpar rate {name} --out {shlex.quote(f'results/{stem}_rating')}",

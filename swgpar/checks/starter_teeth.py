@@ -24,6 +24,10 @@ PROFILE_KEYS: dict[Profile, type[ProfileKeys]] = {
 ADDENDUM, DEDENDUM = 0.6, 0.8
 """Of both gears, modules."""
 
+CONED_ADDENDUM, CONED_DEDENDUM = 0.55, 0.66
+"""Of both gears with S-shaped teeth on a cone, modules: at mid-width a cup is deflected by less
+than the distance of the pitch circles, and the path of a tooth is lower."""
+
 RIM = {2: 0.012, 3: 0.006}
 """By lobes: largest rim of the flexible spline over the pitch diameter. Three lobes bend the rim
 four times as much on the same module."""
@@ -41,7 +45,7 @@ alike."""
 
 S_SHAPED = {"r_tip": 0.15, "r_root": 0.35}
 CONJUGATE = {"r_tip": 0.15, "r_root": 0.2, "backlash": 0.005}
-TIP_RELIEF, TIP_RELIEF_HEIGHT = 0.025, 0.5
+TIP_RELIEF, TIP_RELIEF_HEIGHT = 0.02, 0.5
 """S-shaped teeth and the ring gear conjugate to them, modules: radii, backlash, and relief of both
 tips, which would else carry where pairs come into mesh and leave it."""
 
@@ -51,16 +55,12 @@ CUTTER_TEETH = 2.0 / 3.0
 
 @dataclass(frozen=True)
 class ToothSizes:
-    """Sizes of the flexible spline, modules."""
+    """Sizes of the flexible spline, modules. scale : heights over those of thick rims"""
 
     rim: float
     addendum: float
     dedendum: float
-
-    @property
-    def scale(self) -> float:
-        """Heights over those of thick rims."""
-        return self.addendum / ADDENDUM
+    scale: float
 
     @property
     def below_pitch_circle(self) -> float:
@@ -68,19 +68,22 @@ class ToothSizes:
         return self.dedendum + self.rim
 
 
-def tooth_sizes(profile: Profile, lobes: Literal[2, 3], teeth: int) -> ToothSizes:
+def tooth_sizes(profile: Profile, lobes: Literal[2, 3], teeth: int, *, coned: bool) -> ToothSizes:
     """Heights of the teeth and rim below them, by the number of teeth of the flexible spline.
+
+    coned : whether the deflection at mid-width is below the distance of the pitch circles
 
     The curvature of n lobes with the deflection w0 = n m / 2 on the pitch radius r is
     (n^2 - 1) w0 / r^2. Half of the rim's thickness times that is the strain of `BENDING`.
     """
     largest = RIM[lobes] * teeth
     if profile != "s_shaped":
-        return ToothSizes(largest, ADDENDUM, DEDENDUM)
+        return ToothSizes(largest, ADDENDUM, DEDENDUM, 1.0)
     bent = BENDING * teeth**2 / (lobes * (lobes**2 - 1))
     rim = min(largest, max(bent, LEAST_RIM))
-    lower = min(1.0, rim / (RIM_OF_HEIGHT * (ADDENDUM + DEDENDUM)))
-    return ToothSizes(rim, rounded(lower * ADDENDUM, 3), rounded(lower * DEDENDUM, 3))
+    addendum, dedendum = (CONED_ADDENDUM, CONED_DEDENDUM) if coned else (ADDENDUM, DEDENDUM)
+    lower = min(1.0, rim / (RIM_OF_HEIGHT * (addendum + dedendum)))
+    return ToothSizes(rim, rounded(lower * addendum, 3), rounded(lower * dedendum, 3), lower)
 
 
 def spline_section(profile: Profile, sizes: ToothSizes, module: float) -> dict[str, Any]:

@@ -75,7 +75,8 @@ def _new(arguments: argparse.Namespace) -> None:
         [
             f"written {arguments.design}",
             f"{drive.teeth_fs} and {drive.teeth_rg} teeth, module {drive.module:g} mm, bore "
-            f"{2 * design.inner_radius:.4g} mm, backlash {1000 * design.backlash:.3g} µm",
+            f"{2 * design.inner_radius:.4g} mm, clearance of undeformed flanks "
+            f"{1000 * design.rigid_teeth().clearance():.3g} µm",
             f"swgpar check {arguments.design} has all derived sizes",
             f"swgpar rate {arguments.design} --out FOLDER says whether it carries the torque",
         ]
