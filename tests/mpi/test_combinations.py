@@ -36,6 +36,8 @@ WEAK = (
 """SafetyAndLife limits that the small drive exceeds; a tensile strength that it does not, or its
 life would be 0."""
 
+RESOLVED = "output.root_stress=true"
+
 UP, DOWN = '{name="up", torque=0.2}', '{name="down", torque=-0.2}'
 AGAIN = ', {name="up again", torque=0.2}, {name="down again", torque=-0.2}'
 
@@ -87,10 +89,31 @@ def test_fatigue_over_a_program_on_any_ranks() -> None:
 
 
 @pytest.mark.parallel(1)
-def test_losses_and_fatigue_with_a_bearing() -> None:
-    """The balls' loads act at the circle of their centres; the terminal names both results and what
-    is missing."""
-    result = run(*BEARING, *SAMPLED, "losses.bearing_friction=0.002", "fatigue.size_factor=1.0")
+def test_everything_under_a_torque_in_one_run() -> None:
+    """Bearing, windows, friction, fatigue, losses and a period in one run give what two runs do:
+    one with windows, one with fatigue and losses over the period. The fatigue of all together is
+    that of the resolved stress.
+
+    The balls' loads act at the circle of their centres; the terminal names the results.
+    """
+    two_periods = ("steps.samples=2", "steps.rotation=18", "solver.rtol=1e-6")
+    drive = (*BEARING, "contact.friction=0.1", *two_periods)
+    evaluated = ("losses.bearing_friction=0.002", "fatigue.size_factor=1.0")
+    result = run(*drive, *evaluated, RESOLVED)
+    period = run(*drive, *evaluated, "output.contact_errors=false")
+    windows = run(*drive, "steps.samples=0", "steps.rotation=0", RESOLVED)
+    resolved, alone = result.summary.root_stress, windows.summary.root_stress
+    assert resolved.s1 == pytest.approx(alone.s1, rel=1e-6)
+    for name in ("fs_s1", "wg_torque_Nmm", "output_angle_deg"):
+        assert result.history[name] == pytest.approx(period.history[name], rel=1e-4), name
+    factors = [
+        period.summary.fatigue.least[name].safety / result.summary.fatigue.least[name].safety
+        for name in ("goodman", "crossland", "yield")
+    ]
+    assert factors == pytest.approx([resolved.s1 / resolved.on_mesh] * 3, rel=2e-3)
+    for part in ("bearing", "flank_friction"):
+        taken = [getattr(one.summary.losses.parts_Nmm, part) for one in (result, period)]
+        assert taken[0] == pytest.approx(taken[1], rel=1e-3), part
     losses, loads = result.summary.losses, result.balls["load_N"].reshape(-1, 20)[-2:]
     assert losses.cam_force_N == pytest.approx(loads.sum(axis=1).mean(), rel=1e-9)
     centres = 18.6 - 0.5 - 1.0
@@ -130,10 +153,16 @@ def test_stiffness_with_a_bearing() -> None:
     """The compliance without the bearing's share, found at the largest torque, is still more than
     that on the cam.
 
-    Between the balls the spline yields where the cam would support it.
+    Between the balls the spline yields where the cam would support it. Friction holds a part of
+    the torque, and takes work in the loop. Windows are for one torque, and change nothing.
     """
     values = ("stiffness.positions=1", "stiffness.points=1", "stiffness.mesh_error=false")
     soft, rigid = run(*BEARING, *values), run(*values)
+    rough = run(*BEARING, *values, RESOLVED, "contact.friction=0.1").summary.stiffness
+    smooth = soft.summary.stiffness
+    assert rough.loop_work > 1e-5 > abs(smooth.loop_work)
+    assert smooth.K3 < rough.K3 < 1.2 * smooth.K3
+    assert rough.K1 == pytest.approx(smooth.K1, rel=0.02)
     share = soft.summary.bearing.torsional_share.bearing
     print(share, soft.summary.stiffness.K3, rigid.summary.stiffness.K3)
     assert 0.1 < share < 0.5
@@ -146,6 +175,10 @@ def test_ratcheting_crosses_a_backlash_with_a_bearing_in_whole_steps() -> None:
     larger than the one up to which a drive counts as unloaded."""
     values = ("ratcheting.limit=0.04", *(f"{gear}.c_P=0.9" for gear in GEARS))
     result = run(*BEARING, *values)
+    both = run(*BEARING, *values, RESOLVED, "contact.friction=0.1")
+    for name in ("output_torque_Nmm", "wg_torque_Nmm"):  # flanks that do not touch have no friction
+        expected = result.history[name]
+        assert both.history[name] == pytest.approx(expected, abs=1e-6 * np.abs(expected).max())
     torque = np.abs(result.history["output_torque_Nmm"][-1])
     assert result.history["pairs_in_contact"][-1] == 0
     assert torque > result.summary.design.negligible_torque
@@ -173,6 +206,10 @@ def test_deviations_with_a_bearing() -> None:
             np.degrees(found[1].output_angle - found[0].output_angle) + 360.0 / 42.0 / 20.0
         )
     print(errors)
+    others = ("contact.friction=0.1", RESOLVED, "fatigue.size_factor=1.0", *SAMPLED[:1])
+    together = turn_points(*BEARING, *ring, *others, "steps.rotation=18")
+    for index, point in turn_points(*BEARING, *ring).items():
+        assert together[index].output_angle == pytest.approx(point.output_angle, abs=1e-9)
     assert errors[0] == pytest.approx(errors[1], rel=0.2)
     assert errors[0] != errors[1]
 
