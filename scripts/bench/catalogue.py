@@ -1,236 +1,183 @@
-"""Drives of drivers/catalogue beside what is published for their sizes: torsional stiffness,
-bearing, losses.
+"""Drives of catalogue sizes by prediction: proportions that no catalogue prints are found on size
+17, ratio 50, and all others follow.
 
-Wall thicknesses, teeth and bearings of the sizes are not published: the designs are assumed.
-Nothing is fitted. Rows of drives that are not run are kept.
+Rows that are there already are not computed again, but with --again.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
+import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from page import markdown, read_results, write_results
+import catalogue_tables as tables
+import tomli_w
+from catalogue_curves import (
+    FITTED_RATIO,
+    FITTED_SIZE,
+    ROUNDED,
+    SIZES,
+    TOP,
+    Curve,
+    break_points,
+    largest_torque,
+)
+from catalogue_designs import NAMES as PROPORTIONS
+from catalogue_designs import Proportions, catalogue_design
+from catalogue_fit import CASES, FITTED, WITH_PLAY
+from page import DATA, put, read_results, write_results
 from program import run
 
-from swgpar import load_design
-
+FOLDER = Path("results/bench/catalogue")
+MESH = Path("scripts/bench/catalogue_mesh.toml")
 DRIVES = Path("drivers/catalogue")
+PAGE = DATA.parent / "catalogue.md"
 
-RATED = "Schaeffler TPI 275 (RT1-H), quoted by others"
-READ = "Harmonic Drive LLC, catalogue CSF and CSG, table 42; K3: product pages"
-
-PUBLISHED: dict[str, tuple[str, dict[str, float]]] = {
-    "size_14_ratio_100": (RATED, {"K1": 4.7e3, "K3": 7.1e3, "no_load": 35.0, "efficiency": 0.67}),
-    "size_17_ratio_100": (RATED, {"K1": 10e3, "K3": 16e3, "no_load": 51.0, "efficiency": 0.77}),
-    "size_20_ratio_100": (RATED, {"K1": 16e3, "K3": 29e3, "no_load": 105.0, "efficiency": 0.77}),
-    "size_25_ratio_100": (RATED, {"K1": 31e3, "K3": 57e3, "no_load": 195.0, "efficiency": 0.77}),
-    "size_17_ratio_50": (READ, {"K1": 0.81e4, "K2": 1.1e4, "K3": 1.3e4}),
-    "size_25_ratio_50": (READ, {"K1": 2.5e4, "K2": 3.4e4, "K3": 4.4e4}),
-}
-"""Source, stiffness (N·m/rad), no-load running torque (N·mm) and efficiency by design."""
-
-NAMES = ("K1", "K2", "K3")
-
-BALLS, BALL_DIAMETER, RACE_THICKNESS = 22, 0.09, 0.018
-"""Assumed bearing: number of balls, and sizes over the diameter of the spline's bore."""
-
-KINDS = {False: "rigid cam", True: "bearing"}
-
-STIFFNESS = (
-    "drive", "wave_generator", "mesh", "elements", "wall_s", *NAMES,
-    "K1_error", "K3_error", "K1_spread", "K3_spread", "lost_motion", "share",
-)  # fmt: skip
-LOSSES = ("drive", "mesh", "wall_s", "no_load", "no_load_bearing", "loaded", "efficiency")
+RATIOS = (30, 50, 100)
+FIT = ("case", *PROPORTIONS, "K1", "K2", "K3", "lost_motion", "wall_s")
+CURVE = ("ratio", "torque_Nm", "rotation_arcmin", "pairs_in_contact")
+HELD = ("ratio", "K1", "K2", "K3", "lost_motion", "wall_s")
 
 
-def bearing(name: str) -> list[str]:
-    """Overrides that put the assumed bearing into a design; a bearing has no slope."""
-    bore = 2.0 * load_design(DRIVES / f"{name}.toml").inner_radius
-    sizes = {
-        "balls": BALLS,
-        "ball_diameter": BALL_DIAMETER * bore,
-        "race_thickness": RACE_THICKNESS * bore,
-    }
+def design_file(name: str, size: int, ratio: int, torque: float, proportions: Proportions) -> Path:
+    """Write a design under the results, and return its path."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    path = FOLDER / f"{name}.toml"
+    path.write_text(tomli_w.dumps(catalogue_design(size, ratio, torque, proportions)), "utf-8")
+    return path
+
+
+def stiffness_keys(top: float, points: int) -> list[str]:
+    """Overrides of a run of [stiffness] for size 17.
+
+    top : N·m, largest torque;  points : even ones, beside those that K1 to K3 need
+    """
+    T1, T2 = break_points(FITTED_SIZE)
     return [
-        "micro_geometry.wg_slope=0",
-        *(f"wave_generator.bearing.{key}={value:.4g}" for key, value in sizes.items()),
+        f"stiffness.torque={top:.4g}",
+        f"stiffness.rated_torque={T2}",
+        f"stiffness.break_points=[{T1 / top:.6f}, {T2 / top:.6f}]",
+        "stiffness.positions=1",
+        f"stiffness.points={points}",
+        "stiffness.mesh_error=false",
     ]
 
 
-def bearing_bore(name: str) -> float:
-    """Bore (mm) of the assumed bearing, both races alike: what coefficients of friction refer
-    to."""
-    shares = 1.0 - 2.0 * (BALL_DIAMETER + 2.0 * RACE_THICKNESS)
-    return shares * 2.0 * load_design(DRIVES / f"{name}.toml").inner_radius
-
-
-def measure(name: str, on_balls: bool, options: argparse.Namespace) -> dict[str, Any]:
-    """One run of the stiffness program at the rated torque."""
-    finer = options.mesh == "forces"  # a coarser mesh of it still finds the contacts
-    overrides = [
-        "stiffness.positions=2",
-        "stiffness.points=1",
-        f"stiffness.mesh_error={str(finer).lower()}",
-    ]
-    overrides += bearing(name) if on_balls else []
-    folder = Path("results/bench/catalogue") / f"{name}{'_bearing' if on_balls else ''}"
-    summary = run(
-        folder, DRIVES / f"{name}.toml", overrides, options.ranks, options.mesh, plain=False
-    )
-    found, share = summary.stiffness, summary.bearing and summary.bearing.torsional_share
-    row = {
-        "drive": name,
-        "wave_generator": KINDS[on_balls],
-        "mesh": options.mesh,
-        "elements": summary.elements,
-    }
-    row |= {
-        "wall_s": round(summary.wall_s, 1),
-        "share": share and share.bearing,
-    }
-    row |= {key: getattr(found, key) for key in (*NAMES, "lost_motion")}
-    for key in ("K1", "K3"):
-        row |= {
-            f"{key}_error": (found.mesh_error or {}).get(key),
-            f"{key}_spread": getattr(found.spread, key),
-        }
-    return row
-
-
-def lose(name: str, options: argparse.Namespace) -> dict[str, Any]:
-    """Losses over a turn with the coefficients of [losses], without a torque and under the rated
-    one."""
-    seconds, found = 0.0, []
-    for torque in (["load.torque=0"], []):
-        folder = Path("results/bench/catalogue") / f"{name}_losses"
-        overrides = [f"losses.bearing_diameter={bearing_bore(name):.4g}", *torque]
-        summary = run(
-            folder, DRIVES / f"{name}.toml", overrides, options.ranks, options.mesh, plain=False
-        )
-        found.append(summary.losses)
-        seconds += summary.wall_s
-    free, loaded = found
-    return {
-        "drive": name,
-        "mesh": options.mesh,
-        "wall_s": round(seconds, 1),
-        "no_load": free.no_load_torque_Nmm,
-        "no_load_bearing": free.parts_Nmm.bearing,
-        "loaded": loaded.loss_torque_Nmm,
-        "efficiency": loaded.efficiency,
-    }
-
-
-def table(rows: list[dict[str, Any]]) -> str:
-    """The table of the stiffness."""
-    head = [
-        "drive",
-        "",
-        "mesh",
-        *NAMES,
-        "K3 / K1",
-        "over published: K1",
-        "K3",
-        "lost motion",
-        "share",
-        "s",
-    ]
-    found, before = [head], ""
-    for row in rows:
-        source, published = PUBLISHED[row["drive"]]
-        name = row["drive"].replace("_", " ")
-        if row["drive"] != before:
-            quoted = [f"{published[key]:.4g}" if key in published else "" for key in NAMES]
-            both = "K1" in published and "K3" in published
-            ratio = f"{published['K3'] / published['K1']:.2f}" if both else ""
-            found.append([name, source, "", *quoted, ratio, *[""] * 5])
-        before = row["drive"]
-        over = [
-            f"{row[key] / published[key]:.2f}" if key in published else "" for key in ("K1", "K3")
+def program_rows(folder: Path, columns: Sequence[str]) -> list[dict[str, Any]]:
+    """These columns of the points of a load program; all but stages are numbers."""
+    with (folder / "program.csv").open(newline="", encoding="utf-8") as file:
+        return [
+            {key: row[key] if key == "stage" else float(row[key]) for key in columns}
+            for row in csv.DictReader(file)
         ]
-        sizes = [
-            f"{row[key]:.4g}" + (f" ± {row[error]:.2g}" if row.get(error := f"{key}_error") else "")
-            for key in NAMES
-        ]
-        ratio, share = (
-            f"{row['K3'] / row['K1']:.2f}",
-            f"{100.0 * row['share']:.0f} %" if row["share"] else "",
-        )
-        cells = [row["wave_generator"], row["mesh"], *sizes, ratio, *over]
-        found.append(["", *cells, f"{row['lost_motion']:.2g}", share, f"{row['wall_s']:.0f}"])
-    return markdown(found)
 
 
-def table_of_losses(rows: list[dict[str, Any]]) -> str:
-    """The table of the losses."""
-    head = [
-        "drive",
-        "no load: computed",
-        "of it bearing",
-        "published",
-        "ratio",
-        "under rated torque",
-    ]
-    found = [[*head, "efficiency: computed", "published", "s"]]
-    for row in rows:
-        _, published = PUBLISHED[row["drive"]]
-        torque, efficiency = published.get("no_load"), published.get("efficiency")
-        cells = [
-            row["drive"].replace("_", " "),
-            f"{row['no_load']:.3g}",
-            f"{row['no_load_bearing']:.3g}",
-        ]
-        cells += [f"{torque:g}", f"{row['no_load'] / torque:.2f}"] if torque else ["", ""]
-        cells += [f"{row['loaded']:.3g}", f"{100.0 * row['efficiency']:.0f} %"]
-        found.append(
-            [*cells, f"{100.0 * efficiency:.0f} %" if efficiency else "", f"{row['wall_s']:.0f}"]
-        )
-    return markdown(found)
+def curve(
+    name: str, ratio: int, proportions: Proportions, keys: list[str], options: argparse.Namespace
+) -> tuple[list[dict[str, Any]], float]:
+    """Rows of the curve of size 17, and the seconds of the run."""
+    design = design_file(name, FITTED_SIZE, ratio, break_points(FITTED_SIZE)[1], proportions)
+    summary = run(FOLDER / name, design, keys, options.ranks, MESH, plain=False)
+    rows = [{"ratio": ratio} | row for row in program_rows(FOLDER / name, CURVE[1:])]
+    return rows, summary.wall_s
 
 
-def replaced(
-    rows: list[dict[str, Any]], new: dict[str, Any], keys: tuple[str, ...]
-) -> list[dict[str, Any]]:
-    """Rows with a new one in place of that with the same keys, in the order of `PUBLISHED`."""
-    others = [row for row in rows if any(row[key] != new[key] for key in keys)]
-    order = list(PUBLISHED)
-    return sorted(
-        [*others, new],
-        key=lambda row: (order.index(row["drive"]), row.get("wave_generator") == KINDS[True]),
-    )
+def fit(options: argparse.Namespace) -> None:
+    """Runs of the fit."""
+    for case, proportions in CASES.items():
+        rows = read_results("catalogue_fit")
+        if any(row["case"] == case for row in rows) and not options.again:
+            continue
+        keys = stiffness_keys(TOP * break_points(FITTED_SIZE)[1], 1)
+        name = "fit_" + re.sub("[^a-z0-9]+", "_", case)
+        points, seconds = curve(name, FITTED_RATIO, proportions, keys, options)
+        row = {"case": case, "wall_s": round(seconds, 1)}
+        row |= {name: getattr(proportions, name) for name in PROPORTIONS}
+        row |= Curve.of(points).stiffness(FITTED_SIZE)
+        rows = [other for other in rows if other["case"] != case] + [row]
+        write_fit(rows)
 
 
-def main() -> None:
-    """Run the designs, and write the page."""
+def write_fit(rows: list[dict[str, Any]]) -> None:
+    """Write the runs of the fit, and how well it is determined."""
+    write_results("catalogue_fit", FIT, rows, tables.fit(rows), page="catalogue")
+    put(PAGE, "catalogue_determined", tables.determined(rows))
+
+
+def curves(options: argparse.Namespace) -> None:
+    """Curves of the fitted proportions at all ratios."""
+    for ratio in options.ratios:
+        rows = read_results("catalogue_curves")
+        top = largest_torque()
+        reached = max((row["torque_Nm"] for row in rows if row["ratio"] == ratio), default=0.0)
+        if reached > (1.0 - ROUNDED) * top and not options.again:
+            continue
+        keys = stiffness_keys(top, 3)
+        found, _ = curve(f"ratio_{ratio}", ratio, FITTED, keys, options)
+        rows = [row for row in rows if row["ratio"] != ratio] + found
+        rows.sort(key=lambda row: (row["ratio"], row["torque_Nm"]))
+        write_results("catalogue_curves", CURVE, rows, tables.stiffness(rows), page="catalogue")
+
+
+def held(options: argparse.Namespace) -> None:
+    """The starter's structure with play, at several ratios: what the input would have to yield."""
+    for ratio in options.ratios:
+        rows = read_results("catalogue_input")
+        if any(row["ratio"] == ratio for row in rows) and not options.again:
+            continue
+        keys = stiffness_keys(TOP * break_points(FITTED_SIZE)[1], 1)
+        points, seconds = curve(f"input_{ratio}", ratio, WITH_PLAY, keys, options)
+        row = {"ratio": ratio, "wall_s": round(seconds, 1)}
+        row |= Curve.of(points).stiffness(FITTED_SIZE)
+        rows = sorted([*(r for r in rows if r["ratio"] != ratio), row], key=lambda r: r["ratio"])
+        write_results("catalogue_input", HELD, rows, tables.held(rows), page="catalogue")
+
+
+def losses(_: argparse.Namespace) -> None:
+    """Tables of the losses, which follow from the published ones of size 17."""
+    put(PAGE, "catalogue_losses", tables.losses())
+    put(PAGE, "catalogue_operation", tables.operation())
+
+
+def designs(options: argparse.Namespace) -> None:
+    """Design files of drivers/catalogue."""
+    for ratio in options.ratios:
+        for size in SIZES:
+            table = catalogue_design(size, ratio, break_points(size)[1], FITTED)
+            head = (
+                f"# A drive of catalogue size {size} with ratio {ratio}: docs/verification/"
+                "catalogue.md. Written by scripts/bench/catalogue.\n"
+            )
+            path = DRIVES / f"size_{size}_ratio_{ratio}.toml"
+            path.write_text(head + tomli_w.dumps(table), "utf-8")
+
+
+ACTIONS = {
+    "fit": fit,
+    "curves": curves,
+    "input": held,
+    "losses": losses,
+    "designs": designs,
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Compute what is missing, and write the page."""
     options = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     options.add_argument(
-        "--only", nargs="+", choices=list(PUBLISHED), default=list(PUBLISHED), metavar="DRIVE"
+        "--what", nargs="+", choices=ACTIONS, default=["fit", "curves", "input", "losses"]
     )
+    options.add_argument("--ratios", nargs="+", type=int, default=list(RATIOS))
     options.add_argument("--ranks", type=int, default=2)
-    options.add_argument(
-        "--mesh", default="coarse", help='"forces" is three times slower and gives errors'
-    )
-    kinds = ("rigid", "bearing", "losses")
-    options.add_argument(
-        "--what", nargs="+", choices=kinds, default=["rigid"], help="default: rigid"
-    )
-    arguments = options.parse_args()
-    for name in arguments.only:
-        for on_balls, kind in ((False, "rigid"), (True, "bearing")):
-            if kind in arguments.what:
-                row = measure(name, on_balls, arguments)
-                print(row, flush=True)
-                rows = replaced(read_results("catalogue"), row, ("drive", "wave_generator"))
-                write_results("catalogue", STIFFNESS, rows, table(rows))
-        if "losses" in arguments.what:
-            row = lose(name, arguments)
-            print(row, flush=True)
-            rows = replaced(read_results("catalogue_losses"), row, ("drive",))
-            write_results("catalogue_losses", LOSSES, rows, table_of_losses(rows), page="catalogue")
+    options.add_argument("--again", action="store_true", help="compute rows that are there too")
+    chosen = options.parse_args(arguments)
+    for name in chosen.what:
+        ACTIONS[name](chosen)
 
 
 if __name__ == "__main__":
