@@ -41,7 +41,11 @@ def drawings(result: TrainResult[CascadeDesign]) -> Drawings:
     force = result.history["rack_force_kN"]
     rising = slice(0, np.argmax(force) + 1)
     moving = {name: result.history[f"share_{k}"][rising] for k, name in NAMES.items()}
+    further = {"load_sharing_compared": _compared, "lateral_force": _lateral, "spectrum": _spectrum}
+    if "spectrum" not in result.tables:  # of an earlier version
+        further = {}
     return at_rest | {
+        **{name: partial(draw, result) for name, draw in further.items()},
         "load_sharing_equal_units": partial(
             _against_force,
             "load sharing at rest, direction B, equal units",
@@ -57,9 +61,6 @@ def drawings(result: TrainResult[CascadeDesign]) -> Drawings:
             moving,
             limit,
         ),
-        "load_sharing_compared": partial(_compared, result),
-        "lateral_force": partial(_lateral, result),
-        "spectrum": partial(_spectrum, result),
         "population": partial(_population, result, limit),
         "stack_up": partial(_stack_up, result),
         "flex_unit": partial(_flex_unit, result),
@@ -182,6 +183,8 @@ def _flex_unit(result: TrainResult) -> Figure:
     figure, (upper, lower) = axes("flexible units", *labels)
     way = table["deformation_mm"]
     for k, name in NAMES.items():
+        if f"torque_{k}_Nm" not in table:  # of an earlier version
+            continue
         style = STYLES[(int(k) - 1) % 2]
         plot_line(upper, way, table[f"torque_{k}_Nm"], style, lw=0.8, label=name)
         plot_line(lower, way, table[f"stiffness_{k}_Nm_per_deg"], style, lw=0.8)

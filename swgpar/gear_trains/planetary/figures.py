@@ -34,12 +34,13 @@ METHODS = {"monte_carlo": ("Monte Carlo", "k"), "linearised": ("linearised", "C0
 def drawings(result: TrainResult) -> Drawings:
     """All figures of a run."""
     figures = {name: partial(_moments, result, name) for name in MONITORED}
-    figures |= {f"part_{part}": partial(_part, result, part) for part in PARTS}
-    figures |= {f"rims_{name}": partial(_rims, result, name) for name in (*MONITORED, "sun_x")}
-    return figures | {
-        "mesh_forces": partial(_forces, result),
-        "campbell": partial(_campbell, result),
-    }
+    figures |= {f"rims_{name}": partial(_rims, result, name) for name in MONITORED}
+    figures["mesh_forces"] = partial(_forces, result)
+    if "modes" in result.tables:  # an earlier version has neither modes nor all coordinates
+        figures |= {f"part_{part}": partial(_part, result, part) for part in PARTS}
+        figures["rims_sun_x"] = partial(_rims, result, "sun_x")
+        figures["campbell"] = partial(_campbell, result)
+    return figures
 
 
 def _moments(result: TrainResult, name: str) -> Figure:
