@@ -47,6 +47,7 @@ SMALLEST_AND_LARGEST = {
     "arcsec": (1e-6, 1e6),
     "N·√s": (1e-12, 1e9),
     "HV": (1.0, 1e5),
+    "mm²/s": (1e-3, 1e7),
 }
 """Unit -> smallest magnitude of a number that is not 0, and largest."""
 
