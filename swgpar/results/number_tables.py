@@ -11,9 +11,12 @@ from rich import box
 from rich.table import Table
 
 BETWEEN = 2
-"""Blanks between columns, and before the first one."""
+"""Blanks behind a column."""
 
-HEADING = 14
+EDGE = 1
+"""Blanks before the first column."""
+
+HEADING = 22
 """Letters of a heading, beyond which it is folded where the cells below are shorter."""
 
 LABEL = 12
@@ -41,10 +44,11 @@ def number_tables(
         name: max([*map(len, cells), min(len(name), HEADING)]) for name, cells in columns.items()
     }
     longest = max(map(len, [labels.heading, *labels.texts]))
-    room = width - 2 - max(letters.values(), default=0) - BETWEEN
-    whole = width - 2 - sum(count + BETWEEN for count in letters.values())  # beside all columns
+    free = width - EDGE - BETWEEN  # beside the labels
+    room = free - max(letters.values(), default=0) - BETWEEN
+    whole = free - sum(count + BETWEEN for count in letters.values())  # beside all columns
     first = min(longest, max(LABEL, min(room, width // 3), whole))
-    for names in _blocks(letters, width - 2 - first):
+    for names in _blocks(letters, free - first):
         table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
         table.add_column(labels.heading, width=first, justify=labels.justify, overflow="fold")
         for name in names:

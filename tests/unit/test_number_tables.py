@@ -49,6 +49,16 @@ def test_tables_are_divided(width: int) -> None:
     assert shown.words.count("-1.23457e-05") == 9
     assert shown.words.count("short") == shown.words.count("case") > 1
     assert " ".join(shown.words).count("all of them") == 1
+    assert "heading" in shown.words and "column" in shown.words
+
+
+@pytest.mark.parametrize("width", range(50, 90))
+def test_a_heading_of_one_word_is_whole(width: int) -> None:
+    columns = {name: ["12345.6"] for name in ("published", "computed", "difference", "estimate")}
+    shown = Shown(width)
+    for table in number_tables(Labels("case", [LONG]), columns, width):
+        shown.console.print(table)
+    assert {*columns, "12345.6"} <= set(shown.words)
 
 
 @WIDTHS
