@@ -12,6 +12,9 @@ from swgpar.results.page import Amount, Table, TableRow, number
 NOTHING = 1e-9
 """Size below which a value is round-off and 0 is shown."""
 
+WRITTEN_OUT = 1e9
+"""Size up to which a value has no power of ten."""
+
 
 def value_text(value: float | None, error: float | None = None) -> str:
     """A value with the digits of its error, without one with five; a dash where there is none."""
@@ -20,8 +23,14 @@ def value_text(value: float | None, error: float | None = None) -> str:
     if abs(value) < NOTHING:
         return number(0.0)
     if not np.isfinite(value) or error is None or error < NOTHING:
-        return number(float(value))
+        written = number(float(value))
+        return written if abs(value) >= WRITTEN_OUT else _without_power(written)
     return _rounded(value, _decimals(error))
+
+
+def _without_power(written: str) -> str:
+    """A number without a power of ten, where that stands for zeros before the point."""
+    return f"{float(written):.0f}" if "e+" in written else written
 
 
 def _decimals(error: float) -> int:

@@ -44,15 +44,15 @@ def further_text(verdict: Verdict) -> str:
 
 def headline_text(sheet: RatingSheet) -> str:
     """The headline in a sentence, with the rows that it comes from."""
-    words = {
-        Judgement.PASSES: "The drive passes",
-        Judgement.NOT_JUDGED: "The drive is not judged",
-        Judgement.WITHIN_ERROR: "The drive is within its errors of a limit",
-        Judgement.FAILS: "The drive fails",
-    }[sheet.headline]
     rows = [one.name for one in counted(sheet.verdicts) if one.judgement == sheet.headline]
-    named = f": {', '.join(rows)}" if rows and sheet.headline != Judgement.PASSES else ""
-    return f"{words}{named}."
+    named = ", ".join(rows)
+    sentences = {
+        Judgement.PASSES: "The drive passes.",
+        Judgement.NOT_JUDGED: f"The drive is not judged. No verdict on {named or 'any row'}.",
+        Judgement.WITHIN_ERROR: f"The drive is within its errors of a limit: {named}.",
+        Judgement.FAILS: f"The drive fails: {named}.",
+    }
+    return sentences[sheet.headline]
 
 
 def counts_text(sheet: RatingSheet) -> str:

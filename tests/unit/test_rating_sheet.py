@@ -47,7 +47,7 @@ def test_the_terminal_shows_numbers_whole(
     assert all(len(line) <= width for line in shown.splitlines())
     for whole in ("514.9 MPa", "±\u00a04.1", "at most 1050", "4.0668 arc minutes"):
         assert whole in shown
-    assert "The drive is not judged: life of the bearing." in " ".join(shown.split())
+    assert "The drive is not judged. No verdict on life of the bearing." in " ".join(shown.split())
 
 
 def test_the_headline_names_the_rows_that_it_comes_from(sheet: RatingSheet) -> None:
@@ -55,6 +55,7 @@ def test_the_headline_names_the_rows_that_it_comes_from(sheet: RatingSheet) -> N
     below = Verdict("below", STRESS, LIMIT)
     rows = {
         "The drive passes.": (below,),
+        "The drive is not judged. No verdict on any row.": (Verdict("free", STRESS, None),),
         "The drive is within its errors of a limit: near.": (
             below,
             Verdict("near", STRESS, Limit(517.0, Sense.AT_MOST, "here")),
