@@ -130,7 +130,7 @@ class _Linearisation:
         train = self.stepper.train
         rows, added = monitored(train, self.stepper, step, self.flanks)
         n = train.size
-        variance = np.einsum("pi,ij,pj->p", rows, self.covariance[:n, :n], rows)
+        variance = ((rows @ self.covariance[:n, :n]) * rows).sum(axis=1)
         return rows @ self.states.q[:, 0] + added, np.sqrt(np.maximum(variance, 0.0))
 
     def mesh_forces(self) -> tuple[np.ndarray, np.ndarray]:
