@@ -23,7 +23,7 @@ WORLD = MPI.COMM_WORLD
 BENT = ["steps.bent_start=true", "steps.rotation=0", "output.root_stress=false"]
 STIFFNESS = ["stiffness.torque=0.2", "stiffness.positions=1", "stiffness.mesh_error=false"]
 PEAK = ["load.torque=0.3"]
-RATING = {"rated_torque": 0.2, "K1": 1.0, "yield_safety": 1e-3}
+RATING = {"rated_torque": 0.2, "K1": 1.0}
 SEARCH: dict[str, Any] = {
     "mesh": str(RECIPE),
     "parallel": "ranks",
@@ -31,8 +31,8 @@ SEARCH: dict[str, Any] = {
     "evaluations": 2,
     "sampler": "random",
     "load_case": [
-        {"name": "peak", "without": ["rating", "fatigue"], "set": PEAK},
-        {"name": "wind-up", "without": ["rating", "fatigue"], "set": STIFFNESS},
+        {"name": "peak", "without": ["rating"], "set": PEAK},
+        {"name": "wind-up", "without": ["rating"], "set": STIFFNESS},
         {"name": "sheet", "rate": True, "set": STIFFNESS},
     ],
     "variable": [{"keys": ["flexible_spline.rim"], "low": 0.5, "high": 0.7}],
@@ -51,22 +51,23 @@ SEARCH: dict[str, Any] = {
 def test_load_cases_and_a_rating_sheet(tmp_path: Path) -> None:
     folder = Path(WORLD.bcast(str(tmp_path)))
     table = swgpar.load_design(DESIGN).model_dump(exclude_unset=True)
-    table |= {"rating": RATING, "fatigue": {}}
+    table |= {"rating": RATING}
     if WORLD.rank == 0:
         (folder / "drive.toml").write_text(to_toml(table), encoding="utf-8")
         content = {"optimise": {"design": "drive.toml", **SEARCH}}
         (folder / "search.toml").write_text(to_toml(content), encoding="utf-8")
     WORLD.Barrier()
     found = swgpar.optimise(folder / "search.toml", folder / "out")
-    alone = swgpar.optimise(
-        folder / "search.toml", tmp_path / f"alone_{WORLD.rank}", comm=MPI.COMM_SELF
-    )
     parallel_assert(found.start == 0 and found.evaluations[0].values["flexible_spline.rim"] == 0.6)
-    for number, one in found.evaluations.items():
-        other = alone.evaluations[number]
-        parallel_assert(one.values == other.values and one.status == other.status, one.reason)
-        parallel_assert(one.quantities == pytest.approx(other.quantities, rel=1e-4))
-        parallel_assert(one.verdicts == other.verdicts)
+    if WORLD.size > 1:
+        alone = swgpar.optimise(
+            folder / "search.toml", tmp_path / f"alone_{WORLD.rank}", comm=MPI.COMM_SELF
+        )
+        for number, one in found.evaluations.items():
+            other = alone.evaluations[number]
+            parallel_assert(one.values == other.values and one.status == other.status, one.reason)
+            parallel_assert(one.quantities == pytest.approx(other.quantities, rel=1e-4))
+            parallel_assert(one.verdicts == other.verdicts)
 
     # the start design as it is written
     start, drive = found.evaluations[0], swgpar.load_design(DESIGN, [*PLANE, *BENT])
