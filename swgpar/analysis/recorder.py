@@ -28,7 +28,7 @@ from swgpar.evaluation.result_frame import history_rows, nodal_fields
 from swgpar.evaluation.stiffness import loop_rows
 from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.flank_pressure.pair_contact import pair_contacts, touches_edges
+from swgpar.flank_pressure.pair_contact import PairContact, pair_contacts, touches_edges
 from swgpar.input.toml_file import to_toml
 from swgpar.largest_stress.accuracy import Accuracy
 from swgpar.largest_stress.places import Place, find_places
@@ -66,6 +66,7 @@ class Recorder(ABC):
     def __init__(self, stepper: LoadStepper) -> None:
         self.stepper, self.model, self.sequence = stepper, stepper.model, stepper.sequence
         self.comm, self.record = self.model.comm, RunRecord()
+        self._contacts: list[PairContact] | None = None
         needed = self.model.design.fatigue or self.model.design.losses
         self.cycle = StressCycle(self.model, self.sequence) if needed else None
 
@@ -80,6 +81,13 @@ class Recorder(ABC):
         self.record.coarse_wall = chosen.coarse_wall
         self.record.contact_errors = chosen.contact_errors
         self.record.bearing_errors = chosen.bearing_errors
+
+    def contacts(self) -> list[PairContact]:
+        """Contacts of all touching pairs of the present state, which are computed once before it is
+        kept; collective."""
+        if self._contacts is None:
+            self._contacts = pair_contacts(self.model, self.stepper.load_state)
+        return self._contacts
 
     def keep(self, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.
@@ -96,7 +104,7 @@ class Recorder(ABC):
         row = {**self.stepper.row(), **values, "wall_s": seconds}
         self.record.rows.append(history.plain_row(row))
         with model.phases("stress"):
-            on_edge = self._keep_pairs(state)
+            on_edge, self._contacts = self._keep_pairs(state), None
             self._keep_places(state, body_fields, on_edge)
             self._keep_balls(state, race)
             if model.design.is_bolted:
@@ -146,7 +154,7 @@ class Recorder(ABC):
             return False
         record, row = self.record, self.record.rows[-1]
         when = {"increment": len(record.rows), **{n: row[n] for n in ("step", "wg_angle_deg")}}
-        contacts = pair_contacts(self.model, state)
+        contacts = self.contacts()
         for contact in contacts:
             record.pairs.append({**when, **contact.row()})
             record.contact_lines += [{**when, **station} for station in contact.station_rows()]

@@ -43,7 +43,6 @@ from swgpar.evaluation.ratcheting import why_ended
 from swgpar.evaluation.result_frame import history_rows
 from swgpar.evaluation.transmission_error import period_rows
 from swgpar.fem.body import RING_GEAR
-from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress, with_angle
 from swgpar.largest_stress.wall_stress import WallStress, resolve_wall
 from swgpar.load.load_sequence import LoadSequence, load_sequence
@@ -360,7 +359,7 @@ class DriveRun:
         known = [one for one in self.coarser if one is not None]
         if len(known) < len(self.coarser):
             return
-        contacts = pair_contacts(self.model, state)
+        contacts = self.recorder.contacts()
         lobes = self.model.design.wave_generator.lobes
         record.contact_errors = contact_errors(known, self.recipe, contacts, lobes)
         bearing = loaded_bearing(self.model, state)

@@ -38,7 +38,7 @@ from swgpar.model.drive_model import DriveModel
 from swgpar.model.part_contacts import contacts_of_part
 from swgpar.model.regions import WITHOUT_LIMIT, warning_of
 from swgpar.model.torques import torques
-from swgpar.model.window_mesh import WindowMesh
+from swgpar.model.window_mesh import WindowEquilibrium, WindowMesh
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
 
@@ -166,7 +166,7 @@ class LocalProblem:
             flank_forces(model, state, teeth, model.problem.flanks_of(RING_GEAR), gear),
         )
         self.pressing = np.zeros((count, len(mesh.coords)))
-        displacement = self._of_the_drive(teeth)
+        self._of_drive = displacement = self._of_the_drive(teeth)
         self.scale = model.problem.supports.scale
         problem = DiscreteProblem(
             partition=self.partition,
@@ -195,10 +195,17 @@ class LocalProblem:
             self.solver.system.take_over_factor(shared.angle - shared.factor_angle)
         self.problem = problem
         begin = displacement
-        if coarser is not None:
+        if (known := shared.states.get(self._place)) is not None:
+            begin = known.near(displacement)
+        elif coarser is not None:
             begin = self._interpolated(coarser.displacement, shared.from_window(coarser.mesh))
         own = begin[self.partition.owned_indices(gear)]
         write_field(self.partition, gear, own, problem.x)
+
+    @property
+    def _place(self) -> tuple[int, float]:
+        """What tells the window from others on its mesh under one load."""
+        return self.layout.first_tooth, self.state.angle
 
     def _of_the_drive(self, teeth: np.ndarray) -> np.ndarray:
         """Displacement (n_teeth, n_node, 3) mm of the drive at the nodes of the window;
@@ -308,6 +315,9 @@ class LocalProblem:
                 f"{result.reason}"
             )
         self._shared.factor_angle = self._shared.angle - self.solver.system.turn
+        if self.model.keeps_windows:
+            solved = WindowEquilibrium(self._of_drive, self.equilibrium().displacement)
+            self._shared.keep_state(self._place, solved)
 
     @cached_property
     def _stresses(self) -> tuple[dict[str, np.ndarray], np.ndarray]:

@@ -7,7 +7,7 @@ the last window, whose factor serves it too.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from mpi4py import MPI
@@ -21,6 +21,26 @@ from swgpar.meshing.interpolation import interpolation
 from swgpar.meshing.sector import SectorMesh
 from swgpar.model.regions import regions_of
 from swgpar.solve.tangent_matrix import TangentMatrix
+
+MOST_STATES = 24
+"""Equilibria that a mesh keeps for further loads, the last ones."""
+
+
+@dataclass(frozen=True)
+class WindowEquilibrium:
+    """A window in its equilibrium.
+
+    of_drive : (n_teeth, n_node, 3) mm, displacement of the drive at its nodes
+    of_window : the same, its own
+    """
+
+    of_drive: np.ndarray
+    of_window: np.ndarray
+
+    def near(self, of_drive: np.ndarray) -> np.ndarray:
+        """Displacement (n_teeth, n_node, 3) mm near the equilibrium under another load, in which
+        the drive has other displacements."""
+        return of_drive + (self.of_window - self.of_drive)
 
 
 class WindowMesh:
@@ -37,6 +57,7 @@ class WindowMesh:
     blocks : room of its tangent, with the factor
     factor_angle : rad, of the first sector of the window whose tangent is factorised; None for none
     regions : (n_node,) regions of the nodes where no contact presses
+    states : equilibria by first tooth and angle (rad) of the wave generator, under the last load
     """
 
     def __init__(
@@ -61,6 +82,7 @@ class WindowMesh:
         self.blocks = TangentMatrix(self.elements)
         self.factor_angle: float | None = None
         self.regions = regions_of(geometry, mesh, range(len(mesh.coords)), False)
+        self.states: dict[tuple[int, float], WindowEquilibrium] = {}
         self._interpolations: dict[str, tuple[SectorMesh, csr_matrix]] = {}
 
     @property
@@ -89,6 +111,13 @@ class WindowMesh:
         if kind not in self._interpolations or self._interpolations[kind][0] is not mesh:
             self._interpolations[kind] = mesh, interpolation(mesh, self.mesh)
         return self._interpolations[kind][1]
+
+    def keep_state(self, place: tuple[int, float], state: WindowEquilibrium) -> None:
+        """Keep the equilibrium of a window, see `states`."""
+        self.states.pop(place, None)
+        self.states[place] = state  # the last one
+        while len(self.states) > MOST_STATES:
+            del self.states[next(iter(self.states))]
 
     def release(self) -> None:
         """Release tangent and factor; collective. The next window makes them anew."""

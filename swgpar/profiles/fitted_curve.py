@@ -48,8 +48,7 @@ class _Spline:
 
     def evaluate(self, t: Floats) -> CurvePoints:
         """Curve at the parameters t (n,), for `CurvedSegment`."""
-        values = self.pieces(t)
-        z, first, second = (values[:, k : k + 2] @ (1.0, 1j) for k in (0, 2, 4))
+        z, first, second = np.ascontiguousarray(self.pieces(t)).view(np.complex128).T
         back = np.exp(-1j * self.angle)
         curve = points_of(z, back * first, back * second)
         # counted from the middle tangent, the angle does not jump by a turn
