@@ -23,6 +23,16 @@ At the ends of teeth, after the first window, and after later ones. Between them
 the largest. At the ends the second window gives the most, up to 12 % too much."""
 
 
+ROUND_OFF = 1e-6
+"""Share by which equal stresses differ: that of Newton's iteration."""
+
+
+def first_of_largest(values: np.ndarray) -> int:
+    """Index of the largest of stresses (n,), of equal ones the first: two teeth have one nodal
+    average in the middle of their root, and round-off differs with the number of ranks."""
+    return int(np.argmax(values >= values.max() - ROUND_OFF * abs(values.max())))
+
+
 def candidates(
     between: np.ndarray,
     at_ends: np.ndarray | None = None,
@@ -37,7 +47,7 @@ def candidates(
     ends, in the cup at them, and in their roots
     mises : (n_modelled,) largest von Mises stress of teeth and rim, apart from the contact
     """
-    first = int(between.argmax())
+    first = first_of_largest(between)
     teeth = [first]
     shares = [(between, CLOSE)]
     if in_root[first] < between[first]:
@@ -50,7 +60,7 @@ def candidates(
     for stresses, limit in limits:
         far = stresses.copy()
         far[near] = -np.inf
-        other = int(far.argmax())
+        other = first_of_largest(far)
         if far[other] > limit and other not in teeth:
             teeth.append(other)
     return teeth

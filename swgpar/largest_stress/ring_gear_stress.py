@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from functools import partial
 
 from swgpar.fem.body import RING_GEAR
+from swgpar.largest_stress.candidate_teeth import first_of_largest
 from swgpar.largest_stress.local_problem import WindowState, WindowStress
 from swgpar.largest_stress.places import OF_REGION
 from swgpar.largest_stress.region_stress import (
@@ -35,7 +36,7 @@ def ring_gear_stresses(
     nodal = nodal_by_sector(model, state, RING_GEAR, averages)
     stresses = ("s1", "vm") if kind == "plane" else ("s1",)
     roots = [f"rg_{stress}{OF_REGION}{TOOTH_ROOT}" for stress in stresses]
-    first, count = [int(nodal[root].argmax()) for root in roots], len(nodal[roots[0]])
+    first, count = [first_of_largest(nodal[root]) for root in roots], len(nodal[roots[0]])
     teeth = {(tooth + beside) % count for tooth in first for beside in (-1, 0, 1)}
     readings, states = WindowReadings(skipped), dict[int, WindowState]()
     for level in range(min(levels, RING_LEVELS[kind])):

@@ -28,7 +28,7 @@ from swgpar.answers.answer import (
 )
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.largest_stress.candidate_teeth import candidates, followed
+from swgpar.largest_stress.candidate_teeth import candidates, first_of_largest, followed
 from swgpar.largest_stress.convergence import error_at_ends, error_of
 from swgpar.largest_stress.local_problem import WindowState, WindowStress
 from swgpar.largest_stress.places import OF_REGION, Place, root_nodes
@@ -300,7 +300,7 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
     level = PERIOD_LEVEL[kind]
     ends = known.part == ENDS
     s1, _, _ = nodal_averages(model, FLEXIBLE_SPLINE)
-    tooth = int(largest_by_tooth(model, s1, ends).argmax())
+    tooth = first_of_largest(largest_by_tooth(model, s1, ends))
     found = _solve(model, state, [(tooth, ends)], window_recipe(kind, level))[tooth, ends]
     value = found.value * known.s1 / known.levels[level]
     period = known.period or ((0.0, known.s1),)

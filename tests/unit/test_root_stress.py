@@ -57,6 +57,13 @@ def test_roots_are_looked_at_where_the_largest_stress_is_not_in_one(
     assert candidates(tension, in_root=teeth(**in_root), mises=tension) == expected
 
 
+@pytest.mark.parametrize("round_off", [-1e-9, 0.0, 1e-9])
+def test_of_equal_stresses_the_first_is_taken(round_off: float) -> None:
+    """The number of ranks changes the round-off."""
+    tension = teeth(t1=100.0, t2=100.0 * (1.0 + round_off), t7=95.0, t8=95.0 * (1.0 - round_off))
+    assert candidates(tension, in_root=tension, mises=tension) == [1, 7]
+
+
 @pytest.mark.parametrize(("value", "expected"), [(86.0, [0, 7]), (84.0, [0])])
 def test_a_tooth_with_a_large_von_mises_stress_is_looked_at(
     value: float, expected: list[int]
