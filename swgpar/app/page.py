@@ -78,7 +78,7 @@ class Page:
             with ui.column().classes("swgpar-form"):
                 self.form()
             with ui.column().classes("swgpar-section"):
-                self.section()
+                self.plot, self.slider = self._make_section()
             with ui.column().classes("swgpar-answers"):
                 self.plane()
                 self.answers()
@@ -153,16 +153,17 @@ class Page:
 
     # -- section -----------------------------------------------------------------------------------
 
-    def section(self) -> None:
+    def _make_section(self) -> tuple[ui.plotly, ui.slider]:
         """The picture, and the angle of the cam."""
-        self.plot = ui.plotly(self._figure()).classes("w-full swgpar-plot")
+        plot = ui.plotly(self._figure()).classes("w-full swgpar-plot")
         with ui.row().classes("w-full items-center no-wrap gap-4"):
             ui.label("angle of the cam, °")
-            self.slider = ui.slider(min=0.0, max=360.0, step=1.0, value=self.state.angle_deg)
-            self.slider.props('label aria-label="angle of the cam"').classes("grow")
-            self.slider.on_value_change(lambda event: self._turned(event.value))
+            slider = ui.slider(min=0.0, max=360.0, step=1.0, value=self.state.angle_deg)
+            slider.props('label aria-label="angle of the cam"').classes("grow")
+            slider.on_value_change(lambda event: self._turned(event.value))
             ui.button("play", on_click=self._play).props("flat dense")
         self.clearance()
+        return plot, slider
 
     @ui.refreshable_method
     def clearance(self) -> None:

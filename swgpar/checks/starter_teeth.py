@@ -45,9 +45,11 @@ alike."""
 
 S_SHAPED = {"r_tip": 0.15, "r_root": 0.35}
 CONJUGATE = {"r_tip": 0.15, "r_root": 0.2, "backlash": 0.005}
-TIP_RELIEF, TIP_RELIEF_HEIGHT = 0.02, 0.5
+TIP_RELIEF, RELIEVED_TEETH, MOST_TEETH, TIP_RELIEF_HEIGHT = 0.02, 100, 320, 0.5
 """S-shaped teeth and the ring gear conjugate to them, modules: radii, backlash, and relief of both
-tips, which would else carry where pairs come into mesh and leave it."""
+tips, which would else carry where pairs come into mesh and leave it. The relief is that of so many
+teeth of the flexible spline, and grows with the third root of their number up to the most: loads
+of one torque over D³ bend more teeth by more modules."""
 
 CUTTER_TEETH = 2.0 / 3.0
 """Teeth of the shaper-cutter over those of the ring gear, as in section 6.3."""
@@ -55,12 +57,16 @@ CUTTER_TEETH = 2.0 / 3.0
 
 @dataclass(frozen=True)
 class ToothSizes:
-    """Sizes of the flexible spline, modules. scale : heights over those of thick rims"""
+    """Sizes of the flexible spline, modules.
+
+    scale : heights over those of thick rims;  tip_relief : of S-shaped teeth, before that scale
+    """
 
     rim: float
     addendum: float
     dedendum: float
     scale: float
+    tip_relief: float = 0.0
 
     @property
     def below_pitch_circle(self) -> float:
@@ -83,7 +89,9 @@ def tooth_sizes(profile: Profile, lobes: Literal[2, 3], teeth: int, *, coned: bo
     rim = min(largest, max(bent, LEAST_RIM))
     addendum, dedendum = (CONED_ADDENDUM, CONED_DEDENDUM) if coned else (ADDENDUM, DEDENDUM)
     lower = min(1.0, rim / (RIM_OF_HEIGHT * (addendum + dedendum)))
-    return ToothSizes(rim, rounded(lower * addendum, 3), rounded(lower * dedendum, 3), lower)
+    relief = TIP_RELIEF * (min(teeth, MOST_TEETH) / RELIEVED_TEETH) ** (1.0 / 3.0)
+    heights = rounded(lower * addendum, 3), rounded(lower * dedendum, 3)
+    return ToothSizes(rim, *heights, lower, relief)
 
 
 def spline_section(profile: Profile, sizes: ToothSizes, module: float) -> dict[str, Any]:
@@ -91,7 +99,7 @@ def spline_section(profile: Profile, sizes: ToothSizes, module: float) -> dict[s
     section: dict[str, Any] = {"rim": rounded(sizes.rim * module)}
     if profile == "s_shaped":
         keys = {"type": "s_shaped"} | _lengths(S_SHAPED, sizes.scale * module)
-        return section | _relief(sizes.scale, module) | {"profile": keys}
+        return section | _relief(sizes, module) | {"profile": keys}
     return section | _thickness(profile, 1.0) | {"profile": _typical(profile, module)}
 
 
@@ -107,7 +115,7 @@ def ring_section(
     section: dict[str, Any] = {"rim": rounded(rim * module)}
     if profile == "s_shaped":
         keys = {"type": "conjugate"} | _lengths(CONJUGATE, sizes.scale * module)
-        return section | _relief(sizes.scale, module) | {"profile": keys}
+        return section | _relief(sizes, module) | {"profile": keys}
     keys = _typical(profile, module)
     if profile == "involute":
         keys |= {"shift": play, "cutter_teeth": 2 * round(0.5 * CUTTER_TEETH * teeth)}
@@ -118,10 +126,10 @@ def _lengths(modules: dict[str, float], module: float) -> dict[str, float]:
     return {name: rounded(value * module) for name, value in modules.items()}
 
 
-def _relief(scale: float, module: float) -> dict[str, float]:
+def _relief(sizes: ToothSizes, module: float) -> dict[str, float]:
     return {
-        "tip_relief": rounded(TIP_RELIEF * scale * module),
-        "tip_relief_height": rounded(TIP_RELIEF_HEIGHT * scale),
+        "tip_relief": rounded(sizes.tip_relief * sizes.scale * module),
+        "tip_relief_height": rounded(TIP_RELIEF_HEIGHT * sizes.scale),
     }
 
 

@@ -143,7 +143,8 @@ HEADROOM = 0.05
 
 def from_zero(axes: Axes) -> None:
     """Let the vertical axis begin at 0, with room above the largest value, also of a constant."""
-    axes.set_ylim(0.0, axes.dataLim.ymax * (1.0 + HEADROOM) or 1.0)
+    top = axes.dataLim.ymax  # not finite where nothing was drawn
+    axes.set_ylim(0.0, top * (1.0 + HEADROOM) if 0.0 < top < np.inf else 1.0)
 
 
 PICTURE = 6
