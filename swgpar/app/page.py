@@ -15,6 +15,7 @@ from swgpar.app.plane_state import PlaneWorker
 from swgpar.app.section_picture import section_picture
 from swgpar.app.section_plot import section_figure
 from swgpar.app.workspace import Variant, Workspace
+from swgpar.checks.clearance import clearances
 from swgpar.checks.derived_geometry import derived_geometry
 from swgpar.checks.remarks import remarks
 from swgpar.errors import SwgparError
@@ -168,7 +169,7 @@ class Page:
     @ui.refreshable_method
     def clearance(self) -> None:
         """The smallest clearance of a whole turn, with its place."""
-        found = section_picture(self.state.variant.design, self.state.angle_deg).clearance
+        found = clearances(self.state.variant.design)[0]
         word = "overlap" if found.nearest.distance < 0.0 else "smallest clearance"
         text = f"{word} {abs(1e3 * found.nearest.distance):.2f} µm, {found.place}"
         ui.label(text).classes("text-negative" if found.overlaps else "").props("role=status")
@@ -296,12 +297,12 @@ class Page:
 
     def draw(self) -> None:
         """Draw all that depends on the design."""
+        self.plot.update_figure(self._figure())
+        self.clearance.refresh()
         fields = {field.key: field for field in form_fields(self.state.variant.design)}
         self.header.refresh()
         if fields.keys() != self.controls.keys():
             self.form.refresh()
         for key, control in self.controls.items():
             control.show(fields[key], self.state.refused.get(key))
-        self.clearance.refresh()
         self.answers.refresh()
-        self.plot.update_figure(self._figure())
