@@ -17,7 +17,10 @@ from enum import StrEnum
 from pathlib import Path
 
 from swgpar.errors import InputError
+from swgpar.rating.sheet import JSON as RATING_JSON
+from swgpar.rating.sheet import PAGE as RATING_PAGE
 from swgpar.results.atomic import to_json, write_file
+from swgpar.results.folder import REPORT, SUMMARY
 
 RECORD = "jobs.json"
 """File of the workspace with the jobs and their states."""
@@ -61,6 +64,21 @@ class AppJob:
     reason: str = ""
 
     @property
+    def rates(self) -> bool:
+        """Whether it is a rating."""
+        return self.arguments[0] == "rate"
+
+    @property
+    def page(self) -> str:
+        """Page of its results, relative to the workspace."""
+        return f"{self.out}/{RATING_PAGE if self.rates else REPORT}"
+
+    @property
+    def last_file(self) -> str:
+        """File that it writes last, relative to the workspace."""
+        return f"{self.out}/{RATING_JSON if self.rates else SUMMARY}"
+
+    @property
     def typed(self) -> str:
         """The command line, as it would be typed in the workspace."""
         ranks = f"mpirun -n {self.ranks} " if self.ranks > 1 else ""
@@ -81,13 +99,17 @@ class JobQueue:
             for entry in json.loads((folder / RECORD).read_text(encoding="utf-8"))["jobs"]:
                 self.jobs.append(AppJob(**{**entry, "state": JobState(entry["state"])}))
 
+    @property
+    def next_number(self) -> int:
+        """Number of the next job."""
+        return 1 + max((job.number for job in self.jobs), default=0)
+
     def add(self, arguments: Sequence[str], out: str, ranks: int = 1) -> AppJob:
         """A job at the end of the queue. Raises InputError where there is no mpirun for its
         ranks."""
         if ranks > 1 and shutil.which("mpirun") is None:
             raise InputError(f"ranks = {ranks}: mpirun is not found")
-        number = 1 + max((job.number for job in self.jobs), default=0)
-        job = AppJob(number, list(arguments), ranks, out)
+        job = AppJob(self.next_number, list(arguments), ranks, out)
         self.jobs.append(job)
         self.step()
         return job
@@ -150,12 +172,7 @@ class JobQueue:
         with contextlib.suppress(OSError):
             os.killpg(job.process, 0)
             return None
-        done = (
-            self.folder
-            / job.out
-            / ("rating.json" if job.arguments[0] == "rate" else "summary.json")
-        )
-        return 0 if done.exists() else 1
+        return 0 if (self.folder / job.last_file).exists() else 1
 
     def _last_line(self, job: AppJob) -> str:
         lines = self.last_lines(job).splitlines()

@@ -19,6 +19,7 @@ from swgpar.checks.clearance import clearances
 from swgpar.checks.derived_geometry import derived_geometry
 from swgpar.checks.remarks import remarks
 from swgpar.errors import SwgparError
+from swgpar.results.atomic import write_file
 
 LOOK = 1.0
 """Seconds between two looks at the jobs."""
@@ -63,6 +64,11 @@ class AppState:
         self.worker.want(self.variant.design)
         for page in self.pages:
             page.draw()
+
+    def draw_jobs(self) -> None:
+        """Draw the queue, in all windows."""
+        for page in self.pages:
+            page.jobs.refresh()
 
 
 class Page:
@@ -258,9 +264,8 @@ class Page:
             ui.label(job.typed).classes("text-caption")
             if job.reason:
                 ui.label(job.reason).classes("text-negative text-caption")
-            page = "rating.html" if job.arguments[0] == "rate" else "report.html"
-            if (self.state.queue.folder / job.out / page).is_file():
-                ui.link(page, f"/{job.out}/{page}", new_tab=True)
+            if (self.state.queue.folder / job.page).is_file():
+                ui.link("report", f"/{job.page}", new_tab=True)
             if job.state == JobState.RUNS:
                 ui.label(self.state.queue.last_lines(job, 3)).classes("swgpar-log")
             if job.state in (JobState.WAITS, JobState.RUNS):
@@ -268,10 +273,10 @@ class Page:
 
     def _queue(self, mesh: str) -> None:
         workspace, queue = self.state.workspace, self.state.queue
-        number = 1 + max((job.number for job in queue.jobs), default=0)
+        number = queue.next_number
         design = workspace.folder / "jobs" / f"{number}.toml"
         design.parent.mkdir(exist_ok=True)
-        design.write_text(workspace.variant.text, encoding="utf-8")
+        write_file(design, workspace.variant.text.encode())
         out = f"results/{workspace.shown}_{number}"
         name = f"jobs/{number}.toml"
         command = ["run", name, "--mesh", mesh] if mesh else ["rate", name]
@@ -280,11 +285,11 @@ class Page:
             queue.add([*command, "--out", out], out, ranks)
         except SwgparError as error:
             ui.notify(str(error), type="warning")
-        self.jobs.refresh()
+        self.state.draw_jobs()
 
     def _cancel(self, job: AppJob) -> None:
         self.state.queue.cancel(job)
-        self.jobs.refresh()
+        self.state.draw_jobs()
 
     def _look(self) -> None:
         queue = self.state.queue
@@ -292,7 +297,9 @@ class Page:
             self._was_busy = self.state.worker.is_busy
             for page in self.state.pages:
                 page.plane.refresh()
-        if queue.step() or any(job.state == JobState.RUNS for job in queue.jobs):
+        if queue.step():
+            self.state.draw_jobs()
+        elif any(job.state == JobState.RUNS for job in queue.jobs):
             self.jobs.refresh()
 
     def draw(self) -> None:

@@ -18,7 +18,7 @@ from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.rating.page import rating_page
 from swgpar.rating.planned_runs import LoadCase, PlannedRun, RatingPlan, plan_runs
 from swgpar.rating.rows import RatingRow, rating_rows
-from swgpar.rating.sheet import RatedVerdict, RatingSheet, RunEntry
+from swgpar.rating.sheet import CSV, JSON, PAGE, RatedVerdict, RatingSheet, RunEntry
 from swgpar.results.atomic import on_all, to_json, write_from_root
 from swgpar.results.lock import releasing
 from swgpar.results.table import format_csv
@@ -30,9 +30,6 @@ from swgpar.systems.drive import DRIVE
 
 if TYPE_CHECKING:
     from swgpar.systems import System
-
-JSON, CSV, PAGE = "rating.json", "rating.csv", "rating.html"
-"""Names of the sheet in its folder."""
 
 RUNS = "runs"
 """Folder of the runs."""

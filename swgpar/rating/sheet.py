@@ -13,6 +13,9 @@ from swgpar.answers.verdict import Judgement, Verdict, worst
 FORMAT = 1
 """Number in rating.json."""
 
+JSON, CSV, PAGE = "rating.json", "rating.csv", "rating.html"
+"""Names of the sheet in its folder."""
+
 
 @dataclass(frozen=True)
 class RunEntry:
