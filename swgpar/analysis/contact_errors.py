@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from swgpar.analysis.drive_mesh_error import SAFETY, SLIGHT, CoarserMesh, shown_error
+from swgpar.analysis.drive_mesh_error import SAFETY, CoarserMesh, shown_error
 from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares
 from swgpar.flank_pressure.pair_contact import PairContact, touches_edges
 from swgpar.meshing import MeshRecipe
@@ -37,6 +37,9 @@ the forces of some ten pairs move with the layers along the face width, by 1 to 
 
 LEAST_FORCE_WITH_EDGES = 0.03
 """The same in the plane where a contact lies on an edge, whose compliance no mesh resolves."""
+
+SLIGHT = 0.3
+"""Force over the largest one below which a pair off edges has what those on edges leave."""
 
 ALONE = 0.99
 """Share in the force of a lobe from which a pair carries it alone. Its force follows from the

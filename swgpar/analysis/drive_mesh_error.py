@@ -64,9 +64,6 @@ which no coarser one has fewer of: more of them change these stresses by up to a
 drive there are two windows, of which the finer one misses 3 to 30 %
 (docs/verification/effectivity.md)."""
 
-SLIGHT = 0.3
-"""Force over the largest one below which a pair does not decide about the stress of its tooth."""
-
 FEWEST_ALONG_FLANKS = 6
 """Elements along a flank in the plane below which no coarser mesh is taken: pressures on four are
 off by 5 %, and by a multiple where the curvature of the profile changes. With the contact law six
@@ -230,21 +227,22 @@ def _force_error(
     place: Place,
     ring_teeth: int,
 ) -> float:
-    """Largest error of the force of a pair, as a share of it, at a place of the ring gear: of the
-    pairs on its tooth and on those beside it. Forces below `SLIGHT` of the largest one of all pairs
-    do not count."""
+    """Largest error of the force of a pair at a place of the ring gear, of the pairs on its tooth
+    and on those beside it, as a share of the largest force of these: what a pair of a small force
+    adds to the stress is as small."""
     forces = [(one.recipe, {pair.key: pair.force_N for pair in one.contacts}) for one in coarser]
     forces.append((recipe, {pair.key: pair.force_N for pair in contacts}))
-    slight = SLIGHT * max((pair.force_N for pair in contacts), default=0.0)
-    shares = [
-        shown_error([(one, by_pair.get(pair.key, 0.0)) for one, by_pair in forces], of_contact=True)
-        / pair.force_N
+    near = [
+        pair
         for pair in contacts
-        if pair.force_N > slight
-        and pair.ring in ("", place.body)
-        and (pair.ring_tooth - place.tooth + 1) % ring_teeth <= 2
+        if pair.ring in ("", place.body) and (pair.ring_tooth - place.tooth + 1) % ring_teeth <= 2
     ]
-    return max(shares, default=0.0)
+    errors = [
+        shown_error([(one, by_pair.get(pair.key, 0.0)) for one, by_pair in forces], of_contact=True)
+        for pair in near
+    ]
+    largest = max((pair.force_N for pair in near), default=0.0)
+    return max(errors) / largest if largest > 0.0 else 0.0
 
 
 def _largest_apart(regions: Mapping[str, RegionStress], kind: str) -> float:
