@@ -26,7 +26,7 @@ from typing import Any
 from mpi4py import MPI
 
 import swgpar
-from swgpar.analysis import run_drive
+from swgpar.analysis import drive_run
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.shortcuts import SAMPLES
 from swgpar.analysis.transfer import transfer
@@ -118,19 +118,19 @@ def replaced(recipe: MeshRecipe, counts: Mapping[str, Mapping[str, int]]) -> Mes
 
 def keep_models(models: list[DriveModel]) -> None:
     """Let every further run append its model, which it does not release."""
-    finish = run_drive.DriveRun.finish
+    finish = drive_run.DriveRun.finish
 
-    def finish_and_keep(run: run_drive.DriveRun, name: str) -> DriveData:
+    def finish_and_keep(run: drive_run.DriveRun, name: str) -> DriveData:
         models.append(run.model)
         run.model.destroy = lambda: None
         return finish(run, name)
 
-    run_drive.DriveRun.finish = finish_and_keep
+    drive_run.DriveRun.finish = finish_and_keep
 
 
 def start_from(usual: DriveModel) -> None:
     """Let every further run start from the loaded state of this model."""
-    start = run_drive.start_at_load
+    start = drive_run.start_at_load
 
     def start_at_load(stepper: LoadStepper, *others: Any) -> bool:
         loaded = stepper.sequence.loaded
@@ -144,7 +144,7 @@ def start_from(usual: DriveModel) -> None:
             return start(stepper, *others)
         return True
 
-    run_drive.start_at_load = start_at_load
+    drive_run.start_at_load = start_at_load
 
 
 def solve(case: dict[str, Any]) -> dict[str, dict[str, Any]]:

@@ -1,5 +1,4 @@
-"""The run of a drive from its design to the result: mesh, start or restart, increments with what
-is resolved at each, evaluation."""
+"""The run of a drive from its design to the result."""
 
 from __future__ import annotations
 
@@ -7,51 +6,24 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-
 from swgpar.analysis.accuracy import require_refinable, with_accuracy
-from swgpar.analysis.bearing_errors import bearing_errors
-from swgpar.analysis.coarse_period import coarse_period
-from swgpar.analysis.coarse_start import solve_to_load, start_at_load
-from swgpar.analysis.coarse_wall import coarse_wall
-from swgpar.analysis.contact_errors import contact_errors
-from swgpar.analysis.drive_mesh_error import (
-    CoarserMesh,
-    MeshComparison,
-    coarser_mesh,
-    coarser_recipes,
-)
-from swgpar.analysis.evaluate_run import evaluate_run
-from swgpar.analysis.follow_turns import follow_turns
+from swgpar.analysis.drive_run import DriveRun
 from swgpar.analysis.forecast import forecast, reported_memory, require_memory
 from swgpar.analysis.identity import identity
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.mesh_refinement import choose_mesh
 from swgpar.analysis.model_sources import NEW_MODELS, ModelSource
-from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
+from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder
 from swgpar.analysis.saved_state import StartStates
 from swgpar.analysis.shortcuts import MESHES, with_shortcuts
-from swgpar.analysis.step_control import StepControl
-from swgpar.analysis.stiffness_error import stiffness_error
 from swgpar.checks.remarks import remarks
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.drive_data import DriveData
-from swgpar.errors import ConvergenceError, InputError, SwgparError, TimeLimitError
-from swgpar.evaluation.loaded_bearing import loaded_bearing
-from swgpar.evaluation.period import continued, require_samples
-from swgpar.evaluation.ratcheting import why_ended
-from swgpar.evaluation.result_frame import history_rows
-from swgpar.evaluation.transmission_error import period_rows
-from swgpar.fem.body import RING_GEAR
-from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress, with_angle
-from swgpar.largest_stress.wall_stress import WallStress, resolve_wall
+from swgpar.errors import ConvergenceError, SwgparError, TimeLimitError
+from swgpar.evaluation.period import require_samples
 from swgpar.load.load_sequence import LoadSequence, load_sequence
-from swgpar.load.load_states import LoadState, Stage
-from swgpar.log import IncrementProgress, logger
+from swgpar.log import logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
-from swgpar.meshing.recipe_counts import body_ratio
-from swgpar.model.drive_model import DriveModel
-from swgpar.petsc import warn_of_unused_options
 from swgpar.results.atomic import on_all
 from swgpar.results.folder import DRIVE_RESULTS, RECIPE, open_log, prepare
 from swgpar.results.lock import releasing
@@ -165,261 +137,3 @@ def _log_remarks(
             "the stress at the teeth is not resolved by windows: not available with %s",
             without_windows,
         )
-
-
-class DriveRun:
-    """One run on its mesh: start or restart, all increments, end.
-
-    recipe : of the model's mesh;  kept : loaded states on the meshes of the start
-    begin : time.perf_counter() at the run's start
-    models : of this mesh and of the others
-    """
-
-    def __init__(
-        self,
-        recorder: Recorder,
-        recipe: MeshRecipe,
-        kept: StartStates,
-        options: RunOptions,
-        begin: float,
-        models: ModelSource,
-    ) -> None:
-        self.recorder, self.stepper, self.model = recorder, recorder.stepper, recorder.model
-        self.recipe, self.kept, self.options, self.begin = recipe, kept, options, begin
-        self.models, self.earlier_seconds, self.ended_early = models, 0.0, False
-        self.coarser: list[CoarserMesh | None] = []
-        self.comparison: MeshComparison | None = None
-        counts = self.model.counts()
-        logger.info(
-            "%d elements, %d nodes in the whole drive; %d unknowns modelled%s; %d ranks",
-            self.model.n_elements(),
-            sum(b["nodes_whole"] for b in counts.values()),
-            sum(b["dofs"] for b in counts.values()),
-            self.model.part_remark,
-            self.model.comm.size,
-        )
-        recorder.begin()
-
-    @property
-    def seconds(self) -> float:
-        """Wall seconds of the run, restarts included."""
-        return self.earlier_seconds + time.perf_counter() - self.begin
-
-    def resume(self) -> Sequence[LoadState]:
-        """Bring back the state of the checkpoint; returns all increments of the run."""
-        assert isinstance(self.recorder, FolderRecorder)  # a run in memory leaves no checkpoint
-        states, self.earlier_seconds = self.recorder.resume()
-        record = self.recorder.record
-        logger.info("restarted after increment %d", len(record.rows))
-        if self.model.design.resolves_root_stress and not record.root_stress:
-            logger.info(
-                "the stress at the teeth is resolved only by the run that computes the loaded state"
-            )
-        return states
-
-    def start(self) -> Sequence[LoadState]:
-        """Reach the loaded state at once if the design asks for it; returns all increments."""
-        record, sequence = self.recorder.record, self.stepper.sequence
-        if record.accuracy is not None:  # the model was loaded when its mesh was chosen
-            self.stepper.resume_at(sequence.loaded)
-            return sequence.from_loaded
-        record.starts_loaded = start_at_load(
-            self.stepper, self.recipe, self._keep_coarse, self.kept, self.models
-        )
-        return sequence.from_loaded if record.starts_loaded else sequence.states
-
-    def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
-        """Keep what the meshes give that this one is compared with: the coarsest one, and that with
-        the finer flanks."""
-        loaded = self.stepper.sequence.loaded
-        ratio = body_ratio(recipe, self.recipe)
-        if not self.coarser:
-            wall = coarse_wall(model, loaded, recipe, self.recipe)
-            self.recorder.record.coarse_wall = wall
-        found = None
-        if model.design.compares_meshes:
-            model.take_over_windows(self.model)
-            try:
-                found = coarser_mesh(
-                    model,
-                    recipe,
-                    loaded,
-                    windows=model.design.resolves_root_stress,
-                    coarsest=not self.coarser,
-                )
-            except (ConvergenceError, InputError) as error:
-                logger.info("the error by the mesh of the drive is not known: %s", error)
-            self.model.take_over_windows(model)
-        if not self.coarser and ratio is not None:
-            period = coarse_period(model, recipe, self.stepper, self.recipe)
-            self.recorder.record.coarse_period = period
-        self.coarser.append(found)
-
-    def _load_coarser(self) -> None:
-        """Load the drive on the coarser meshes in the steps of the run, where it did not start on
-        them."""
-        design, comm = self.model.design, self.model.comm
-        for recipe in coarser_recipes(self.recipe):
-            try:
-                model = solve_to_load(design, recipe, comm, models=self.models)
-            except (ConvergenceError, InputError) as error:
-                logger.info("the error by the mesh of the drive is not known: %s", error)
-                self.coarser.append(None)
-                return
-            try:
-                self._keep_coarse(model, recipe)
-            finally:
-                self.models.give_back(model)
-
-    def go_through(self, states: Sequence[LoadState]) -> None:
-        """Compute and record the increments that are left."""
-        stepper, recorder, terminal = self.stepper, self.recorder, self.options.terminal
-        record, design = recorder.record, self.model.design
-        steps = StepControl(stepper, record.torque_points, record.slip_checks)
-        loaded = next((state for state in reversed(states) if state.stage == Stage.LOAD), None)
-        with IncrementProgress(
-            self.model.comm, len(states), done=len(record.rows), terminal=terminal
-        ) as progress:
-            self.model.solver.monitor = lambda state, its, ratio: progress.newton(
-                state.stage.label, np.degrees(state.angle), its, ratio
-            )
-            for state in states[len(record.rows) :]:
-                ended = design.ratcheting is not None and why_ended(
-                    design.ratcheting, record.torque_points, design.negligible_torque_Nm
-                )
-                if ended or self.ended_early:
-                    break
-                start = time.perf_counter()
-                # a start at once ends with the first one
-                if state != stepper.load_state and not self._advance(steps, state):
-                    break
-                seconds = time.perf_counter() - start
-                if state == loaded and design.compares_meshes:
-                    self._compare(state)
-                if design.resolves_root_stress:
-                    record.root_stress = self._root_stress(state, state == loaded)
-                if state == loaded and design.resolves_wall:
-                    record.wall_stress = self._wall_stress(state)
-                recorder.keep(seconds, self.seconds)
-                if len(record.rows) == 1:
-                    self.kept.remove(self.model.comm)
-                angle = float(np.degrees(state.angle))
-                progress.increment(
-                    state.stage.label, angle, stepper.iterations, stepper.residual, seconds
-                )
-                self.options.on_increment()
-                if terminal:
-                    warn_of_unused_options()
-
-    def _advance(self, steps: StepControl, state: LoadState) -> bool:
-        """Compute an increment, or its part up to where the rotated output has no equilibrium;
-        False where nothing of it has one."""
-        before = self.stepper.load_state
-        try:
-            steps.advance(state)
-        except ConvergenceError as error:
-            rotated = self.model.design.ratcheting is not None and state.stage == Stage.PROGRAM
-            if not rotated or not self.recorder.record.torque_points:
-                raise
-            logger.warning("the rotation of the output ends here: %s", error)
-            self.ended_early = True
-            if self.stepper.load_state == before:
-                return False
-            self.stepper.advance(self.stepper.load_state)  # contacts of the last state
-        return True
-
-    def _root_stress(self, state: LoadState, loaded: bool) -> RootStress | None:
-        """Largest tensile stress at the teeth by windows; the one known before where a window
-        cannot be computed."""
-        known, sequence = self.recorder.record.root_stress, self.stepper.sequence
-        # of two periods the first one settles
-        further = sequence.samples and sequence.periods == 1 and state.stage == Stage.ROTATE
-        try:
-            with self.model.phases("windows"):
-                if loaded:
-                    return known or self._resolve_loaded(state)
-                if known and further:
-                    return with_angle(known, self.model, state)
-        except (ConvergenceError, InputError) as error:
-            angle = np.degrees(state.angle)
-            logger.warning(
-                "the stress at the teeth is not resolved at %.4g degrees: %s", angle, error
-            )
-        return known
-
-    def _compare(self, state: LoadState) -> None:
-        """Compare contacts and bearing of the loaded state with those on coarser meshes, where
-        these are not known before."""
-        record = self.recorder.record
-        if record.root_stress is not None:  # the choice of the mesh has compared it
-            return
-        if not self.coarser:
-            with self.model.phases("coarser mesh"):
-                self._load_coarser()
-        known = [one for one in self.coarser if one is not None]
-        if len(known) < len(self.coarser):
-            return
-        contacts = self.recorder.contacts()
-        lobes = self.model.design.wave_generator.lobes
-        record.contact_errors = contact_errors(known, self.recipe, contacts, lobes)
-        bearing = loaded_bearing(self.model, state)
-        if bearing is not None:
-            record.bearing_errors = bearing_errors(known, self.recipe, bearing)
-        ring_teeth = self.model.partition.layouts[RING_GEAR].count
-        self.comparison = MeshComparison(self.recipe, known, contacts, ring_teeth)
-
-    def _resolve_loaded(self, state: LoadState) -> RootStress:
-        found = resolve_root_stress(self.model, state)
-        return found if self.comparison is None else self.comparison.with_errors(found)
-
-    def _wall_stress(self, state: LoadState) -> WallStress | None:
-        """Largest stresses of the wall behind the teeth; None where they cannot be computed."""
-        record = self.recorder.record
-        at_teeth = 0.0 if record.root_stress is None else record.root_stress.s1
-        try:
-            with self.model.phases("windows"):
-                return resolve_wall(self.model, state, at_teeth, record.coarse_wall)
-        except (ConvergenceError, InputError) as error:
-            logger.warning("the stress of the wall is not resolved: %s", error)
-            return None
-
-    def finish(self, recipe_name: str) -> DriveData:
-        """Summarise the run."""
-        recorder, model, sequence = self.recorder, self.model, self.stepper.sequence
-        design, rows, error = model.design, recorder.record.rows, None
-        if design.stiffness is not None and design.stiffness.mesh_error:
-            with model.phases("coarser mesh"):
-                keys = design, self.recipe, recorder.program_rows(), model.comm
-                error = stiffness_error(*keys, self.models)
-        if design.deviations is not None:
-            follow_turns(self.recipe, recorder)
-        else:
-            recorder.keep_turns(period_rows(sequence, rows))
-        if sequence.samples and rows:
-            self.models.keep_period(self.stepper)
-            rows = continued(sequence, rows)
-        rows = history_rows(sequence.kinematics, rows)
-        summary, tables = evaluate_run(
-            recorder,
-            rows,
-            recipe_name,
-            self.seconds,
-            stiffness_error=error,
-            ended_early=self.ended_early,
-        )
-        for remark in filter(None, (summary.rotation.jammed, summary.rotation.energy)):
-            logger.warning("%s", remark)
-        self._log_penetration()
-        return recorder.finish(rows, summary, tables)
-
-    def _log_penetration(self) -> None:
-        """Say once how deep cam and pins have got into the flexible spline, where augmentations did
-        not bring them within the tolerance."""
-        settings, rows = self.model.solver.settings, self.recorder.record.rows
-        deepest = max((row["max_penetration_mm"] for row in rows), default=0.0)
-        if settings.max_augmentations and deepest > settings.penetration_tolerance:
-            logger.warning(
-                "cam and pins penetrate by up to %.2g mm, with %d augmentations",
-                deepest,
-                settings.max_augmentations,
-            )
