@@ -55,8 +55,8 @@ def check_bearing(design: DriveDesign) -> None:
     width, face_width = design.race_width, design.drive.face_width
     allowed = f"above 0 to {face_width:g} mm (drive.face_width)"
     require(width <= face_width, f"{SECTION}.race_width", width, allowed)
-    allowed = f"0 to below {half:g} mm (half the deflection)"
-    require(bearing.clearance < half, f"{SECTION}.clearance", bearing.clearance, allowed)
+    allowed = f"above {-half:g} to below {half:g} mm (half the deflection)"
+    require(abs(bearing.clearance) < half, f"{SECTION}.clearance", bearing.clearance, allowed)
     _check_taper(design)
 
 

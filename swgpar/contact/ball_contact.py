@@ -41,7 +41,7 @@ class BallSet:
     """The balls of a bearing.
 
     number : of balls;  diameter, clearance : mm;  first_angle : rad, from +y, of ball 0 before the
-    rotation; the clearance may be below 0, of balls that have grown
+    rotation; the clearance is below 0 of balls with a preload and of those that have grown
     cage_speed : of the cage over that of the wave generator
     lines : places of the balls;  spring : of a ball
     """

@@ -79,14 +79,19 @@ def loads_of_a_thin_ring(design: DriveDesign) -> np.ndarray:
     return force
 
 
-@pytest.mark.parametrize(("balls", "first"), [(3, 4.0), (21, 0.0), (20, 4.0)])
-def test_loads_of_balls_on_a_thin_ring(balls: int, first: float) -> None:
+@pytest.mark.parametrize(
+    ("balls", "first", "clearance"),
+    [(3, 4.0, 0.0), (21, 0.0, 0.0), (20, 4.0, 0.0), (20, 4.0, -0.01)],
+)
+def test_loads_of_balls_on_a_thin_ring(balls: int, first: float, clearance: float) -> None:
     """The race in a spline that is too soft to carry: static loads of its balls are those of a
-    thin ring to 1.5 %, a little less than its thickness over its radius."""
+    thin ring to 1.5 %, a little less than its thickness over its radius. With the preload, which
+    stretches the ring more than it bends it, they are so to all of this thickness, 1.7 %."""
     design = small(
         "plane",
         f"wave_generator.bearing.balls={balls}",
         f"wave_generator.bearing.first_ball={first}",
+        f"wave_generator.bearing.clearance={clearance}",
         "wave_generator.bearing.stiffness_factor=0.02",
         "wave_generator.deflection=0.05",
         "wave_generator.C=1",
@@ -99,8 +104,9 @@ def test_loads_of_balls_on_a_thin_ring(balls: int, first: float) -> None:
     stepper.advance(LoadState(Stage.DEFLECT, 1, cam_clearance=0.0))
     found, expected = loads(stepper), loads_of_a_thin_ring(design)
     stepper.model.destroy()
-    assert found == pytest.approx(expected, abs=0.015 * expected.max())
-    assert (expected > 0.0).all() == (balls == 3)
+    thin = 0.015 if clearance == 0.0 else design.bearing.race_thickness / design.inner_radius
+    assert found == pytest.approx(expected, abs=thin * expected.max())
+    assert (expected > 0.0).all() == (balls == 3 or clearance < 0.0)
     if balls % 3 == 0:
         assert found == pytest.approx(np.roll(found, balls // 3), rel=1e-6, abs=1e-9)
 

@@ -18,8 +18,10 @@ class Bearing(Section):
     race_width: float | None = positive(
         "width of the outer race; without it that of the cam", "mm", None
     )
-    clearance: float = not_negative(
-        "clearance of a ball with the outer race on the cam's curve", "mm", 0.0
+    clearance: float = quantity(
+        0.0,
+        unit="mm",
+        text="clearance of a ball with the outer race on the cam's curve; below 0 a preload",
     )
     inner_conformity: float = quantity(
         0.52, text="radius of the inner race's groove across over the ball diameter", gt=0.5, le=2.0
