@@ -18,6 +18,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.gear_trains.cascade.design import CascadeDesign
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
+from swgpar.gear_trains.planetary_stage.design import PlanetaryStageDesign
 from swgpar.gear_trains.ring.design import RingDesign
 from swgpar.input.quantities import Section, show, unit_of
 from swgpar.meshing.recipe import MeshRecipe
@@ -38,6 +39,7 @@ FILES: dict[str, tuple[type[Section], dict[str, str]]] = {
     ),
     "gear_pair": (GearPairDesign, {"gear_2": "gear_1"}),
     "planetary": (PlanetaryDesign, {}),
+    "planetary_stage": (PlanetaryStageDesign, {}),
     "ring": (RingDesign, {}),
 }
 """Input files with sections: model, and sections whose rows are those of another one."""

@@ -15,7 +15,7 @@ import scipy
 from mpi4py import MPI
 
 from swgpar.errors import InputError, OutputError
-from swgpar.gear_trains import cascade, gear_pair, planetary, ring
+from swgpar.gear_trains import cascade, gear_pair, planetary, planetary_stage, ring
 from swgpar.gear_trains.common_sections import TrainDesign
 from swgpar.gear_trains.published import check_published, compare
 from swgpar.gear_trains.result import (
@@ -66,6 +66,7 @@ MODELS: dict[str, TrainModel[Any]] = {
     "cascade": cascade,
     "gear_pair": gear_pair,
     "planetary": planetary,
+    "planetary_stage": planetary_stage,
     "ring": ring,
 }
 

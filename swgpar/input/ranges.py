@@ -33,6 +33,7 @@ SMALLEST_AND_LARGEST = {
     "N/mm": (1e-6, 1e12),
     "kg": (1e-9, 1e9),
     "m": (1e-6, 1e6),
+    "m/s²": (1e-6, 1e3),
     "standard deviations": (1e-3, 1e2),
     "1/s": (1e-9, 1e9),
     "N": (1e-9, 1e12),

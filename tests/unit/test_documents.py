@@ -15,7 +15,7 @@ from support.paths import ROOT
 from support.scripts import load_script
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.contact.friction import Friction
-from swgpar.gear_trains import cascade, gear_pair, planetary, ring
+from swgpar.gear_trains import cascade, gear_pair, planetary, planetary_stage, ring
 from swgpar.gear_trains.train import TrainModel
 from swgpar.load.load_states import LoadState
 from swgpar.solve.newton import NewtonSolver
@@ -132,7 +132,7 @@ def test_who_imports_drives_and_gear_trains() -> None:
 
 def test_files_of_gear_trains() -> None:
     """CONTRIBUTING.md: every gear train has these files, and offers what `TrainModel` lists."""
-    for package in (cascade, gear_pair, planetary, ring):
+    for package in (cascade, gear_pair, planetary, planetary_stage, ring):
         folder = Path(package.__file__).parent
         assert {"design.py", "quantities.py", "run.py", "figures.py"} <= {
             path.name for path in folder.iterdir()

@@ -24,6 +24,7 @@ from swgpar.vibration.sampling import block_sizes, random_stream, run_tasks
 CASCADE, GEAR_PAIR = DRIVERS / "cascade.toml", DRIVERS / "gear_pair.toml"
 RING, RING_MODES = DRIVERS / "ring_moving_load.toml", DRIVERS / "ring_modes.toml"
 PLANETARY = DRIVERS / "planetary.toml"
+STAGE = DRIVERS / "planetary_stage.toml"
 
 REFUSED = [
     (
@@ -247,6 +248,31 @@ REFUSED = [
         "ring.rim = 3000 is out of range: allowed above 0 to 1042 mm (a rim as thick as the radius",
     ),
     (PLANETARY, "ring.rims=[87.0,1043.0]", "ring.rims = 1043 is out of range: allowed above 0"),
+    (
+        STAGE,
+        "errors.pin_tangential=[1.0]",
+        "errors.pin_tangential = [1.0] is out of range: allowed no or 4 numbers (planet.count)",
+    ),
+    (
+        STAGE,
+        "errors.sun_pitch=[1.0,2.0]",
+        "errors.sun_pitch = [1.0, 2.0] is out of range: allowed no or 21 numbers (sun.teeth)",
+    ),
+    (
+        STAGE,
+        "planet.angles=[0.0,91.0,180.0,271.0]",
+        "planet.angles = 91 is out of range: allowed multiples of 3 deg (360 deg over sun.teeth +",
+    ),
+    (
+        STAGE,
+        "planet.angles=[0.0,60.0,180.0,270.0]",
+        "is out of range: allowed 86.2093 deg or more from one to the next, or tips overlap",
+    ),
+    (STAGE, "planet.angles=[0.0,90.0]", "is out of range: allowed 4 ascending angles (planet.coun"),
+    (STAGE, "tolerances.pin=1e5", "tolerances.pin = 100000 is out of range: allowed up to 10266.7"),
+    (STAGE, "errors.planet_phase=[1.0,1.0,1.0,1.0]", "allowed with errors.planet_eccentricity"),
+    (STAGE, "mesh.helix=50", "mesh.helix = 50 is out of range: allowed 0 to 45 deg"),
+    (STAGE, "load.torque=0", "load.torque = 0 is out of range: allowed above 0 to 1000000000 N·m"),
     (PLANETARY, "rims=1", '--set "rims=1" cannot be read'),
     (RING_MODES, "moving_load.force=1", "moving_load.damping_mass is missing: give a number"),
     (

@@ -28,6 +28,7 @@ FILES = [
         "cascade",
         "gear_pair",
         "planetary",
+        "planetary_stage",
         "ring_moving_load",
     )
 ]

@@ -16,7 +16,11 @@ from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.kernel import PlanetaryStepKernel
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
 from swgpar.gear_trains.planetary.linearisation import TrainMoments, linearise_train
-from swgpar.gear_trains.planetary.model import (
+from swgpar.gear_trains.planetary.monitored import MONITORED_NAMES, RECORDED, monitored
+from swgpar.gear_trains.planetary.monte_carlo import simulate
+from swgpar.gear_trains.planetary.time_stepping import ModalStates, TimeStepper
+from swgpar.gear_trains.planetary.wind_load import WindLoad
+from swgpar.gear_trains.planetary_parts.model import (
     PlanetaryModel,
     base_radii,
     carrier_index,
@@ -24,10 +28,6 @@ from swgpar.gear_trains.planetary.model import (
     ring_index,
     ring_pitch_radius,
 )
-from swgpar.gear_trains.planetary.monitored import MONITORED_NAMES, RECORDED, monitored
-from swgpar.gear_trains.planetary.monte_carlo import simulate
-from swgpar.gear_trains.planetary.time_stepping import ModalStates, TimeStepper
-from swgpar.gear_trains.planetary.wind_load import WindLoad
 from swgpar.vibration.backlash import force
 from swgpar.vibration.dominant_cycles import dominant_cycles
 from swgpar.vibration.sampling import random_stream
@@ -104,7 +104,7 @@ def shifted(train: PlanetaryModel, t: float) -> np.ndarray:
     the carrier."""
     design, x = train.design, np.zeros(train.size)
     x[0] = x[carrier_index(design)] = 1.0
-    for k, psi in enumerate(train.angles):
+    for k, psi in enumerate(train.design.angles):
         x[planet_index(k) : planet_index(k) + 2] = np.cos(psi), -np.sin(psi)
     count = design.ring.elements
     node = 2.0 * np.pi * np.arange(count) / count - design.carrier.speed * t

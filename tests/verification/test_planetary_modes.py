@@ -12,8 +12,8 @@ from scipy.optimize import brentq
 from support.paths import DRIVERS
 from swgpar import load_design
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
-from swgpar.gear_trains.planetary.model import PlanetaryModel, base_radii, ring_pitch_radius
-from swgpar.gear_trains.planetary.natural_modes import PlanetaryModes, natural_modes
+from swgpar.gear_trains.planetary_parts.model import PlanetaryModel, base_radii, ring_pitch_radius
+from swgpar.gear_trains.planetary_parts.natural_modes import PlanetaryModes, natural_modes
 
 DRIVER = DRIVERS / "planetary.toml"
 

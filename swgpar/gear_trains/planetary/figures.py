@@ -11,7 +11,7 @@ import numpy as np
 from swgpar.gear_trains.drawing import MomentCurve, axes, draw_moments
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
 from swgpar.gear_trains.planetary.monitored import MONITORED, PARTS, RECORDED
-from swgpar.gear_trains.planetary.natural_modes import KINDS
+from swgpar.gear_trains.planetary_parts.natural_modes import KINDS
 from swgpar.gear_trains.result import TrainResult
 from swgpar.results.figure_set import Drawings, new_figure, plot_line
 

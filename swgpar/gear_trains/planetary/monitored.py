@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.gear_trains.planetary.model import (
+from swgpar.gear_trains.planetary.time_stepping import TimeStepper
+from swgpar.gear_trains.planetary_parts.model import (
     SUN,
     PlanetaryModel,
     carrier_index,
     planet_index,
     ring_index,
 )
-from swgpar.gear_trains.planetary.time_stepping import TimeStepper
 
 MONITORED = {
     "sun_rotation": "rotation of the sun times its base radius",

@@ -7,11 +7,11 @@ from itertools import product
 import numpy as np
 
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
-from swgpar.gear_trains.planetary.model import PlanetaryModel, base_radii
 from swgpar.gear_trains.planetary.monitored import MONITORED
-from swgpar.gear_trains.planetary.natural_modes import natural_modes
 from swgpar.gear_trains.planetary.time_stepping import TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
+from swgpar.gear_trains.planetary_parts.model import PlanetaryModel, base_radii
+from swgpar.gear_trains.planetary_parts.natural_modes import natural_modes
 from swgpar.gear_trains.published import SAMPLING_ERROR, STATISTICS, number_label
 from swgpar.results.quantity import Quantity
 from swgpar.vibration.backlash import force

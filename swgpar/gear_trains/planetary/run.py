@@ -9,13 +9,13 @@ from mpi4py import MPI
 
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
 from swgpar.gear_trains.planetary.linearisation import TrainMoments, linearise_train
-from swgpar.gear_trains.planetary.model import PlanetaryModel, ring_pitch_radius
 from swgpar.gear_trains.planetary.monitored import MONITORED, MONITORED_NAMES, RECORDED
 from swgpar.gear_trains.planetary.monte_carlo import BLOCK_SIZE, simulate
-from swgpar.gear_trains.planetary.natural_modes import natural_modes
 from swgpar.gear_trains.planetary.quantities import LISTED, OF_RING
 from swgpar.gear_trains.planetary.time_stepping import TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
+from swgpar.gear_trains.planetary_parts.model import PlanetaryModel, ring_pitch_radius
+from swgpar.gear_trains.planetary_parts.natural_modes import natural_modes
 from swgpar.gear_trains.published import number_label
 from swgpar.gear_trains.result import Computed
 from swgpar.log import logger

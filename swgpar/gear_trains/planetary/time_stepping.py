@@ -24,7 +24,7 @@ import numpy as np
 
 from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.kernel import PlanetaryStepKernel
-from swgpar.gear_trains.planetary.model import PlanetaryModel
+from swgpar.gear_trains.planetary_parts.model import PlanetaryModel
 from swgpar.vibration.backlash import force
 
 MeshLaw = tuple[np.ndarray, np.ndarray, np.ndarray]

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.gear_trains.planetary.model import (
+from swgpar.gear_trains.planetary_parts.model import (
     SUN,
     PlanetaryModel,
     carrier_index,
@@ -31,7 +31,8 @@ class PlanetaryModes:
 
     frequency : (n,) Hz;  shapes : (n, n), columns are modes of unit mass in the coordinates of the
         parts;  kind : (n,) of `KINDS`
-    energy : (n, 4) kinetic energy of sun, planets, carrier and ring over the whole
+    energy : (n, 4) kinetic energy of sun, planets, carrier and ring over the whole; the rest is
+        that of rotor and generator
     """
 
     frequency: np.ndarray
@@ -49,7 +50,8 @@ def natural_modes(train: PlanetaryModel) -> PlanetaryModes:
     ring = train.mass[first:, first:]
     kinetic = shapes * (train.mass @ shapes)
     planets = kinetic[planet_index(0) : planet_index(count)]
-    parts = kinetic[SUN : SUN + 3], planets, kinetic[carrier_index(train.design) : first]
+    carrier = carrier_index(train.design)
+    parts = kinetic[SUN : SUN + 3], planets, kinetic[carrier : carrier + 3]
     energy = [part.sum(axis=0) for part in parts] + [kinetic[first:].sum(axis=0)]
     rigid = _rigid_ring(train)
     along = np.linalg.solve(rigid.T @ ring @ rigid, rigid.T @ ring @ shapes[first:])

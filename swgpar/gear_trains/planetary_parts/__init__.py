@@ -1,0 +1,1 @@
+"""What planetary trains share: parts with their keys, equations of motion, natural modes."""

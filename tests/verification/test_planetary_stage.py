@@ -1,0 +1,177 @@
+"""Load sharing of planetary stages against closed forms of springs in parallel."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import swgpar
+from support.paths import DRIVERS
+from swgpar import load_design
+from swgpar.gear_trains.planetary_parts.model import PlanetaryModel
+from swgpar.gear_trains.planetary_parts.natural_modes import natural_modes
+from swgpar.gear_trains.planetary_stage.design import PlanetaryStageDesign
+from swgpar.gear_trains.planetary_stage.errors import given_errors
+from swgpar.gear_trains.planetary_stage.load_sharing import Revolution, random_factors, revolution
+
+PIN = 20.0  # µm
+RIGID = {
+    "ring.E": 1e5,
+    "ring.radial": 1e15,
+    "ring.tangential": 1e15,
+    "ring.torsional": 1e15,
+    "carrier.bearing": 1e15,
+    "mesh.variation": 0.0,
+    "planet.clearance": 0.0,
+    "load.gravity": 0.0,
+    "errors.sun_eccentricity": 0.0,
+    "errors.pin_tangential": [],
+}
+
+
+def stage(**changes: object) -> PlanetaryStageDesign:
+    """The driver's stage with a rigid ring and carrier. Keys have _ for the first dot."""
+    values = {key.replace("__", "."): value for key, value in changes.items()}
+    return load_design(DRIVERS / "planetary_stage.toml").with_values(RIGID | values)
+
+
+def shared(design: PlanetaryStageDesign, places: int = 3) -> Revolution:
+    return revolution(design, given_errors(design), places)
+
+
+def stiffness_along(design: PlanetaryStageDesign) -> float:
+    """Force on a planet per displacement of its pin along the motion, N/m; sun and ring held."""
+    cosine, mesh = np.cos(np.radians(design.mesh.pressure_angle)), design.mesh
+    of_meshes = (1.0 / mesh.sun_stiffness + 1.0 / mesh.ring_stiffness) / (4.0 * cosine**2)
+    return 1.0 / (1.0 / design.planet.bearing + of_meshes)
+
+
+def mean_load(design: PlanetaryStageDesign) -> float:
+    centres = 0.5e-3 * (design.sun.pitch_diameter + design.planet.pitch_diameter)
+    return design.load.torque / (centres * design.planet.count)
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_pin_error_with_a_sun_that_is_held(count: int) -> None:
+    """A pin ahead takes more, as springs in parallel do; one behind takes less."""
+    ahead = [PIN] + [0.0] * (count - 1)
+    held = {"planet__count": count, "sun__bearing": 1e15, "sun__torsional": 1e14}
+    design = stage(**held, errors__pin_tangential=ahead)
+    change = stiffness_along(design) * 1e-6 * PIN * (count - 1) / count / mean_load(design)
+    found = shared(design)
+    np.testing.assert_allclose(found.factors(), 1.0 + change, rtol=1e-3)
+    np.testing.assert_allclose(found.share.sum(axis=-1), 1.0, rtol=1e-12)
+    behind = shared(stage(**held, errors__pin_tangential=[-PIN] + [0.0] * (count - 1)))
+    np.testing.assert_allclose(behind.share[..., 0] * count, 1.0 - change, rtol=1e-3)
+
+
+def test_three_planets_around_a_floating_sun_share_evenly() -> None:
+    """Whatever the pins, the eccentricities and the flanks; four do not."""
+    errors = {
+        "errors__pin_tangential": [30.0, -20.0, 5.0],
+        "errors__sun_eccentricity": 20.0,
+        "errors__planet_eccentricity": [10.0, 0.0, 30.0],
+        "errors__sun_pitch": [10.0] + 20 * [0.0],
+    }
+    design = stage(planet__count=3, sun__bearing=0.0, **errors)
+    found = shared(design, 7)
+    np.testing.assert_allclose(found.sun / found.sun.mean(), 1.0, atol=1e-8)
+    np.testing.assert_allclose(found.factors(), 1.0, atol=1e-7)
+    assert np.linalg.norm(found.displacements[..., :2], axis=2).max() > 1e-5
+    four = stage(sun__bearing=0.0, errors__pin_tangential=[PIN, 0.0, 0.0, 0.0])
+    change = stiffness_along(four) * 1e-6 * PIN / 4.0 / mean_load(four)
+    np.testing.assert_allclose(shared(four).factors(), 1.0 + change, rtol=2e-4)
+
+
+def test_eccentricity_of_the_ring_turns_once() -> None:
+    """An eccentric ring moves a held sun's loads with the turn of the carrier. Sun and carrier that
+    float follow it."""
+    design = stage(sun__bearing=1e15, errors__ring_eccentricity=30.0)
+    share = shared(design, 8).share[:, 0, 0] - 0.25
+    spectrum = np.abs(np.fft.rfft(share))
+    assert spectrum[1] > 1e-3 and spectrum[[0, 2, 3]].max() < 2e-3 * spectrum[1]
+    eccentric, central = (
+        shared(stage(sun__bearing=0.0, carrier__bearing=1e-3, errors__ring_eccentricity=e))
+        for e in (30.0, 0.0)
+    )
+    np.testing.assert_allclose(eccentric.share, central.share, atol=1e-7)
+
+
+def test_clearance_and_gravity() -> None:
+    """A planet hangs in its clearance: without torque the pin carries its weight; with torque the
+    forces of the carrier balance the torque, and weights move no mean load."""
+    design = stage(planet__clearance=50.0, load__gravity=9.81, load__torque=1e-6, sun__bearing=1e9)
+    found = shared(design, 5)
+    weight = design.planet.mass * 9.81
+    assert np.linalg.norm(found.pin, axis=-1).max() < 3.0 * weight
+    loaded = stage(planet__clearance=50.0, load__gravity=9.81)
+    found = shared(loaded, 5)
+    total = found.pin[..., 1].sum(axis=-1)
+    np.testing.assert_allclose(total, 4.0 * mean_load(loaded), rtol=1e-8)
+    np.testing.assert_allclose(found.mean_factors(), 1.0, atol=1e-4)
+
+
+def test_clearance_alone_changes_no_share() -> None:
+    tight, loose = (shared(stage(planet__clearance=c)).factors() for c in (0.0, 80.0))
+    np.testing.assert_allclose(tight, loose, atol=1e-9)
+
+
+def test_random_pins() -> None:
+    """Four planets around a floating sun: the part (1, -1, 1, -1)/4 of the pins is normal with half
+    of their deviation, and the factor is 1 + kappa |x| / F: quantiles of a half-normal number."""
+    tolerance = {"pin": 30.0, "samples": 400, "positions": 2}
+    table = stage(sun__bearing=0.0).model_dump(exclude_unset=True) | {"tolerances": tolerance}
+    design = PlanetaryStageDesign.model_validate(table)
+    found = random_factors(design, design.tolerances, 0, 400)[:, 0] - 1.0
+    expected = stiffness_along(design) * 0.5 * 10e-6 / mean_load(design)
+    assert np.sqrt((found**2).mean()) == pytest.approx(expected, rel=0.1)
+    # the same numbers in any division into blocks of the same number
+    again = random_factors(design, design.tolerances, 0, 400)[:, 0] - 1.0
+    np.testing.assert_array_equal(found, again)
+
+
+def test_a_run(tmp_path: Path) -> None:
+    """Answers of every planet, tables and figures; the same from its folder."""
+    few = {"load.positions": 20, "tolerances.samples": 120, "tolerances.positions": 3}
+    result = swgpar.run(
+        load_design(DRIVERS / "planetary_stage.toml").with_values(few), out=tmp_path / "run"
+    )
+    value = {name: answer.value for name, answer in result.summary.items()}
+    assert value["load_sharing_factor"] == max(
+        4.0 * value[f"largest_share[{k}]"] for k in range(1, 5)
+    )
+    assert value["random_factor_median"] < value["random_factor_90"] < value["random_factor_99"]
+    force = max(value[f"largest_sun_force[{k}]"] for k in range(1, 5))
+    helix, angle = np.radians(7.5), np.radians(20.0)
+    axial = force * np.cos(angle) * np.tan(helix)
+    assert value["axial_force"] == pytest.approx(axial)
+    assert value["tilting_moment"] == pytest.approx(axial * 0.4004)
+    assert set(result.plot.names) == {
+        *("planet_loads", "mesh_forces", "sun_path", "spectrum", "random_factors")
+    }
+    again = swgpar.open_result(tmp_path / "run")
+    assert {name: answer.value for name, answer in again.summary.items()} == value
+    spectrum, planets = result.tables["spectrum"], result.tables["planets"]
+    assert spectrum["sun_force_2_N"][0] == pytest.approx(planets["sun_force_2_N"].mean())
+    assert again.tables["random"]["train"].tolist() == list(range(1, 121))
+
+
+def test_rotor_and_generator_are_two_more_coordinates() -> None:
+    """A light rotor and generator hardly change the other modes; the train then turns freely."""
+    table = load_design(DRIVERS / "planetary_stage.toml").model_dump(exclude_unset=True)
+    free = PlanetaryStageDesign.model_validate(table)
+    grounded = {name: part for name, part in table.items() if name not in ("rotor", "generator")}
+    held = PlanetaryStageDesign.model_validate(grounded)
+    size = PlanetaryModel(held).size
+    assert PlanetaryModel(free).size == size + 2
+    lowest = natural_modes(PlanetaryModel(free)).frequency[0]
+    assert lowest < 0.01 < natural_modes(PlanetaryModel(held)).frequency[2]
+    heavy = table | {"generator": {"inertia": 1e9}}
+    heavy.pop("rotor")
+    frequencies = [
+        natural_modes(PlanetaryModel(PlanetaryStageDesign.model_validate(one))).frequency
+        for one in (heavy, grounded)
+    ]
+    np.testing.assert_allclose(frequencies[0][1:], frequencies[1], rtol=1e-3)
