@@ -22,12 +22,23 @@ from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.input.quantities import show
 from swgpar.input.require import require, require_available
+from swgpar.materials.pitting import STEEL_MODULUS
 from swgpar.profiles import Conjugate
 
 THINNEST_RIM, THICKEST_RIM = 0.01, 100.0
 """Thickness of a rim, or of a housing, in modules: thinner and thicker ones are slips."""
 
 PANCAKE = 'drive.model = "pancake"'
+
+OF_STEEL = (
+    "tensile_strength",
+    "yield_strength",
+    "fatigue_limit",
+    "shear_fatigue_limit",
+    "basquin_coefficient",
+    "basquin_exponent",
+)
+"""Keys of [fatigue] whose defaults are those of a steel."""
 
 
 def check_fit(design: DriveDesign) -> None:
@@ -185,6 +196,15 @@ def _check_fatigue(design: DriveDesign) -> None:
     fatigue = design.fatigue
     if fatigue is None:
         return
+    modulus, (low, high) = design.materials["flexible_spline"].modulus, STEEL_MODULUS
+    if not low <= modulus <= high:
+        for key in OF_STEEL:
+            if key not in fatigue.model_fields_set:
+                raise InputError(
+                    f"fatigue.{key} is missing: the default is that of a steel, and the flexible "
+                    f"spline has a modulus of elasticity of {modulus:g} MPa: allowed without it "
+                    f"only from {low:g} to {high:g} MPa"
+                )
     limit, shear = fatigue.fatigue_limit, fatigue.shear_fatigue_limit
     for key, larger in (
         ("yield_strength", "tensile_strength"),

@@ -1,12 +1,29 @@
-"""Checks of what [rating] says of the flanks. Each refusal names the key, its value and what is
-allowed."""
+"""Checks of the torques of [rating], and of what it says of the flanks.
+
+Each refusal names the key, its value and what is allowed.
+"""
 
 from __future__ import annotations
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.rating_section import RatingSection
 from swgpar.errors import InputError
 from swgpar.input.require import require, require_available
 from swgpar.materials.pitting import PITTING_LIMITS, STEEL_MODULUS
+
+
+def check_torques(section: RatingSection, rated: float, peak: float, average: float) -> None:
+    """Raise InputError where a torque that acts for a shorter time is below one that acts longer.
+
+    rated, peak, average : N·m, the rated, repeated peak and average torque, with defaults in place
+    """
+    key = "rating.repeated_peak_torque"
+    require(peak >= rated, key, peak, f"{rated:g} N·m (the rated torque) and more")
+    require(average <= peak, "rating.average_torque", average, f"above 0 to {peak:g} N·m ({key})")
+    momentary = section.momentary_torque
+    if momentary is not None:
+        allowed = f"{peak:g} N·m (the repeated peak torque) and more"
+        require(momentary >= peak, "rating.momentary_torque", momentary, allowed)
 
 
 def check_rating(design: DriveDesign) -> None:

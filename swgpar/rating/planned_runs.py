@@ -16,7 +16,7 @@ import numpy as np
 
 from swgpar.analysis.shortcuts import SAMPLES
 from swgpar.checks.design_file import make_drive, with_points
-from swgpar.checks.rating_checks import check_rating
+from swgpar.checks.rating_checks import check_rating, check_torques
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.input.toml_file import validate
@@ -114,10 +114,12 @@ def rating_loads(design: DriveDesign) -> RatingLoads:
     rated = section.rated_torque or design.load.torque
     if not rated:
         raise InputError("rating.rated_torque is missing: give it, or load.torque, above 0 N·m")
+    peak, average = section.repeated_peak_torque or rated, section.average_torque or rated
+    check_torques(section, rated, peak, average)
     return RatingLoads(
         rated=rated,
-        repeated_peak=section.repeated_peak_torque or rated,
-        average=section.average_torque or rated,
+        repeated_peak=peak,
+        average=average,
         momentary=section.momentary_torque,
         ratcheting=None
         if section.momentary_torque is None

@@ -164,6 +164,23 @@ def test_bad_input_is_refused(override: str, words: str) -> None:
     assert words in str(error.value)
 
 
+def test_strengths_of_steel_are_for_steel_alone() -> None:
+    given = [
+        "fatigue.tensile_strength=50",
+        "fatigue.yield_strength=45",
+        "fatigue.fatigue_limit=15",
+        "fatigue.shear_fatigue_limit=9",
+        "fatigue.basquin_coefficient=75",
+        "fatigue.basquin_exponent=-0.1",
+    ]
+    plastic = 'flexible_spline.material.name="PLA"'
+    assert swgpar.load_design(DESIGN, [plastic, *given]).fatigue.tensile_strength == 50.0
+    for n, one in enumerate(given):
+        with pytest.raises(InputError) as error:
+            swgpar.load_design(DESIGN, [plastic, *given[:n], *given[n + 1 :]])
+        assert f"{one.split('=')[0]} is missing: the default is that of a steel" in str(error.value)
+
+
 def test_a_run_has_figures_and_quantities() -> None:
     """The nodes with the least safety are those of the fields; every quantity of studies has a
     value."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -20,7 +21,7 @@ from swgpar.drive_results.strength_checks import FIRST_YIELD
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.errors import InputError
 from swgpar.input.toml_file import read_toml
-from swgpar.rating.planned_runs import LoadCase, plan_runs
+from swgpar.rating.planned_runs import LoadCase, plan_runs, rating_loads
 from swgpar.rating.rate_drive import accuracy_of, without_accuracy
 from swgpar.rating.rated_answers import STATIC_PRESSURE
 from swgpar.rating.rows import (
@@ -382,6 +383,22 @@ def test_pressure_by_treatment_and_hardness(treatment: str, hardness: float, lim
 def test_refused_flanks(keys: dict[str, Any], changes: dict[str, Any], words: str) -> None:
     with pytest.raises(InputError, match=words.replace("(", r"\(")):
         rated(rating=RATING | UNKNOWN | keys, **changes)
+
+
+@pytest.mark.parametrize(
+    ("torques", "words"),
+    [
+        ({"rated_torque": 4.0, "repeated_peak_torque": 3.0}, "allowed 4 N·m (the rated torque)"),
+        ({"rated_torque": 4.0, "average_torque": 5.0}, "allowed above 0 to 4 N·m"),
+        (
+            {"rated_torque": 1.0, "repeated_peak_torque": 4.0, "momentary_torque": 3.0},
+            "allowed 4 N·m (the repeated peak torque)",
+        ),
+    ],
+)
+def test_refused_torques(torques: dict[str, float], words: str) -> None:
+    with pytest.raises(InputError, match=re.escape(words)):
+        rating_loads(rated(rating=torques))
 
 
 @pytest.mark.parametrize(
