@@ -210,13 +210,17 @@ class NewtonSolver:
         if self.state.slow:
             logger.info("   contact spreads slowly in Newton iteration %d: softer for a while", its)
         if decision.cycles:
-            text = "   contacts do not settle in Newton iteration %d: descending line search"
-            logger.info(text, its)
+            what = "cells anew" if self.state.cells_may_be_stale else "descending line search"
+            logger.info("   contacts do not settle in Newton iteration %d: %s", its, what)
             self._break_cycle()
 
     def _break_cycle(self) -> None:
-        """Search descending, and once per solve with frozen cells and friction bounds."""
+        """Place stale cells anew; else search descending, once per solve with all frozen."""
         state = self.state
+        if state.cells_may_be_stale:  # all ranks took over cells, or none
+            self.problem.cells.release()
+            state.renewed, state.residuals = True, [state.residual]
+            return
         self.line_search.descending = True
         if not state.breaker.started and not self.problem.cells.are_frozen():
             self.problem.cells.freeze()
@@ -381,7 +385,7 @@ class NewtonSolver:
         contacts = self.problem.penalty_contacts
         multipliers, x = [contact.multiplier for contact in contacts], self.problem.x.copy()
         state.before_augmentation = AcceptableState(state.residual, x, multipliers)
-        state.augmentations += 1
+        state.augmentations, state.renewed = state.augmentations + 1, False
         for contact in contacts:
             contact.augment()
 

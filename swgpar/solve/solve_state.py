@@ -105,6 +105,7 @@ class SolveState:
     incomplete_pattern : whether any rank misses blocks
     outdated_search : whether the nodes have moved far since the last contact search
     slow : whether contact spreads slowly;  softened : whether contacts are or were softened
+    renewed : whether cells were placed anew since the last augmentation
     visited : active sets of the present run;  time_limit : s, once it has passed
     """
 
@@ -122,11 +123,19 @@ class SolveState:
     outdated_search: bool = False
     slow: bool = False
     softened: bool = False
+    renewed: bool = False
     visited: VisitedSets = field(default_factory=VisitedSets)
     breaker: CycleBreaker = field(default_factory=CycleBreaker)
     before_augmentation: AcceptableState | None = None
     result: SolveResult | None = None
     time_limit: float | None = None
+
+    @property
+    def cells_may_be_stale(self) -> bool:
+        """Whether the frozen cells are those of the state before an augmentation. Those that slide
+        past the end of a flank lose their forces, so that there may be no solution."""
+        augmented = self.phase is Phase.AUGMENTED
+        return augmented and not self.renewed and not self.breaker.started
 
     @property
     def phase(self) -> Phase:
