@@ -18,6 +18,7 @@ class MeshStiffness:
 
     mean, amplitude : N/m, the wave is 2 amplitude high;  contact_ratio : 1 to 2;  frequency : rad/s
     harmonics : terms that are kept;  phase : (m,) rad of each mesh
+    overlap : (m,) overlap ratio of helical teeth, over which the wave is averaged
     """
 
     mean: np.ndarray
@@ -26,11 +27,12 @@ class MeshStiffness:
     frequency: float
     harmonics: int
     phase: np.ndarray
+    overlap: np.ndarray | float = 0.0
 
     def at(self, t: float) -> np.ndarray:
         """Stiffness of all meshes, (m,) N/m, at a time in s."""
         j = np.arange(1, self.harmonics + 1)[:, None]
         two_pairs = self.contact_ratio - 1.0
-        coefficients = 2.0 / (j * np.pi) * np.sin(j * np.pi * two_pairs)
+        coefficients = 2.0 / (j * np.pi) * np.sin(j * np.pi * two_pairs) * np.sinc(j * self.overlap)
         terms = coefficients * np.cos(j * (self.frequency * t - self.phase))
         return self.mean + 2.0 * self.amplitude * terms.sum(axis=0)

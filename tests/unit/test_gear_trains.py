@@ -272,6 +272,17 @@ REFUSED = [
     (STAGE, "tolerances.pin=1e5", "tolerances.pin = 100000 is out of range: allowed up to 10266.7"),
     (STAGE, "errors.planet_phase=[1.0,1.0,1.0,1.0]", "allowed with errors.planet_eccentricity"),
     (STAGE, "mesh.helix=50", "mesh.helix = 50 is out of range: allowed 0 to 45 deg"),
+    (
+        STAGE,
+        "mesh.sun_stiffness=1e9",
+        "mesh.sun_stiffness = 1000000000 is out of range: allowed no value with [teeth]",
+    ),
+    (
+        STAGE,
+        "teeth.addendum=1.2",
+        "teeth.addendum = 1.2 is out of range: allowed values with a contact ratio of ring and",
+    ),
+    (STAGE, "teeth.stiffness=fem", 'teeth.stiffness = "fem" is not available: allowed'),
     (STAGE, "load.torque=0", "load.torque = 0 is out of range: allowed above 0 to 1000000000 N·m"),
     (PLANETARY, "rims=1", '--set "rims=1" cannot be read'),
     (RING_MODES, "moving_load.force=1", "moving_load.damping_mass is missing: give a number"),

@@ -15,15 +15,23 @@ from swgpar.gear_trains.planetary_parts.natural_modes import natural_modes
 from swgpar.gear_trains.planetary_stage.design import PlanetaryStageDesign
 from swgpar.gear_trains.planetary_stage.errors import given_errors
 from swgpar.gear_trains.planetary_stage.load_sharing import Revolution, random_factors, revolution
+from swgpar.gear_trains.train import make_train
 
 PIN = 20.0  # µm
+MESHES = {
+    "sun_stiffness": 16.9e9,
+    "ring_stiffness": 19.2e9,
+    "variation": 0.0,
+    "sun_contact_ratio": 1.6,
+    "ring_contact_ratio": 1.5,
+    "phase": 0.25,
+}
 RIGID = {
     "ring.E": 1e5,
     "ring.radial": 1e15,
     "ring.tangential": 1e15,
     "ring.torsional": 1e15,
     "carrier.bearing": 1e15,
-    "mesh.variation": 0.0,
     "planet.clearance": 0.0,
     "load.gravity": 0.0,
     "errors.sun_eccentricity": 0.0,
@@ -32,9 +40,12 @@ RIGID = {
 
 
 def stage(**changes: object) -> PlanetaryStageDesign:
-    """The driver's stage with a rigid ring and carrier. Keys have _ for the first dot."""
+    """The driver's stage with a rigid ring and carrier and given meshes. Keys have __ for a dot."""
+    table = load_design(DRIVERS / "planetary_stage.toml").model_dump(exclude_unset=True)
+    table.pop("teeth")
+    table["mesh"] |= MESHES
     values = {key.replace("__", "."): value for key, value in changes.items()}
-    return load_design(DRIVERS / "planetary_stage.toml").with_values(RIGID | values)
+    return make_train(table).with_values(RIGID | values)
 
 
 def shared(design: PlanetaryStageDesign, places: int = 3) -> Revolution:

@@ -121,7 +121,9 @@ class PlanetaryModel:
         phases = 2.0 * np.pi * np.repeat([0.0, cycle.phase], count)
         phases += np.tile(design.sun.teeth * self.design.angles, 2)
         frequency = design.carrier.speed * design.ring.teeth
-        self.mesh = MeshStiffness(mean, variation * mean, ratios, frequency, m.harmonics, phases)
+        self.mesh = MeshStiffness(
+            mean, variation * mean, ratios, frequency, m.harmonics, phases, cycle.overlap
+        )
         self.mesh_damping = design.damping.stiffness * mean
         self.half_backlash = 1e-6 * m.half_backlash
         torque_row = np.zeros(self.size)

@@ -79,13 +79,14 @@ class MeshCycle:
     """Stiffness of sun and ring meshes over the tooth cycle, sun first.
 
     mean : (2,) N/m;  variation : (2,) amplitudes over the means;  contact_ratio : (2,)
-    phase : of ring meshes behind sun meshes, cycles
+    phase : of ring meshes behind sun meshes, cycles;  overlap : overlap ratio of helical teeth
     """
 
     mean: tuple[float, float]
     variation: tuple[float, float]
     contact_ratio: tuple[float, float]
     phase: float
+    overlap: float = 0.0
 
 
 @dataclass(frozen=True)

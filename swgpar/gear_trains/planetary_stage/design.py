@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from annotated_types import Ge, Le
 
+from swgpar.errors import InputError
 from swgpar.gear_trains.common_sections import GearTrain
 from swgpar.gear_trains.planetary_parts.sections import (
     MeshCycle,
@@ -15,6 +17,7 @@ from swgpar.gear_trains.planetary_parts.sections import (
     ShaftEnds,
     check_parts,
 )
+from swgpar.gear_trains.planetary_stage.tooth_meshes.helical import HelicalTeeth, mesh_cycle
 from swgpar.input.quantities import Section, not_negative, positive, quantity
 from swgpar.input.require import require
 
@@ -36,17 +39,41 @@ class StagePlanet(Planet):
 
 class StageMeshes(Meshes):
     helix: float = not_negative("helix angle at the pitch circles", "deg", 0.0, le=45.0)
-    sun_stiffness: float = positive("mean stiffness of sun and planet", "N/m")
-    ring_stiffness: float = positive("mean stiffness of ring and planet", "N/m")
-    variation: float = not_negative(
-        "amplitude of the mesh stiffness over its mean", "", 0.0, le=0.4
+    sun_stiffness: float | None = positive("mean stiffness of sun and planet", "N/m", None)
+    ring_stiffness: float | None = positive("mean stiffness of ring and planet", "N/m", None)
+    variation: float | None = not_negative(
+        "amplitude of the mesh stiffness over its mean", "", None, le=0.4
     )
-    sun_contact_ratio: float = quantity(1.5, text="contact ratio of sun and planet", ge=1.0, le=2.0)
-    ring_contact_ratio: float = quantity(
-        1.5, text="contact ratio of ring and planet", ge=1.0, le=2.0
+    sun_contact_ratio: float | None = quantity(
+        None, text="contact ratio of sun and planet", ge=1.0, le=2.0
     )
-    phase: float = quantity(
-        0.0, unit="cycles", text="phase of ring meshes behind sun meshes", ge=-1.0, le=1.0
+    ring_contact_ratio: float | None = quantity(
+        None, text="contact ratio of ring and planet", ge=1.0, le=2.0
+    )
+    phase: float | None = quantity(
+        None, unit="cycles", text="phase of ring meshes behind sun meshes", ge=-1.0, le=1.0
+    )
+
+
+GIVEN = (
+    *("sun_stiffness", "ring_stiffness", "variation"),
+    *("sun_contact_ratio", "ring_contact_ratio", "phase"),
+)
+"""Keys of [mesh] without [teeth]."""
+
+
+class TeethSection(Section):
+    stiffness: Literal["iso_6336", "plane"] = quantity(
+        "iso_6336", text="mesh stiffness by ISO 6336-1, method B, or by plane finite elements"
+    )
+    addendum: float = positive("addendum of all gears", "modules", 1.0, le=1.5)
+    dedendum: float = positive("dedendum of all gears", "modules", 1.25, le=1.8)
+    sun_shift: float = quantity(
+        0.0,
+        unit="modules",
+        text="profile shift of the sun; that of the planets is the opposite",
+        ge=-1.0,
+        le=1.0,
     )
 
 
@@ -113,6 +140,7 @@ class PlanetaryStageDesign(PlanetaryParts):
     gear_train: PlanetaryStageTrain
     planet: StagePlanet
     mesh: StageMeshes
+    teeth: TeethSection | None = None
     load: StageLoad
     rotor: Rotor | None = None
     generator: Generator | None = None
@@ -121,12 +149,33 @@ class PlanetaryStageDesign(PlanetaryParts):
 
     @property
     def mesh_cycle(self) -> MeshCycle:
+        if self.teeth is not None:
+            return mesh_cycle(self.gear_teeth(self.teeth), self.tooth_load, self.teeth.stiffness)
         m = self.mesh
-        return MeshCycle(
-            (m.sun_stiffness, m.ring_stiffness),
-            (m.variation, m.variation),
-            (m.sun_contact_ratio, m.ring_contact_ratio),
-            m.phase,
+        found = [getattr(m, name) for name in GIVEN]
+        sun, ring, variation, *contact_ratio, phase = found
+        overlap = self.ring.face_width * np.tan(np.radians(m.helix)) / (np.pi * self.module)
+        ratios = contact_ratio[0], contact_ratio[1]
+        return MeshCycle((sun, ring), (variation, variation), ratios, phase, float(overlap))
+
+    @property
+    def tooth_load(self) -> float:
+        """Load of a mesh along its line of action over the face width, N/mm."""
+        lever = 1e-3 * (self.sun.pitch_diameter + self.planet.pitch_diameter)
+        force = self.load.torque / (self.planet.count * lever)
+        return force / np.cos(np.radians(self.mesh.pressure_angle)) / self.ring.face_width
+
+    def gear_teeth(self, teeth: TeethSection) -> HelicalTeeth:
+        """What the meshes need to know of the teeth."""
+        ring = self.ring
+        return HelicalTeeth(
+            (self.sun.teeth, self.planet_teeth, ring.teeth),
+            self.module,
+            float(np.radians(self.mesh.pressure_angle)),
+            float(np.radians(self.mesh.helix)),
+            (teeth.addendum, teeth.dedendum, teeth.sun_shift),
+            ring.face_width,
+            (1e3 * ring.E, ring.nu),
         )
 
     @property
@@ -149,6 +198,7 @@ def check_fit(design: PlanetaryStageDesign) -> None:
     """Refuse values that do not fit each other."""
     check_parts(design)
     planet, errors = design.planet, design.errors
+    _check_meshes(design)
     of_planets = "pin_radial", "pin_tangential", "planet_eccentricity", "planet_phase"
     counts = dict.fromkeys(of_planets, (planet.count, "planet.count"))
     counts["sun_pitch"] = design.sun.teeth, "sun.teeth"
@@ -173,3 +223,29 @@ def check_fit(design: PlanetaryStageDesign) -> None:
                     require(abs(one) <= largest, key, one, allowed)
     allowed = f"0 to {largest:g} µm (one module)"
     require(planet.clearance <= largest, "planet.clearance", planet.clearance, allowed)
+
+
+def _check_meshes(design: PlanetaryStageDesign) -> None:
+    """Refuse keys of meshes that are missing or given twice, and teeth that do not mesh."""
+    for name in GIVEN:
+        value = getattr(design.mesh, name)
+        if design.teeth is None and value is None:
+            raise InputError(f"mesh.{name} is missing: give a number, or the section [teeth]")
+        allowed = "no value with [teeth], which says it"
+        require(design.teeth is None or value is None, f"mesh.{name}", value, allowed)
+    if design.teeth is None:
+        return
+    teeth, stage = design.teeth, design.gear_teeth(design.teeth).transverse
+    allowed = (
+        f"less: the tips of the ring are inside its base circle ({stage.ring.base_radius:g} mm)"
+    )
+    outside = stage.ring.tip_radius > stage.ring.base_radius
+    require(outside, "teeth.addendum", teeth.addendum, allowed)
+    for name, mesh in zip(("sun", "ring"), stage.meshes, strict=True):
+        allowed = (
+            f"values with a contact ratio of {name} and planet from 1 to below 2, not "
+            f"{mesh.contact_ratio:.4g}"
+        )
+        require(1.0 <= mesh.contact_ratio < 2.0, "teeth.addendum", teeth.addendum, allowed)
+    deeper = teeth.dedendum > teeth.addendum
+    require(deeper, "teeth.dedendum", teeth.dedendum, "above teeth.addendum: tips need clearance")

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from itertools import product
+from typing import get_args
+
 import numpy as np
 
 from swgpar.gear_trains.planetary_parts.model import PlanetaryModel, base_radii
 from swgpar.gear_trains.planetary_parts.natural_modes import natural_modes
 from swgpar.gear_trains.planetary_stage.design import PlanetaryStageDesign
+from swgpar.gear_trains.planetary_stage.tooth_meshes.helical import Method, stiffnesses
 from swgpar.results.quantity import Quantity
 
 LISTED = 12
 """Natural frequencies that are answers; a stage has 21 at least."""
+
+METHODS = ("ISO 6336-1, method B", "plane finite elements")
+"""Of mesh stiffness, as `Method` lists them."""
 
 QUANTILES = {"median": 0.5, "90": 0.9, "99": 0.99}
 """Of the random load sharing factors: part of the name -> level."""
@@ -50,6 +57,18 @@ def quantities(design: PlanetaryStageDesign) -> dict[str, Quantity]:
             "lowest natural frequencies with all meshes in contact", "Hz", count=LISTED
         ),
     }
+    if design.teeth is not None:
+        for mesh, method in product(("sun", "ring"), get_args(Method)):
+            pair, by = f"{mesh} and planet", METHODS[get_args(Method).index(method)]
+            known[f"{mesh}_single_{method}"] = Quantity(
+                f"largest stiffness of one pair of teeth of {pair} by {by}", "N/m"
+            )
+            known[f"{mesh}_mean_{method}"] = Quantity(
+                f"mean mesh stiffness of {pair} by {by}", "N/m"
+            )
+        known["sun_contact_ratio"] = Quantity("transverse contact ratio of sun and planet")
+        known["ring_contact_ratio"] = Quantity("transverse contact ratio of ring and planet")
+        known["mesh_phase"] = Quantity("phase of ring meshes behind sun meshes", "cycles")
     if design.tolerances is not None:
         for name, level in QUANTILES.items():
             known[f"random_factor_{name}"] = Quantity(
@@ -79,3 +98,19 @@ def derived(design: PlanetaryStageDesign) -> dict[str, float]:
             frequencies[frequencies > 1.0][0]
         ),
     }
+
+
+def of_teeth(design: PlanetaryStageDesign) -> dict[str, float]:
+    """Quantities of the meshes that follow from the teeth alone."""
+    if design.teeth is None:
+        return {}
+    teeth, found = design.gear_teeth(design.teeth), {}
+    width = 1e3 * design.ring.face_width
+    for method in get_args(Method):
+        both = stiffnesses(teeth, design.tooth_load, method)
+        for mesh, stiffness in zip(("sun", "ring"), both, strict=True):
+            found[f"{mesh}_single_{method}"] = width * stiffness.single
+            found[f"{mesh}_mean_{method}"] = width * stiffness.mean
+    cycle = design.mesh_cycle
+    found["sun_contact_ratio"], found["ring_contact_ratio"] = cycle.contact_ratio
+    return found | {"mesh_phase": cycle.phase}

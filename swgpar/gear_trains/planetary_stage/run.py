@@ -17,7 +17,7 @@ from swgpar.gear_trains.planetary_stage.load_sharing import (
     random_factors,
     revolution,
 )
-from swgpar.gear_trains.planetary_stage.quantities import LISTED, QUANTILES
+from swgpar.gear_trains.planetary_stage.quantities import LISTED, QUANTILES, of_teeth
 from swgpar.gear_trains.result import Computed
 from swgpar.log import logger
 from swgpar.results.table import Columns
@@ -45,7 +45,7 @@ def compute(design: PlanetaryStageDesign, comm: MPI.Comm) -> Computed:
     (found,) = done["revolution"]
     modes = _modes(design)
     tables = {"planets": _planets(found), "spectrum": _spectrum(found), "modes": modes}
-    values = _values(design, found)
+    values = _values(design, found) | of_teeth(design)
     values["natural_frequencies"] = modes["frequency_Hz"][:LISTED].tolist()
     if tolerances:
         factors = np.concatenate(done["random"])

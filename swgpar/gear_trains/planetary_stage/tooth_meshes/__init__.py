@@ -1,0 +1,1 @@
+"""Stiffness, contact ratio and phase of meshes from the teeth."""
