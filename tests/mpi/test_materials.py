@@ -60,10 +60,12 @@ def test_an_equal_material_given_twice_changes_nothing(more: tuple[str, ...]) ->
     assert_same(plain, run(*PLANE, *more, *given(drive=STEEL, **sections)), 1e-12)
 
 
-def test_the_body_decides_and_not_the_section() -> None:
+@pytest.mark.parametrize("model", [PLANE, ()], ids=["plane", "cup"])
+def test_the_body_decides_and_not_the_section(model: tuple[str, ...]) -> None:
     """A soft ring gear in a drive of steel, and a steel flexible spline in a soft drive: windows
     and losses too."""
     more = (
+        *model,
         "output.root_stress=true",
         "losses.flank_friction=0.05",
         "steps.samples=4",
