@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         load_mesh,
         mesh,
         new,
+        new_train,
         open_result,
         rate,
         run,
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
 
 _MODULES = {
     "new": "api",
+    "new_train": "api",
     "export": "api",
     "load_design": "api",
     "load_mesh": "api",
@@ -99,6 +101,7 @@ __all__ = [
     "load_mesh",
     "mesh",
     "new",
+    "new_train",
     "open_result",
     "optimise",
     "rate",

@@ -6,7 +6,7 @@ all ranks. An error of swgpar is raised on all ranks. Any other error of one ran
 waiting: `mpirun -n 2 python -m mpi4py script.py` ends all ranks then.
 """
 
-from swgpar.api.designs import check, mesh, new
+from swgpar.api.designs import check, mesh, new, new_train
 from swgpar.api.ratings import rate
 from swgpar.api.runs import export, load_design, load_mesh, open_result, run, save_report
 from swgpar.api.session import Session
@@ -19,6 +19,7 @@ __all__ = [
     "load_mesh",
     "mesh",
     "new",
+    "new_train",
     "open_result",
     "rate",
     "run",

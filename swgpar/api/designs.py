@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from mpi4py import MPI
 
@@ -97,17 +97,72 @@ def new(
     design, table = starter_design(request)
     build_sector_meshes(design.geometry, load_mesh(MESHES[model]))
     if out is not None:
-        path, comm = given_path("out", out), MPI.COMM_WORLD
-        with agreed(comm, path):
-            if comm.rank == 0 and path.exists() and not overwrite:
-                raise OutputError(
-                    f"{path} exists: replace it with overwrite = true (--overwrite), or give "
-                    "another name"
-                )
-        write_from_root(comm, path, as_toml(request, design, table, path.name).encode())
+        path = given_path("out", out)
+        _write_new(path, as_toml(request, design, table, path.name), overwrite)
     if (too_much := overload(request, design)) and MPI.COMM_WORLD.rank == 0:
         log.logger.warning("%s", too_much)
     return design
+
+
+def new_train(
+    out: str | Path | None = None,
+    *,
+    train: Literal["planetary_stage"],
+    ratio: float,
+    diameter: float,
+    torque: float,
+    overwrite: bool = False,
+) -> Design:
+    """A checked gear train to start from; collective when it is written.
+
+    Parameters
+    ----------
+    out : path
+        Design file to write, with the meaning of every key.
+    train : "planetary_stage"
+        Model of the gear train.
+    ratio : float
+        Speed of the sun over that of the carrier.
+    diameter : float, mm
+        Pitch diameter of the ring.
+    torque : float, N·m
+        On the carrier.
+    overwrite : bool
+        Replace a file that exists.
+
+    Raises
+    ------
+    InputError
+        A number that is out of range.
+    OutputError
+        The file exists, or cannot be written.
+
+    Examples
+    --------
+    >>> design = swgpar.new_train(
+    ...     train="planetary_stage", ratio=5.7, diameter=1000.0, torque=1e5
+    ... )
+    """
+    from swgpar.systems.gear_train import GEAR_TRAIN  # loads what gear trains need
+
+    name = "train.toml" if out is None else given_path("out", out).name
+    started, text = GEAR_TRAIN.starter(train, (ratio, diameter, torque), name)
+    design = GEAR_TRAIN.load(started.model_dump(exclude_unset=True))
+    if out is not None:
+        _write_new(given_path("out", out), text, overwrite)
+    return design
+
+
+def _write_new(path: Path, text: str, overwrite: bool) -> None:
+    """Write a design file that is not there yet; collective."""
+    comm = MPI.COMM_WORLD
+    with agreed(comm, path):
+        if comm.rank == 0 and path.exists() and not overwrite:
+            raise OutputError(
+                f"{path} exists: replace it with overwrite = true (--overwrite), or give another "
+                "name"
+            )
+    write_from_root(comm, path, text.encode())
 
 
 def mesh(

@@ -44,7 +44,7 @@ def as_toml(request: Request, design: DriveDesign, table: dict[str, Any], name: 
     ]
     sources = _sources(request)
     for section, content in table.items():
-        lines += _section(section, getattr(design, section), content, sources)
+        lines += section_lines(section, getattr(design, section), content, sources)
     return "\n".join(lines) + "\n"
 
 
@@ -70,7 +70,7 @@ def _sources(request: Request) -> dict[str, str]:
     return sources
 
 
-def _section(
+def section_lines(
     title: str, section: Section, content: dict[str, Any], sources: dict[str, str]
 ) -> list[str]:
     """Lines of a section: its source, its plain keys with the texts of their fields, then the
@@ -88,5 +88,5 @@ def _section(
         *(f"{entry:{width}s}  # {fields[key].description}" for key, entry in entries.items()),
     ]
     for key, value in tables.items():
-        lines += _section(f"{title}.{key}", getattr(section, key), value, sources)
+        lines += section_lines(f"{title}.{key}", getattr(section, key), value, sources)
     return lines

@@ -68,7 +68,21 @@ def _optimise(arguments: argparse.Namespace) -> None:
     _end()
 
 
+def _new_train(arguments: argparse.Namespace) -> None:
+    usual = {"layout": "ring_fixed", "model": "cup", "shape": "cup", "lobes": 2}
+    usual |= dict.fromkeys(("bore", "profile", "cam"))
+    for name, value in usual.items():
+        if getattr(arguments, name) != value:
+            raise InputError(f"--{name} has no meaning for a gear train: leave it out")
+    given = _given(api.new_train, arguments)
+    api.new_train(arguments.design, **given)
+    _print([f"written {arguments.design}", f"swgpar check {arguments.design} has derived values"])
+
+
 def _new(arguments: argparse.Namespace) -> None:
+    if arguments.train is not None:
+        _new_train(arguments)
+        return
     design = api.new(arguments.design, **_given(api.new, arguments))
     drive = design.drive
     _print(

@@ -93,6 +93,7 @@ NEW_EXAMPLES = """examples:
   swgpar new drive.toml --ratio 40 --diameter 120 --torque 20 --lobes 3
   swgpar new plane.toml --ratio 50 --diameter 42 --torque 2 --model plane
   swgpar new flat.toml --ratio 60 --diameter 120 --torque 20 --model pancake
+  swgpar new stage.toml --train planetary_stage --ratio 5.7 --diameter 1000 --torque 200000
 """
 
 OPTIMISE = """Search for the best design: any keys of the design file as variables within bounds, any quantities that
@@ -267,6 +268,11 @@ def _add_overwrite(command: _Parser, what: str) -> None:
 def _add_new(commands: _Commands) -> None:
     new = _add_command(commands, "new", NEW, NEW_EXAMPLES)
     new.add_argument("design", help="design file to write (TOML)")
+    text = (
+        "a gear train instead of a drive: ratio of sun over carrier, pitch diameter of the ring, "
+    )
+    text += "torque on the carrier"
+    new.add_argument("--train", choices=("planetary_stage",), help=text)
     text = "speed of the wave generator over that of the output"
     new.add_argument("--ratio", type=float, required=True, help=text)
     size = new.add_mutually_exclusive_group(required=True)

@@ -21,6 +21,7 @@ from swgpar.gear_trains.train import (
     require_finite,
     run_train,
 )
+from swgpar.input.require import require
 from swgpar.input.toml_file import Overrides, apply_overrides
 from swgpar.meshing import MeshRecipe
 from swgpar.results.atomic import to_json
@@ -37,6 +38,16 @@ class GearTrains(System[TrainDesign, TrainResult]):
 
     def load(self, table: dict[str, Any], overrides: Overrides = ()) -> TrainDesign:
         return made_of_changed(make_train, table, apply_overrides(table, overrides))
+
+    def starter(
+        self, model: str, sizes: tuple[float, float, float], name: str
+    ) -> tuple[TrainDesign, str]:
+        """A design to start from and its file. sizes : ratio, diameter (mm), torque (N·m)"""
+        from swgpar.gear_trains.planetary_stage.starter import starter  # only where one is made
+
+        allowed = '"planetary_stage"'
+        require(model == "planetary_stage", "train", model, allowed)
+        return starter(*sizes, name)
 
     def check(self, design: TrainDesign) -> dict[str, float]:
         with reported_arithmetic():

@@ -10,6 +10,7 @@ import pytest
 import swgpar
 from support.paths import DRIVERS
 from swgpar import load_design
+from swgpar.errors import InputError, OutputError
 from swgpar.gear_trains.planetary_parts.model import PlanetaryModel
 from swgpar.gear_trains.planetary_parts.natural_modes import natural_modes
 from swgpar.gear_trains.planetary_stage.design import PlanetaryStageDesign
@@ -167,6 +168,38 @@ def test_a_run(tmp_path: Path) -> None:
     spectrum, planets = result.tables["spectrum"], result.tables["planets"]
     assert spectrum["sun_force_2_N"][0] == pytest.approx(planets["sun_force_2_N"].mean())
     assert again.tables["random"]["train"].tolist() == list(range(1, 121))
+
+
+@pytest.mark.parametrize(
+    ("ratio", "diameter", "torque"), [(3.4, 60.0, 20.0), (5.7, 1000.0, 2e5), (12.0, 300.0, 800.0)]
+)
+def test_a_stage_to_start_from(
+    ratio: float, diameter: float, torque: float, tmp_path: Path
+) -> None:
+    """Near the ratio, of the given size; the file gives the same design; it carries its load."""
+    sizes = {"ratio": ratio, "diameter": diameter, "torque": torque}
+    design = swgpar.new_train(tmp_path / "a b.toml", train="planetary_stage", **sizes)
+    assert swgpar.load_design(tmp_path / "a b.toml") == design
+    assert 1.0 + design.ring.teeth / design.sun.teeth == pytest.approx(ratio, rel=0.02)
+    assert design.module * design.ring.teeth == pytest.approx(diameter)
+    found = shared(design)
+    assert design.load.torque == torque and found.sun.min() > 0.0
+    with pytest.raises(OutputError, match="exists"):
+        swgpar.new_train(tmp_path / "a b.toml", train="planetary_stage", **sizes)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "sentence"),
+    [
+        ({"ratio": 2.0}, r"ratio = 2 is out of range: allowed 3 to 12 \(sun over carrier\)"),
+        ({"torque": 1e7}, r"torque = .* is out of range: allowed up to 3\.375e\+05 N·m with this"),
+        ({"diameter": 0.0}, r"diameter = 0 is out of range: allowed 1 to 100000 mm"),
+    ],
+)
+def test_stages_that_are_refused(wrong: dict[str, float], sentence: str) -> None:
+    given = {"ratio": 5.0, "diameter": 1000.0, "torque": 1e5} | wrong
+    with pytest.raises(InputError, match=sentence):
+        swgpar.new_train(train="planetary_stage", **given)
 
 
 def test_rotor_and_generator_are_two_more_coordinates() -> None:
