@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 import csv
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +27,7 @@ from catalogue_curves import (
 )
 from catalogue_designs import NAMES as PROPORTIONS
 from catalogue_designs import Proportions, catalogue_design
-from catalogue_fit import CASES, FITTED, WITH_PLAY
+from catalogue_fit import CASES, FITTED, WITH_PLAY, bent_alike
 from page import DATA, put, read_results, write_results
 from program import run
 
@@ -107,19 +107,36 @@ def write_fit(rows: list[dict[str, Any]]) -> None:
     put(PAGE, "catalogue_determined", tables.determined(rows))
 
 
+def bent(options: argparse.Namespace) -> None:
+    """Curves at all ratios, with rims that are bent alike."""
+    write_curves("catalogue_bent", "bent", bent_alike, options)
+    put(PAGE, "catalogue_rotations", tables.rotations(read_results("catalogue_bent")))
+
+
 def curves(options: argparse.Namespace) -> None:
-    """Curves of the fitted proportions at all ratios."""
+    """Curves at all ratios, with rims in proportion to the diameter."""
+    write_curves("catalogue_curves", "ratio", lambda _: FITTED, options)
+
+
+def write_curves(
+    table: str, name: str, proportions: Callable[[int], Proportions], options: argparse.Namespace
+) -> None:
+    """Curves of size 17 at all ratios.
+
+    table : name of the results;  name : of the runs, before the ratio
+    proportions : of a ratio
+    """
     for ratio in options.ratios:
-        rows = read_results("catalogue_curves")
+        rows = read_results(table)
         top = largest_torque()
         reached = max((row["torque_Nm"] for row in rows if row["ratio"] == ratio), default=0.0)
         if reached > (1.0 - ROUNDED) * top and not options.again:
             continue
         keys = stiffness_keys(top, 3)
-        found, _ = curve(f"ratio_{ratio}", ratio, FITTED, keys, options)
+        found, _ = curve(f"{name}_{ratio}", ratio, proportions(ratio), keys, options)
         rows = [row for row in rows if row["ratio"] != ratio] + found
         rows.sort(key=lambda row: (row["ratio"], row["torque_Nm"]))
-        write_results("catalogue_curves", CURVE, rows, tables.stiffness(rows), page="catalogue")
+        write_results(table, CURVE, rows, tables.stiffness(rows), page="catalogue")
 
 
 def held(options: argparse.Namespace) -> None:
@@ -146,7 +163,7 @@ def designs(options: argparse.Namespace) -> None:
     """Design files of drivers/catalogue."""
     for ratio in options.ratios:
         for size in SIZES:
-            table = catalogue_design(size, ratio, break_points(size)[1], FITTED)
+            table = catalogue_design(size, ratio, break_points(size)[1], bent_alike(ratio))
             head = (
                 f"# A drive of catalogue size {size} with ratio {ratio}: docs/verification/"
                 "catalogue.md. Written by scripts/bench/catalogue.\n"
@@ -157,6 +174,7 @@ def designs(options: argparse.Namespace) -> None:
 
 ACTIONS = {
     "fit": fit,
+    "bent": bent,
     "curves": curves,
     "input": held,
     "losses": losses,
@@ -170,7 +188,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     options.add_argument(
-        "--what", nargs="+", choices=ACTIONS, default=["fit", "curves", "input", "losses"]
+        "--what", nargs="+", choices=ACTIONS, default=["fit", "bent", "curves", "input", "losses"]
     )
     options.add_argument("--ratios", nargs="+", type=int, default=list(RATIOS))
     options.add_argument("--ranks", type=int, default=2)

@@ -2,14 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
-from swgpar.checks.starter import BACK_FILLET, Request, starter_design
+from swgpar.checks.starter import (
+    BACK_FILLET,
+    BALL_DIAMETER,
+    RACE_THICKNESS,
+    Request,
+    starter_design,
+)
 from swgpar.checks.starter_cam import rounded
+from swgpar.checks.starter_teeth import ring_section, spline_section, tooth_sizes
 
 TENTH_OF_AN_INCH = 2.54
 """Pitch diameter (mm) over the number of the size."""
+
+FACE_WIDTH = 0.17
+"""Over the pitch diameter."""
+
+TIP_RELIEF = 0.025
+"""Of both gears, modules."""
 
 
 @dataclass(frozen=True)
@@ -38,16 +51,18 @@ NAMES = tuple(field.name for field in fields(Proportions))
 def catalogue_design(
     size: int, ratio: int, torque: float, proportions: Proportions
 ) -> dict[str, Any]:
-    """Content of the design file. torque : N·m, rated, on the output"""
+    """Content of the design file. torque : N·m, rated, on the output
+
+    Teeth, face width and deflection are those of the runs of the page, and not those that a starter
+    has: the cam deflects mid-width by a module.
+    """
     diameter = rounded(TENTH_OF_AN_INCH * size)
     request = Request(ratio=ratio, torque=torque, diameter=diameter, profile="s_shaped")
-    design, table = starter_design(request)
+    _, table = starter_design(request)
     for section in ("fatigue", "rating", "steps"):
         table.pop(section, None)
+    _set_teeth(table, proportions)
     rim = proportions.rim * diameter
-    bore = 2.0 * (design.inner_radius + design.flexible_spline.rim - rim)
-    grown = 0.5 * bore / design.inner_radius
-    table["flexible_spline"]["rim"] = rounded(rim)
     cup, bearing = table["cup"], table["wave_generator"]["bearing"]
     cup["thickness_coef"] = rounded(proportions.wall)
     cup["back_fillet"], cup["end_thickness"] = (
@@ -55,11 +70,25 @@ def catalogue_design(
         rounded(proportions.end * rim),
     )
     cup["clamping_radius"] = rounded(proportions.hub * diameter)
-    for key in ("ball_diameter", "race_thickness"):
-        bearing[key] = rounded(grown * bearing[key])
+    drive = table["drive"]
+    bore = drive["module"] * (drive["teeth_fs"] - 2.0 * drive["dedendum_coef"]) - 2.0 * rim
+    bearing["ball_diameter"] = rounded(BALL_DIAMETER * bore)
+    bearing["race_thickness"] = rounded(RACE_THICKNESS * bore)
     bearing["clearance"] = rounded(proportions.clearance * diameter)
-    module = table["drive"]["module"]
-    table["micro_geometry"]["fs_crowning"] = rounded(proportions.crowning * module)
+    table["micro_geometry"]["fs_crowning"] = rounded(proportions.crowning * drive["module"])
+    return table
+
+
+def _set_teeth(table: dict[str, Any], proportions: Proportions) -> None:
+    """Teeth, face width and deflection."""
+    drive, cam = table["drive"], table["wave_generator"]
+    module, teeth = drive["module"], drive["teeth_fs"]
+    sizes = replace(tooth_sizes("s_shaped", 2, teeth, coned=False), tip_relief=TIP_RELIEF)
+    drive["addendum_coef"], drive["dedendum_coef"] = sizes.addendum, sizes.dedendum
+    drive["face_width"] = cam["face_width"] = rounded(FACE_WIDTH * module * teeth, 3)
+    cam.pop("deflection", None)
+    rim = rounded(proportions.rim * module * teeth)
+    table["flexible_spline"] = spline_section("s_shaped", sizes, module) | {"rim": rim}
+    table["ring_gear"] = ring_section("s_shaped", sizes, module, drive["teeth_rg"], 0.0)
     profile = table["ring_gear"]["profile"]
     profile["backlash"] = rounded(proportions.backlash * module)
-    return table

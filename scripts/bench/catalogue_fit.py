@@ -11,6 +11,8 @@ import numpy as np
 from catalogue_curves import FITTED_RATIO, FITTED_SIZE, NAMES, published
 from catalogue_designs import Proportions
 
+from swgpar.checks.starter_cam import rounded
+
 START = Proportions()
 """Those of a starter design."""
 
@@ -26,6 +28,18 @@ NEAR = replace(SOFTER, clearance=0.0002, backlash=0.025)
 FITTED = replace(NEAR, rim=0.0071, clearance=0.000157)
 """What all drives of the tables have: the least squares of the logarithms of K1, K2, K3 by rim and
 clearance, `step` from `NEAR`."""
+
+
+def bent_alike(ratio: int) -> Proportions:
+    """The fitted proportions with the rim that the cam bends by the same strain at every ratio.
+
+    The deflection is so many modules, a module a diameter over twice the ratio, and the strain half
+    of the rim's thickness times a curvature in proportion to the deflection over the square of the
+    diameter. So the rim over the diameter is in proportion to the ratio. Wall and closed end are
+    in proportion to the rim.
+    """
+    return replace(FITTED, rim=rounded(FITTED.rim * ratio / FITTED_RATIO))
+
 
 WITH_PLAY = replace(START, clearance=0.000144, backlash=0.02)
 """The starter's structure with the play that the fit needs."""

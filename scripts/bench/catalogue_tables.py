@@ -7,13 +7,26 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from catalogue_curves import FITTED_RATIO, FITTED_SIZE, NAMES, SIZES, Curve, published
+from catalogue_curves import (
+    ARC_MINUTE,
+    FITTED_RATIO,
+    FITTED_SIZE,
+    NAMES,
+    PUBLISHED,
+    SIZES,
+    TOP,
+    Curve,
+    break_points,
+    published,
+)
 from catalogue_fit import AROUND, VARIED, sensitivity
 from page import markdown
 
 Row = Mapping[str, Any]
 LOSS_RATIO = 100
 """Ratio of which losses are published."""
+
+ARC_SECOND = ARC_MINUTE / 60.0
 
 SPEED = 2000.0
 """Speed (1/min) at which the published losses are assumed to hold."""
@@ -85,6 +98,25 @@ def stiffness(rows: Sequence[Row]) -> str:
             cells += [over(here[name], printed[name]) for name in NAMES]
             cells += [over(here["K3"], here["K1"]), over(printed["K3"], printed["K1"])]
             found.append([*cells, number(here["lost_motion"], 2)])
+    return markdown(found)
+
+
+def rotations(rows: Sequence[Row]) -> str:
+    """Rotation of size 17 from no torque to the break points, as published and as computed, beside
+    the published play of the coupling at the input; arc seconds at the output."""
+    ends = [0.0, *break_points(FITTED_SIZE)]
+    ends.append(TOP * ends[-1])
+    head = ["ratio", *(f"{end:g} N·m: {what}" for end in ends[1:] for what in
+                       ("published", "computed"))]  # fmt: skip
+    found = [[*head, "play of the coupling"]]
+    for ratio in sorted({int(row["ratio"]) for row in rows}):
+        curve = Curve.of([row for row in rows if row["ratio"] == ratio])
+        printed = [published("stiffness", ratio, name, FITTED_SIZE) for name in NAMES]
+        turns = np.cumsum(np.diff(ends) / printed) / ARC_SECOND
+        here = [(curve.at(end) - curve.at(0.0)) / ARC_SECOND for end in ends[1:]]
+        cells = [number(value) for pair in zip(turns, here) for value in pair]
+        play = PUBLISHED["coupling"][f"ratio_{ratio}"][SIZES.index(FITTED_SIZE)]
+        found.append([f"{ratio}", *cells, f"{play:g}"])
     return markdown(found)
 
 

@@ -17,7 +17,13 @@ from swgpar.checks.starter import LARGEST_RATIO, LEAST_RATIO, Request, starter_d
 from swgpar.checks.starter_cam import CamType
 from swgpar.checks.starter_file import as_toml
 from swgpar.checks.starter_teeth import PROFILE_KEYS, Profile
-from swgpar.checks.starter_torques import CARRIED, carried_torque, overload, torque_text
+from swgpar.checks.starter_torques import (
+    BENT_TOO_MUCH,
+    CARRIED,
+    carried_torque,
+    overload,
+    torque_text,
+)
 from swgpar.cli import main, parser
 from swgpar.errors import InputError, OutputError
 from swgpar.geometry.cams import taut_length
@@ -122,6 +128,19 @@ def test_a_torque_that_is_too_large_is_said_in_one_sentence(
     assert main([*words, "--torque", f"{0.9 * carried:.6f}", "--overwrite"]) == 0
     assert not caplog.records
     assert f"carries up to {named[1]} N·m" in (tmp_path / "d.toml").read_text(encoding="utf-8")
+
+
+def test_no_torque_is_named_where_the_deflection_alone_fails() -> None:
+    """The rating with the least torque of that ratio fails by fatigue."""
+    with RATED.open(newline="", encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if float(row["ratio"]) == BENT_TOO_MUCH]
+    least = min(rows, key=lambda row: float(row["torque"]) / float(row["diameter"]) ** 3)
+    assert float(least["torque"]) < 5e-6 * float(least["diameter"]) ** 3
+    assert "fatigue of teeth and rim fails" in least["strength"]
+    request = Request(BENT_TOO_MUCH, 1.0, diameter=50.0, profile="s_shaped")
+    design, _ = starter_design(request)
+    assert carried_torque(request, design) == 0.0
+    assert "passes with no torque" in torque_text(request, design)
 
 
 def test_the_torque_of_other_starts_is_not_named() -> None:
