@@ -20,8 +20,12 @@ from swgpar.solve.discrete_problem import DiscreteProblem, ResidualInfo
 from swgpar.solve.solve_state import NewtonSettings, Phase, SolveState
 from swgpar.solve.time_limit import passed
 
-SOFT_TOLERANCE = 1e-2
-"""Residual over contact force at which a run with softened contact ends."""
+SOFT_TOLERANCE = 0.1
+"""Residual over contact force at which a run with softened contact ends. What it leaves is less
+than what the next share of the stiffness changes."""
+
+NEAR_RESIDUAL = 1e-2
+"""Residual over contact force below which a state is near the solution."""
 
 FREEZING_POWER = 0.6
 """Power of the tolerance that gives the relative residual below which cells are frozen.
@@ -38,7 +42,7 @@ SEARCH_DISTANCE = 0.25
 ROUND_OFF_SHARE = 0.05
 """Share of the round-off below which a residual counts as zero; runs reach 0.01 to 0.06 of it."""
 
-SLOW_ITERATIONS, SLOW_RESIDUALS = 5, (SOFT_TOLERANCE, 0.5)
+SLOW_ITERATIONS, SLOW_RESIDUALS = 5, (NEAR_RESIDUAL, 0.5)
 """Iterations in which the residual does not halve, and its bounds, where contact spreads slowly.
 Above them bounded steps approach the contacts. Below them soft contacts know no better."""
 
@@ -126,7 +130,7 @@ class ConvergenceTest:
             elif is_exhausted(state.residuals, self.settings.max_iterations):
                 verdict = NewtonVerdict.EXHAUSTED
             else:
-                patience = PATIENCE if ratio > SOFT_TOLERANCE else NEAR_PATIENCE
+                patience = PATIENCE if ratio > NEAR_RESIDUAL else NEAR_PATIENCE
                 sticks = not is_decreasing(state.residuals, patience, MIN_DECREASE)
                 if sticks and state.breaker.solution is not None:
                     # a solution on frozen cells is known, and cells placed anew lead nowhere
@@ -163,7 +167,7 @@ class ConvergenceTest:
         The tangent of a distorted state has a round-off without bounds. The residual is then no
         small one.
         """
-        if state.residual > SOFT_TOLERANCE:
+        if state.residual > NEAR_RESIDUAL:
             return False
         stalled = iteration > 1 and state.residuals[-1] > STALL * state.residuals[-2]
         return norm <= (1.0 if stalled else ROUND_OFF_SHARE) * self.problem.round_off
