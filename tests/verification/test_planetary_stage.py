@@ -11,13 +11,15 @@ import swgpar
 from support.paths import DRIVERS
 from swgpar import load_design
 from swgpar.errors import InputError, OutputError
-from swgpar.gear_trains.planetary_parts.model import PlanetaryModel
+from swgpar.gear_trains.planetary_parts.model import PlanetaryModel, base_radii
 from swgpar.gear_trains.planetary_parts.natural_modes import natural_modes
 from swgpar.gear_trains.planetary_stage.design import PlanetaryStageDesign
 from swgpar.gear_trains.planetary_stage.errors import given_errors
+from swgpar.gear_trains.planetary_stage.frequency_response import frequency_response
 from swgpar.gear_trains.planetary_stage.load_sharing import Revolution, random_factors, revolution
 from swgpar.gear_trains.train import make_train
 
+ENDS = ("rotor", "generator")
 PIN = 20.0  # µm
 MESHES = {
     "sun_stiffness": 16.9e9,
@@ -161,7 +163,7 @@ def test_a_run(tmp_path: Path) -> None:
     assert value["axial_force"] == pytest.approx(axial)
     assert value["tilting_moment"] == pytest.approx(axial * 0.4004)
     assert set(result.plot.names) == {
-        *("planet_loads", "mesh_forces", "sun_path", "spectrum", "random_factors")
+        *("planet_loads", "mesh_forces", "sun_path", "spectrum", "response", "random_factors")
     }
     again = swgpar.open_result(tmp_path / "run")
     assert {name: answer.value for name, answer in again.summary.items()} == value
@@ -200,6 +202,27 @@ def test_stages_that_are_refused(wrong: dict[str, float], sentence: str) -> None
     given = {"ratio": 5.0, "diameter": 1000.0, "torque": 1e5} | wrong
     with pytest.raises(InputError, match=sentence):
         swgpar.new_train(train="planetary_stage", **given)
+
+
+def test_frequency_response() -> None:
+    """At low frequency a stage whose shaft is held answers as at rest: every sun mesh has its part
+    of the torque. Without damping the response is largest at natural frequencies. A transmission
+    error that is slow makes no force where the sun turns freely."""
+    table = stage(damping__mass=0.0, damping__stiffness=1e-9).model_dump(exclude_unset=True)
+    held = make_train({name: part for name, part in table.items() if name not in ENDS})
+    train = PlanetaryModel(held)
+    slow = frequency_response(train, np.array([1e-3]))
+    centres = base_radii(held)[2]
+    per_mesh = 1.0 / (4.0 * 2.0 * centres * np.cos(np.radians(20.0)))
+    np.testing.assert_allclose(slow.mesh_by_torque, per_mesh, rtol=1e-3)
+    modes = natural_modes(train)
+    (rotational, *_) = modes.frequency[(modes.kind == "rotational") & (modes.frequency > 1.0)]
+    near = frequency_response(train, rotational * np.array([0.98, 1.0, 1.02])).mesh_by_torque[:, 0]
+    assert near[1] > 20.0 * max(near[0], near[2])
+    free = make_train(table | {"generator": {"inertia": 1.0}})
+    slow = frequency_response(PlanetaryModel(free), np.array([1e-2])).mesh_by_error
+    fast = frequency_response(PlanetaryModel(free), np.array([200.0])).mesh_by_error
+    assert slow.max() < 1e-3 * fast.max()
 
 
 def test_rotor_and_generator_are_two_more_coordinates() -> None:

@@ -23,6 +23,8 @@ def drawings(result: TrainResult) -> Drawings:
         "sun_path": partial(_sun_path, result),
         "spectrum": partial(_spectrum, result),
     }
+    if "response" in result.tables:
+        figures["response"] = partial(_response, result)
     if "random" in result.tables:
         figures["random_factors"] = partial(_random_factors, result)
     return figures
@@ -68,6 +70,19 @@ def _spectrum(result: TrainResult) -> Figure:
     for axis, gear in zip(panels, ("sun", "ring"), strict=True):
         axis.vlines(table["cycles"][1:], 0.0, table[f"{gear}_force_1_N"][1:], lw=0.8)
         axis.set_ylim(bottom=0.0)
+    return figure
+
+
+def _response(result: TrainResult) -> Figure:
+    table = result.tables["response"]
+    labels = "by torque (N/(N·m))", "by transmission error (N/µm)"
+    figure, panels = axes("amplitudes of the forces of sun meshes", "frequency (Hz)", *labels)
+    for axis, unit in zip(panels, ("Nm", "um"), strict=True):
+        for k in _planets(result):
+            values, label = table[f"sun_{k}_N_by_{unit}"], f"planet {k}"
+            axis.loglog(table["frequency_Hz"], values, lw=0.8, label=label)
+        axis.margins(x=0.0)
+    panels[0].legend(fontsize=8)
     return figure
 
 

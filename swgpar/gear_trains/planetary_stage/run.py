@@ -11,6 +11,7 @@ from swgpar.gear_trains.planetary_parts.model import PlanetaryModel, carrier_ind
 from swgpar.gear_trains.planetary_parts.natural_modes import natural_modes
 from swgpar.gear_trains.planetary_stage.design import PlanetaryStageDesign
 from swgpar.gear_trains.planetary_stage.errors import given_errors
+from swgpar.gear_trains.planetary_stage.frequency_response import frequency_response
 from swgpar.gear_trains.planetary_stage.load_sharing import (
     BLOCK_SIZE,
     Revolution,
@@ -22,6 +23,9 @@ from swgpar.gear_trains.result import Computed
 from swgpar.log import logger
 from swgpar.results.table import Columns
 from swgpar.vibration.sampling import Tasks, block_sizes, run_tasks
+
+FREQUENCIES, HIGHEST = 800, 5.0
+"""Number of frequencies of the response; the highest in mesh frequencies, at least."""
 
 
 def compute(design: PlanetaryStageDesign, comm: MPI.Comm) -> Computed:
@@ -45,6 +49,7 @@ def compute(design: PlanetaryStageDesign, comm: MPI.Comm) -> Computed:
     (found,) = done["revolution"]
     modes = _modes(design)
     tables = {"planets": _planets(found), "spectrum": _spectrum(found), "modes": modes}
+    tables["response"] = _response(design)
     values = _values(design, found) | of_teeth(design)
     values["natural_frequencies"] = modes["frequency_Hz"][:LISTED].tolist()
     if tolerances:
@@ -113,6 +118,22 @@ def _spectrum(found: Revolution) -> Columns:
     for k in range(found.sun.shape[2]):
         table[f"sun_force_{k + 1}_N"] = amplitudes(found.sun[:, 0, k])
         table[f"ring_force_{k + 1}_N"] = amplitudes(found.ring[:, 0, k])
+    return table
+
+
+def _response(design: PlanetaryStageDesign) -> Columns:
+    """Amplitudes of the mesh forces of every planet by a torque of 1 N·m and by a transmission
+    error of 1 µm of the sun meshes."""
+    train = PlanetaryModel(design)
+    mesh = train.mesh.frequency / (2.0 * np.pi)
+    highest = max(HIGHEST * mesh, natural_modes(train).frequency[LISTED - 1])
+    found = frequency_response(train, np.geomspace(1e-3 * highest, highest, FREQUENCIES))
+    table = {"frequency_Hz": found.frequency}
+    for j, gear in enumerate(("sun", "ring")):
+        for k in range(design.planet.count):
+            one = j * design.planet.count + k
+            table[f"{gear}_{k + 1}_N_by_Nm"] = found.mesh_by_torque[:, one]
+            table[f"{gear}_{k + 1}_N_by_um"] = 1e-6 * found.mesh_by_error[:, one]
     return table
 
 
