@@ -11,7 +11,7 @@ import swgpar
 from support.paths import DRIVERS
 from swgpar import load_design
 from swgpar.errors import InputError, OutputError
-from swgpar.gear_trains.planetary_parts.model import PlanetaryModel, base_radii
+from swgpar.gear_trains.planetary_parts.model import PlanetaryModel, base_radii, carrier_index
 from swgpar.gear_trains.planetary_parts.natural_modes import natural_modes
 from swgpar.gear_trains.planetary_stage.design import PlanetaryStageDesign
 from swgpar.gear_trains.planetary_stage.errors import given_errors
@@ -113,6 +113,75 @@ def test_eccentricity_of_the_ring_turns_once() -> None:
     np.testing.assert_allclose(eccentric.share, central.share, atol=1e-7)
 
 
+def test_errors_that_are_equal_to_errors_of_pins() -> None:
+    """An eccentric planet is one whose pin is as far off. Flanks of a planet that are all ahead by
+    c are a pin that is c / cos(alpha) ahead. Flanks of the sun that are all ahead turn the sun."""
+    held = {"sun__bearing": 1e15}
+    cosine = np.cos(np.radians(20.0))
+
+    def at_start(**errors: object) -> np.ndarray:
+        return shared(stage(**held, **errors), 2).share[0, 0]
+
+    pin = at_start(errors__pin_tangential=[PIN, 0.0, 0.0, 0.0])
+    eccentric = at_start(
+        errors__planet_eccentricity=[PIN, 0.0, 0.0, 0.0],
+        errors__planet_phase=[90.0, 0.0, 0.0, 0.0],
+    )
+    np.testing.assert_allclose(eccentric, pin, rtol=1e-9)
+    flanks = at_start(errors__planet_pitch=39 * [PIN * cosine])
+    np.testing.assert_allclose(flanks, pin, rtol=1e-9)
+    none, turned = at_start(), at_start(errors__sun_pitch=21 * [PIN])
+    np.testing.assert_allclose(turned, none, rtol=1e-9)
+
+
+def test_one_tooth_passes_every_planet() -> None:
+    """The flank of one tooth of the sun that is ahead loads each planet once in a turn of the sun
+    against the carrier, one planet after the other."""
+    design = stage(sun__bearing=1e15, errors__sun_pitch=[10.0] + 20 * [0.0])
+    found = shared(design, 297)
+    loaded = found.share[:, 0] > 0.25 + 0.5 * np.ptp(found.share[:, 0])
+    begins = (np.diff(loaded.astype(int), axis=0) == 1).sum(axis=0)
+    turns = 99.0 / 21.0
+    assert (np.abs(begins - turns) <= 1.0).all()
+    assert (loaded.sum(axis=1) <= 2).all()
+
+
+def test_against_the_whole_matrices() -> None:
+    """The elastic ring, condensed to its meshes, gives the forces of all coordinates."""
+    design = load_design(DRIVERS / "planetary_stage.toml").with_values(
+        {
+            "planet.clearance": 0.0,
+            "load.gravity": 0.0,
+            "mesh.half_backlash": 0.0,
+            "errors.pin_tangential": [],
+            "errors.sun_eccentricity": 0.0,
+        }
+    )
+    found, train = shared(design, 5), PlanetaryModel(design)
+    without = design.model_copy(update={"rotor": None, "generator": None})
+    held = PlanetaryModel(without)
+    for place, angle in enumerate(found.angle):
+        t = angle / design.carrier.speed
+        rows, k = held.deflection_rows(t), train.mesh_stiffness(np.array([t]))[0]
+        stiffness = held.constant + rows.T @ (k[:, None] * rows)
+        load = np.zeros(held.size)
+        load[carrier_index(without) + 2] = design.load.torque / base_radii(design)[2]
+        forces = -k * (rows @ np.linalg.solve(stiffness, load))
+        ours = np.concatenate([found.sun[place, 0], found.ring[place, 0]])
+        np.testing.assert_allclose(ours, forces, rtol=1e-6)
+
+
+def test_planets_at_unequal_places() -> None:
+    """Springs in parallel share evenly wherever they are; a floating sun must balance them."""
+    angles = [0.0, 87.0, 180.0, 267.0]
+    held = shared(stage(planet__angles=angles, sun__bearing=1e15))
+    np.testing.assert_allclose(held.factors(), 1.0, atol=1e-3)
+    three = {"planet__count": 3, "planet__angles": [0.0, 90.0, 225.0], "sun__bearing": 0.0}
+    share = shared(stage(**three)).sun[0, 0]
+    # forces of a floating sun at 0, 90 and 225 deg: 1, 1 and the root of 2
+    np.testing.assert_allclose(share / share[0], [1.0, 1.0, np.sqrt(2.0)], rtol=1e-6)
+
+
 def test_clearance_and_gravity() -> None:
     """A planet hangs in its clearance: without torque the pin carries its weight; with torque the
     forces of the carrier balance the torque, and weights move no mean load."""
@@ -148,7 +217,7 @@ def test_random_pins() -> None:
 
 def test_a_run(tmp_path: Path) -> None:
     """Answers of every planet, tables and figures; the same from its folder."""
-    few = {"load.positions": 20, "tolerances.samples": 120, "tolerances.positions": 3}
+    few = {"load.positions": 20, "tolerances.samples": 110, "tolerances.positions": 3}
     result = swgpar.run(
         load_design(DRIVERS / "planetary_stage.toml").with_values(few), out=tmp_path / "run"
     )
@@ -169,7 +238,7 @@ def test_a_run(tmp_path: Path) -> None:
     assert {name: answer.value for name, answer in again.summary.items()} == value
     spectrum, planets = result.tables["spectrum"], result.tables["planets"]
     assert spectrum["sun_force_2_N"][0] == pytest.approx(planets["sun_force_2_N"].mean())
-    assert again.tables["random"]["train"].tolist() == list(range(1, 121))
+    assert again.tables["random"]["train"].tolist() == list(range(1, 111))
 
 
 @pytest.mark.parametrize(
