@@ -15,7 +15,7 @@ from swgpar.gear_trains.planetary.quantities import LISTED, OF_RING
 from swgpar.gear_trains.planetary.time_stepping import TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
 from swgpar.gear_trains.planetary_parts.model import PlanetaryModel, ring_pitch_radius
-from swgpar.gear_trains.planetary_parts.natural_modes import natural_modes
+from swgpar.gear_trains.planetary_parts.natural_modes import mode_table
 from swgpar.gear_trains.published import number_label
 from swgpar.gear_trains.result import Computed
 from swgpar.log import logger
@@ -30,8 +30,6 @@ from swgpar.vibration.moments import (
 )
 from swgpar.vibration.sampling import Tasks, block_sizes, random_stream, run_tasks
 from swgpar.vibration.thickness_limit import size_remark
-
-PARTS_OF_ENERGY = "sun", "planets", "carrier", "ring"
 
 DOMINANT = {"ring_contact": "ring_contact_radial", "ring_node": "ring_node_tangential"}
 """Quantities of slow cycles, and whose they are."""
@@ -97,7 +95,7 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> Computed:
     tables = {
         "rims": _rims(design, moments),
         "mesh_forces": _forces(design, own),
-        "modes": _modes(design),
+        "modes": mode_table(PlanetaryModel(design)),
     }
     values = _values(design, moments, samples, sum(separated))
     values["natural_frequencies"] = tables["modes"]["frequency_Hz"][:LISTED].tolist()
@@ -141,21 +139,6 @@ def _forces(design: PlanetaryDesign, moments: TrainMoments) -> Columns:
         table[f"mean_{name}_force_N"] = moments.force[:, k]
         table[f"mean_square_{name}_force_N2"] = moments.square[:, k]
     return table
-
-
-def _modes(design: PlanetaryDesign) -> Columns:
-    """Natural modes with all meshes in contact.
-
-    mesh_resonance_rad_s : speed of the carrier at which the tooth meshes have the frequency
-    """
-    modes = natural_modes(PlanetaryModel(design))
-    return {
-        "mode": np.arange(1, len(modes.frequency) + 1),
-        "kind": modes.kind,
-        "frequency_Hz": modes.frequency,
-        "mesh_resonance_rad_s": 2.0 * np.pi * modes.frequency / design.ring.teeth,
-        **{f"energy_{part}": share for part, share in zip(PARTS_OF_ENERGY, modes.energy.T)},
-    }
 
 
 def _rims(design: PlanetaryDesign, moments: dict[float, TrainMoments]) -> Columns:

@@ -21,8 +21,11 @@ from swgpar.gear_trains.planetary_parts.model import (
     planet_index,
     ring_index,
 )
+from swgpar.results.table import Columns
 
 KINDS = ("rotational", "translational", "planet", "ring")
+
+PARTS_OF_ENERGY = "sun", "planets", "carrier", "ring"
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,21 @@ def natural_modes(train: PlanetaryModel) -> PlanetaryModes:
     kind = np.where(elastic > 0.5, "ring", np.array(KINDS)[np.minimum(harmonic, 2)])
     frequency = np.sqrt(squares.clip(0.0)) / (2.0 * np.pi)
     return PlanetaryModes(frequency, shapes, kind, np.array(energy).T)
+
+
+def mode_table(train: PlanetaryModel) -> Columns:
+    """Natural modes with all meshes in contact, as columns of a table.
+
+    mesh_resonance_rad_s : speed of the carrier at which the tooth meshes have the frequency
+    """
+    modes = natural_modes(train)
+    return {
+        "mode": np.arange(1, len(modes.frequency) + 1),
+        "kind": modes.kind,
+        "frequency_Hz": modes.frequency,
+        "mesh_resonance_rad_s": 2.0 * np.pi * modes.frequency / train.design.ring.teeth,
+        **{f"energy_{part}": share for part, share in zip(PARTS_OF_ENERGY, modes.energy.T)},
+    }
 
 
 def _planet_harmonic(train: PlanetaryModel, shapes: np.ndarray) -> np.ndarray:

@@ -6,6 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from swgpar.gear_trains.drawing import axes
+from swgpar.gear_trains.planetary_parts.campbell import campbell
 from swgpar.gear_trains.result import TrainResult
 from swgpar.results.figure_set import Drawings, plot_line
 
@@ -25,6 +26,8 @@ def drawings(result: TrainResult) -> Drawings:
     }
     if "response" in result.tables:
         figures["response"] = partial(_response, result)
+    if "modes" in result.tables:
+        figures["campbell"] = partial(campbell, result)
     if "random" in result.tables:
         figures["random_factors"] = partial(_random_factors, result)
     return figures

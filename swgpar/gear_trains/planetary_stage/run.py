@@ -8,7 +8,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.gear_trains.planetary_parts.model import PlanetaryModel, carrier_index
-from swgpar.gear_trains.planetary_parts.natural_modes import natural_modes
+from swgpar.gear_trains.planetary_parts.natural_modes import mode_table, natural_modes
 from swgpar.gear_trains.planetary_stage.design import PlanetaryStageDesign
 from swgpar.gear_trains.planetary_stage.errors import given_errors
 from swgpar.gear_trains.planetary_stage.frequency_response import frequency_response
@@ -47,7 +47,7 @@ def compute(design: PlanetaryStageDesign, comm: MPI.Comm) -> Computed:
     }
     done, seconds = run_tasks(comm, groups)
     (found,) = done["revolution"]
-    modes = _modes(design)
+    modes = mode_table(PlanetaryModel(design))
     tables = {"planets": _planets(found), "spectrum": _spectrum(found), "modes": modes}
     tables["response"] = _response(design)
     values = _values(design, found) | of_teeth(design)
@@ -135,14 +135,3 @@ def _response(design: PlanetaryStageDesign) -> Columns:
             table[f"{gear}_{k + 1}_N_by_Nm"] = found.mesh_by_torque[:, one]
             table[f"{gear}_{k + 1}_N_by_um"] = 1e-6 * found.mesh_by_error[:, one]
     return table
-
-
-def _modes(design: PlanetaryStageDesign) -> Columns:
-    """Natural modes with all meshes in contact, and the speeds at which the meshes meet them."""
-    modes = natural_modes(PlanetaryModel(design))
-    return {
-        "mode": np.arange(1, len(modes.frequency) + 1),
-        "kind": modes.kind,
-        "frequency_Hz": modes.frequency,
-        "mesh_resonance_rad_s": 2.0 * np.pi * modes.frequency / design.ring.teeth,
-    }
