@@ -138,42 +138,44 @@ class RaceContact(PressedPoints):
         """
         if not self.is_active(state):
             return NO_KEYS
-        vectors, curvature = self._find_gaps(u)
-        touching = self.touching_faces()
+        touching, vectors, curvature = self._find_gaps(u)
         if residual is not None:
             self._add_forces(vectors, touching, residual)
         if rows is not None:
-            self._add_blocks(vectors[touching], curvature[touching], touching, rows)
+            self._add_blocks(vectors, curvature, touching, rows)
         return NO_KEYS
 
     def add_owned_forces(self, u: np.ndarray, state: LoadState, residual: np.ndarray) -> None:
         """Add the forces of the faces that this rank owns to residual (n_local, 3) N."""
         if self.is_active(state):
-            vectors, _ = self._find_gaps(u)
-            touching = self.touching_faces()
-            self._add_forces(vectors, touching[self.owned[touching]], residual)
+            touching, vectors, _ = self._find_gaps(u)
+            own = self.owned[touching]
+            self._add_forces(vectors[own], touching[own], residual)
 
-    def _find_gaps(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _find_gaps(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Set gaps and pressures.
 
-        Returns dg, a and b (n_face, n_q, 12, 2, 3) by the nodes' displacements, and the factors
-        (n_face, n_q, 3, 3) of their products in d²g.
+        Returns the faces (n,) that touch, and of these dg, a and b (n, n_q, 12, 2, 3) by the nodes'
+        displacements, and the factors (n, n_q, 3, 3) of their products in d²g.
         """
         x = (self.coords + to_images(u[self.conn], self.sixths))[..., :2]
         point = np.einsum("qa,fai->fqi", self.shape, x[:, :4])
         curve = np.einsum("fqk,fnki->fqni", self.layers, x[:, 4:].reshape(len(x), NODES, LAYERS, 2))
         foot = foot_points(self.polynomials[:, None], curve, point, self.first_place)
-        value, rate, tangent, normal = foot.value, foot.rate, foot.tangent, foot.normal
+        self.set_gap(np.sum(foot.normal * foot.away, axis=-1) + self.offset, self.inside)
+        touching = self.touching_faces()
+        foot, layers = foot[touching], self.layers[touching]
+        value, rate = foot.shape_functions()
+        tangent, normal = foot.tangent, foot.normal
         length = np.sum(tangent * tangent, axis=-1)
         distance, k = (np.sum(normal * one, axis=-1) for one in (foot.away, foot.bend))
-        self.set_gap(distance + self.offset, self.inside)
 
         def on_race(weights: np.ndarray) -> np.ndarray:
-            return (weights[..., None] * self.layers[:, :, None]).reshape(
+            return (weights[..., None] * layers[:, :, None]).reshape(
                 *weights.shape[:2], NODES * LAYERS
             )
 
-        own = np.broadcast_to(self.shape, (len(x), *self.shape.shape))
+        own = np.broadcast_to(self.shape, (len(touching), *self.shape.shape))
         relative = np.concatenate([own, -on_race(value)], axis=2)
         turn = np.concatenate([np.zeros_like(own), on_race(rate)], axis=2)
         vectors = np.stack(
@@ -187,12 +189,12 @@ class RaceContact(PressedPoints):
         factors = np.zeros((*length.shape, 3, 3))
         factors[..., 1, 1], factors[..., 2, 2] = k, length * distance
         factors[..., 1, 2] = factors[..., 2, 1] = length
-        return vectors, -factors / (length * (length - distance * k))[..., None, None]
+        return touching, vectors, -factors / (length * (length - distance * k))[..., None, None]
 
     def _add_forces(self, vectors: np.ndarray, faces: np.ndarray, residual: np.ndarray) -> None:
         force = (self.pressure * self.weight)[faces]
         nodal = np.zeros((*self.conn[faces].shape, 3))
-        nodal[..., :2] = -np.einsum("fq,fqai->fai", force, vectors[faces, ..., 0])
+        nodal[..., :2] = -np.einsum("fq,fqai->fai", force, vectors[..., 0])
         np.add.at(residual, self.conn[faces], to_owners(nodal, self.sixths[faces]))
 
     def _add_blocks(

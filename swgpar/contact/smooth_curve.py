@@ -15,9 +15,9 @@ import numpy as np
 NODES = 4
 """Nodes of a piece of the curve: its ends are the second and the third."""
 
-STEPS = 6
-"""Newton steps to a point of the curve: pieces are nearly straight, and the iteration is
-quadratic."""
+STEPS, CLOSE = 6, 1e-8
+"""Most Newton steps to a point of the curve, and the change of lambda after which no other one
+follows: pieces are nearly straight, and the iteration is quadratic."""
 
 
 def curve_nodes(
@@ -76,16 +76,31 @@ def shape_functions(
 class FootPoints:
     """Points of pieces of the curve that are nearest to given points.
 
-    value, rate : (..., 4) shape functions of the nodes there, and their derivatives by lambda
+    polynomials : (..., 4, 4) of the pieces;  place : (...) lambda there
     away : (..., 2) mm, from there to the given points
     tangent, bend : (..., 2) mm, first and second derivative of the curve by lambda
     """
 
-    value: np.ndarray
-    rate: np.ndarray
+    polynomials: np.ndarray
+    place: np.ndarray
     away: np.ndarray
     tangent: np.ndarray
     bend: np.ndarray
+
+    def __getitem__(self, chosen: np.ndarray) -> FootPoints:
+        """Those of the chosen pieces. chosen : (n,) places in the first axis"""
+        return FootPoints(
+            self.polynomials[chosen],
+            self.place[chosen],
+            self.away[chosen],
+            self.tangent[chosen],
+            self.bend[chosen],
+        )
+
+    def shape_functions(self) -> tuple[np.ndarray, np.ndarray]:
+        """Shape functions of the nodes there (..., 4), and their derivatives by lambda."""
+        value, rate, _ = shape_functions(self.polynomials, self.place)
+        return value, rate
 
     @property
     def normal(self) -> np.ndarray:
@@ -104,12 +119,13 @@ def foot_points(
     """
     curve = np.einsum("...np,...ni->...pi", polynomials, nodes)
     c0, c1, c2, c3 = (curve[..., power, :] for power in range(4))
-    for step in range(STEPS + 1):  # the last evaluation is at the foot point
+    change, step = np.ones(1), 0
+    while True:
         t = place[..., None]
         away = points - (c0 + t * (c1 + t * (c2 + t * c3)))
         tangent, bend = c1 + t * (2.0 * c2 + t * (3.0 * c3)), 2.0 * c2 + 6.0 * t * c3
-        if step < STEPS:
-            steepness = np.sum(tangent * tangent - away * bend, axis=-1)
-            place = place + np.sum(away * tangent, axis=-1) / steepness
-    value, rate, _ = shape_functions(polynomials, place)
-    return FootPoints(value, rate, away, tangent, bend)
+        if step == STEPS or np.abs(change).max(initial=0.0) < CLOSE:
+            return FootPoints(polynomials, place, away, tangent, bend)
+        steepness = np.sum(tangent * tangent - away * bend, axis=-1)
+        change = np.sum(away * tangent, axis=-1) / steepness
+        place, step = place + change, step + 1
