@@ -6,11 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal, get_args, get_origin
 
-import annotated_types
 from pydantic.fields import FieldInfo
 
 from swgpar.input.design import Design
-from swgpar.input.quantities import Section, allowed, unit_of
+from swgpar.input.quantities import Section, allowed, limits_of, plain_type, unit_of
 
 Kind = Literal["number", "whole number", "choice", "switch", "text"]
 
@@ -79,18 +78,55 @@ def _fields(section: Section, path: str) -> Iterator[FormField]:
         yield from _fields(value, f"{key}.")
 
 
-def _plain(field: FieldInfo) -> tuple[Any, bool]:
-    """Type of a field without None, and whether it may be None."""
-    types = get_args(field.annotation)
-    if type(None) not in types:
-        return field.annotation, False
-    others = [each for each in types if each is not type(None)]
-    return (others[0] if len(others) == 1 else None), True
+@dataclass(frozen=True)
+class MissingSection:
+    """A section that a design may have and lacks.
+
+    name : dotted;  text : what it is
+    required : fields of the keys that it needs
+    """
+
+    name: str
+    text: str
+    required: list[FormField]
+
+
+def missing_sections(design: Design) -> list[MissingSection]:
+    """Sections that a design lacks and that the form can add, in the order of its file: those
+    whose needed keys have a field."""
+    return list(_missing(design, ""))
+
+
+def _missing(section: Section, path: str) -> Iterator[MissingSection]:
+    for name, field in type(section).model_fields.items():
+        value, key = getattr(section, name), f"{path}{name}"
+        kind = plain_type(field.annotation)
+        if isinstance(value, Section):
+            yield from _missing(value, f"{key}.")
+        elif value is None and isinstance(kind, type) and issubclass(kind, Section):
+            needed = {inner: one for inner, one in kind.model_fields.items() if one.is_required()}
+            kinds = {inner: _kind(one) for inner, one in needed.items()}
+            if None not in kinds.values():
+                required = [
+                    _field(f"{key}.{inner}", key, one, kinds[inner], None)  # type: ignore[arg-type]
+                    for inner, one in needed.items()
+                ]
+                text = (kind.__doc__ or "").split("\n\n")[0].replace("\n", " ").strip()
+                yield MissingSection(key, " ".join(text.split()), required)
+
+
+def is_optional(design: Design, section: str) -> bool:
+    """Whether a design may lack a section that it has; by its dotted name."""
+    *outer, name = section.split(".")
+    owner: Any = design
+    for part in outer:
+        owner = getattr(owner, part)
+    return type(None) in get_args(type(owner).model_fields[name].annotation)
 
 
 def _kind(field: FieldInfo) -> Kind | None:
     """Kind of control of a field; None where it has none."""
-    plain, _ = _plain(field)
+    plain = plain_type(field.annotation)
     if get_origin(plain) is Literal:
         return "choice" if all(isinstance(one, str) for one in get_args(plain)) else None
     kinds: dict[Any, Kind] = {
@@ -103,13 +139,7 @@ def _kind(field: FieldInfo) -> Kind | None:
 
 
 def _field(key: str, section: str, field: FieldInfo, kind: Kind, value: Any) -> FormField:
-    plain, optional = _plain(field)
-    low, high = float("-inf"), float("inf")
-    for limit in field.metadata:
-        if isinstance(limit, (annotated_types.Ge, annotated_types.Gt)):
-            low = float(getattr(limit, "ge", getattr(limit, "gt", low)))
-        elif isinstance(limit, (annotated_types.Le, annotated_types.Lt)):
-            high = float(getattr(limit, "le", getattr(limit, "lt", high)))
+    plain, limits = plain_type(field.annotation), limits_of(field)
     unit = unit_of(field)
     text = str(field.description or "").removesuffix(f" ({unit})")
     number = kind in ("number", "whole number")
@@ -121,8 +151,8 @@ def _field(key: str, section: str, field: FieldInfo, kind: Kind, value: Any) -> 
         allowed(field) if number else "",
         kind,
         value,
-        optional,
+        type(None) in get_args(field.annotation),
         tuple(get_args(plain)) if kind == "choice" else (),
-        low,
-        high,
+        float(limits.get("ge", limits.get("gt", "-inf"))),
+        float(limits.get("le", limits.get("lt", "inf"))),
     )

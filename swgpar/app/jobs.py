@@ -17,13 +17,31 @@ from enum import StrEnum
 from pathlib import Path
 
 from swgpar.errors import InputError
-from swgpar.rating.sheet import JSON as RATING_JSON
-from swgpar.rating.sheet import PAGE as RATING_PAGE
+from swgpar.optimisation import files as search
+from swgpar.rating import sheet
+from swgpar.results import folder as results
 from swgpar.results.atomic import to_json, write_file
-from swgpar.results.folder import REPORT, SUMMARY
+from swgpar.studies import study
 
 RECORD = "jobs.json"
 """File of the workspace with the jobs and their states."""
+
+
+PAGES = {
+    "run": results.REPORT,
+    "rate": sheet.PAGE,
+    "study": study.REPORT,
+    "optimise": search.REPORT,
+}
+LAST_FILES = {
+    "run": results.SUMMARY,
+    "rate": sheet.JSON,
+    "study": study.TABLE,
+    "optimise": search.TABLE,
+}
+"""Pages of results, and files that are written last, by command."""
+
+RESTART = "--restart"
 
 
 class JobState(StrEnum):
@@ -53,6 +71,7 @@ class AppJob:
     arguments : of `swgpar`;  ranks : of mpirun, 1 without it
     out : folder of its results, relative to the workspace
     process : of the leader of its group, 0 before it runs;  reason : last line of a failed one
+    variant : whose design it takes, empty of a file of the user
     """
 
     number: int
@@ -62,21 +81,31 @@ class AppJob:
     state: JobState = JobState.WAITS
     process: int = 0
     reason: str = ""
+    variant: str = ""
 
     @property
-    def rates(self) -> bool:
-        """Whether it is a rating."""
-        return self.arguments[0] == "rate"
+    def command(self) -> str:
+        """Command of `swgpar`."""
+        return self.arguments[0]
 
     @property
-    def page(self) -> str:
-        """Page of its results, relative to the workspace."""
-        return f"{self.out}/{RATING_PAGE if self.rates else REPORT}"
+    def page(self) -> str | None:
+        """Page of its results, relative to the workspace; None where it makes none."""
+        name = PAGES.get(self.command)
+        return None if name is None else f"{self.out}/{name}"
 
     @property
-    def last_file(self) -> str:
-        """File that it writes last, relative to the workspace."""
-        return f"{self.out}/{RATING_JSON if self.rates else SUMMARY}"
+    def last_file(self) -> str | None:
+        """File that it writes last, relative to the workspace; None where it has several."""
+        name = LAST_FILES.get(self.command)
+        return None if name is None else f"{self.out}/{name}"
+
+    @property
+    def continued(self) -> list[str]:
+        """Arguments that continue it; none where it begins anew."""
+        if self.command not in LAST_FILES:
+            return []
+        return [*(one for one in self.arguments if one != RESTART), RESTART]
 
     @property
     def typed(self) -> str:
@@ -100,16 +129,21 @@ class JobQueue:
                 self.jobs.append(AppJob(**{**entry, "state": JobState(entry["state"])}))
 
     @property
+    def runs(self) -> bool:
+        """Whether a job runs."""
+        return any(job.state == JobState.RUNS for job in self.jobs)
+
+    @property
     def next_number(self) -> int:
         """Number of the next job."""
         return 1 + max((job.number for job in self.jobs), default=0)
 
-    def add(self, arguments: Sequence[str], out: str, ranks: int = 1) -> AppJob:
+    def add(self, arguments: Sequence[str], out: str, ranks: int = 1, variant: str = "") -> AppJob:
         """A job at the end of the queue. Raises InputError where there is no mpirun for its
         ranks."""
         if ranks > 1 and shutil.which("mpirun") is None:
             raise InputError(f"ranks = {ranks}: mpirun is not found")
-        job = AppJob(self.next_number, list(arguments), ranks, out)
+        job = AppJob(self.next_number, list(arguments), ranks, out, variant=variant)
         self.jobs.append(job)
         self.step()
         return job
@@ -132,7 +166,7 @@ class JobQueue:
                 job.reason = "" if code == 0 else self._last_line(job)
                 changed = True
         waiting = [job for job in self.jobs if job.state == JobState.WAITS]
-        if waiting and not any(job.state == JobState.RUNS for job in self.jobs):
+        if waiting and not self.runs:
             self._start(waiting[0])
             changed = True
         if changed:
@@ -172,7 +206,7 @@ class JobQueue:
         with contextlib.suppress(OSError):
             os.killpg(job.process, 0)
             return None
-        return 0 if (self.folder / job.last_file).exists() else 1
+        return 0 if job.last_file and (self.folder / job.last_file).exists() else 1
 
     def _last_line(self, job: AppJob) -> str:
         lines = self.last_lines(job).splitlines()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from typing import Any
 
 from nicegui import ui
@@ -15,16 +15,22 @@ SLIDERS = 3.0
 STEPS = 600
 """Places of a slider."""
 
+MOVING = 0.15
+"""Seconds between two changes while a slider moves."""
+
 
 class KeyControl:
     """The control of one key.
 
     field : of the design that is shown
-    change : called with the field and a new entry
+    change : called with the field, a new entry, and whether its slider still moves
     """
 
-    def __init__(self, field: FormField, change: Callable[[FormField, Any], None]) -> None:
-        self.field, self._change, self._shown = field, change, False
+    def __init__(
+        self, field: FormField, change: Callable[[FormField, Any, bool], Awaitable[None]]
+    ) -> None:
+        self.field, self._change = field, change
+        self._shown = self._moves = False
         self.slider: ui.slider | None = None
         with ui.element("div").classes("w-full q-mb-sm"):
             self.entry = self._make_entry()
@@ -43,7 +49,7 @@ class KeyControl:
         value = refused[0] if refused is not None else _as_entry(field)
         if self.entry.value != value:
             self.entry.value = value
-        if self.slider is not None and isinstance(field.value, float):
+        if self.slider is not None and isinstance(field.value, float) and not self._moves:
             self.slider.value = field.value
         self.refusal.text = "" if refused is None else refused[1]
         self.refusal.set_visibility(refused is not None)
@@ -59,24 +65,32 @@ class KeyControl:
             choices = [*field.choices, *([""] if field.optional else [])]
             return ui.select(choices, value=_as_entry(field), label=label, on_change=self._changed)
         entry = ui.input(label, value=_as_entry(field))
-        entry.on("change", self._changed)
+        # the text of the event: that of the entry may arrive after it
+        entry.on("change", lambda event: self._entered(event.args))
         return entry
 
     def _make_slider(self, value: float) -> ui.slider:
         high = min(SLIDERS * value, self.field.high)
         slider = ui.slider(min=max(0.0, self.field.low), max=high, step=high / STEPS, value=value)
         slider.props["data-slider"] = slider.props["aria-label"] = self.field.key
-        slider.props("dense").on("change", self._slid)
+        slider.props("dense").on("change", lambda event: self._slid(event.args, moves=False))
+        slider.on(
+            "update:model-value", lambda event: self._slid(event.args, moves=True), throttle=MOVING
+        )
         return slider
 
-    def _changed(self) -> None:
-        if not self._shown and self.entry.value != _as_entry(self.field):
-            entry = self.entry.value
-            self._change(self.field, None if entry == "" and self.field.optional else entry)
+    async def _changed(self) -> None:
+        if not self._shown:
+            await self._entered(self.entry.value)
 
-    def _slid(self) -> None:
-        if self.slider is not None:
-            self._change(self.field, f"{self.slider.value:.6g}")
+    async def _entered(self, entry: Any) -> None:
+        if entry != _as_entry(self.field):
+            entry = None if entry == "" and self.field.optional else entry
+            await self._change(self.field, entry, False)
+
+    async def _slid(self, value: float, *, moves: bool) -> None:
+        self._moves = moves
+        await self._change(self.field, f"{float(value):.6g}", moves)
 
 
 def _as_entry(field: FormField) -> Any:

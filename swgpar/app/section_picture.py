@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.checks.clearance import Clearance, clearances
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS
 from swgpar.geometry.arrays import Floats
@@ -38,13 +37,12 @@ class SectionPicture:
 
     angle_deg : of the cam, counter-clockwise
     curves : closed curves (n, 2) mm of every body, by its name
-    gaps : of both flanks of all teeth;  clearance : the smallest of a whole turn
+    gaps : of both flanks of all teeth
     """
 
     angle_deg: float
     curves: dict[str, list[Floats]]
     gaps: FlankGaps
-    clearance: Clearance
 
 
 def section_picture(design: DriveDesign, angle_deg: float = 0.0) -> SectionPicture:
@@ -54,7 +52,6 @@ def section_picture(design: DriveDesign, angle_deg: float = 0.0) -> SectionPictu
         angle_deg,
         body_curves(design, angle),
         _gaps(design, angle),
-        clearances(design)[0],
     )
 
 

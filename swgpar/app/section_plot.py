@@ -9,6 +9,7 @@ import numpy as np
 from swgpar.app.section_picture import SectionPicture
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.arrays import Floats
+from swgpar.presentation.loaded_outline import LoadedOutline
 
 COLOURS = {
     "housing": "#b8b8b8",
@@ -23,8 +24,11 @@ OVERLAP, TOUCHING, APART = "#c0182b", "#e6c229", "#2f7fb8"
 """Colours of flanks that overlap, and of smallest and largest gaps that are marked."""
 
 
-def section_figure(design: DriveDesign, picture: SectionPicture) -> dict[str, Any]:
-    """Figure of both gears and the cam, true to scale, with the gaps of the flanks.
+def section_figure(
+    design: DriveDesign, picture: SectionPicture, loaded: LoadedOutline | None = None
+) -> dict[str, Any]:
+    """Figure of both gears and the cam, true to scale, with the gaps of the flanks, or with
+    stresses and forces of a loaded state, which is one at the angle 0 of the cam.
 
     The view is that of the teeth at the lobe next to +y, and stays where a user has moved it.
     """
@@ -35,7 +39,7 @@ def section_figure(design: DriveDesign, picture: SectionPicture) -> dict[str, An
     x, y = -top * np.sin(angle), top * np.cos(angle)
     lines = {"showgrid": False, "zeroline": False, "title": {"text": "mm"}}
     return {
-        "data": [*traces, _gaps(design, picture)],
+        "data": [*traces, *(_loads(loaded) if loaded else [_gaps(design, picture)])],
         "layout": {
             "uirevision": "kept",
             "dragmode": "pan",
@@ -58,17 +62,19 @@ def section_figure(design: DriveDesign, picture: SectionPicture) -> dict[str, An
 
 def _body(name: str, curves: list[Floats]) -> dict[str, Any]:
     """A filled body; a curve inside another one, run through the other way, is its hole."""
-    pieces = []
+    x: list[float | None] = []
+    y: list[float | None] = []
     for index, curve in enumerate(curves):
         closed = np.vstack([curve, curve[:1]])
-        pieces += [closed if _runs_left(curve) == (index == 0) else closed[::-1], [[None, None]]]
-    points = np.vstack([np.asarray(piece, dtype=object) for piece in pieces])[:-1]
+        turned = closed if _runs_left(curve) == (index == 0) else closed[::-1]
+        x += [*_rounded(turned[:, 0]), None]
+        y += [*_rounded(turned[:, 1]), None]
     return {
         "type": "scatter",
         "mode": "lines",
         "name": name.replace("_", " "),
-        "x": [_rounded(value) for value in points[:, 0]],
-        "y": [_rounded(value) for value in points[:, 1]],
+        "x": x[:-1],
+        "y": y[:-1],
         "fill": "toself",
         "fillcolor": f"{COLOURS[name]}66",
         "line": {"color": COLOURS[name], "width": 1},
@@ -82,9 +88,10 @@ def _runs_left(curve: Floats) -> bool:
     return bool((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() > 0.0)
 
 
-def _rounded(value: Any) -> float | None:
-    """mm, to a hundredth of a µm."""
-    return None if value is None else round(float(value), 5)
+def _rounded(values: Floats) -> list[float]:
+    """mm, to a tenth of a µm."""
+    rounded: list[float] = np.round(values, 4).tolist()
+    return rounded
 
 
 def _gaps(design: DriveDesign, picture: SectionPicture) -> dict[str, Any]:
@@ -95,8 +102,8 @@ def _gaps(design: DriveDesign, picture: SectionPicture) -> dict[str, Any]:
         "type": "scatter",
         "mode": "markers",
         "name": "gaps",
-        "x": [_rounded(value) for value in place[:, 0]],
-        "y": [_rounded(value) for value in place[:, 1]],
+        "x": _rounded(place[:, 0]),
+        "y": _rounded(place[:, 1]),
         "marker": {
             "size": np.where(overlap, 11, 7).tolist(),
             "symbol": np.where(overlap, "x", "circle").tolist(),
@@ -112,3 +119,47 @@ def _gaps(design: DriveDesign, picture: SectionPicture) -> dict[str, Any]:
         ],
         "hoverinfo": "text",
     }
+
+
+def _loads(loaded: LoadedOutline) -> list[dict[str, Any]]:
+    """Tension of the deformed surfaces, and pairs of flanks as discs by their shares."""
+    pairs = loaded.pairs
+    tension = {
+        "type": "scatter",
+        "mode": "markers",
+        "name": "tension",
+        "x": _rounded(loaded.place[:, 0]),
+        "y": _rounded(loaded.place[:, 1]),
+        "marker": {
+            "size": 6,
+            "color": np.round(loaded.s1, 1).tolist(),
+            "cmin": 0.0,
+            "cmax": float(loaded.s1.max()),
+            "colorscale": [[0.0, TOUCHING], [1.0, OVERLAP]],
+            "colorbar": {"title": {"text": "s1, MPa"}, "thickness": 12},
+        },
+        "hovertemplate": "largest principal stress %{marker.color} MPa<extra></extra>",
+    }
+    forces = {
+        "type": "scatter",
+        "mode": "markers+text",
+        "name": "pairs",
+        "x": _rounded(pairs.place[:, 0]),
+        "y": _rounded(pairs.place[:, 1]),
+        "marker": {
+            "size": (10.0 + 30.0 * np.sqrt(pairs.share)).tolist(),
+            "color": "rgba(0,0,0,0)",
+            "line": {"color": OVERLAP, "width": 2},
+        },
+        "text": [f"{100.0 * share:.0f} %" for share in pairs.share],
+        "textposition": "top center",
+        "hovertext": [
+            f"tooth {tooth:.0f} on {ring:.0f}: {force:.3g} N, {100.0 * share:.1f} % of all"
+            + (f", {pressure:.4g} MPa" if np.isfinite(pressure) else "")
+            for tooth, ring, force, share, pressure in zip(
+                pairs.tooth, pairs.ring_tooth, pairs.force, pairs.share, pairs.pressure, strict=True
+            )
+        ],
+        "hoverinfo": "text",
+    }
+    return [tension, forces]

@@ -11,8 +11,9 @@ from nicegui import app, ui
 from swgpar.api.designs import new
 from swgpar.app.access import TokenGate
 from swgpar.app.jobs import JobQueue
-from swgpar.app.page import AppState, Page
+from swgpar.app.page import Page
 from swgpar.app.plane_state import PlaneWorker
+from swgpar.app.state import AppState
 from swgpar.app.workspace import Workspace
 from swgpar.errors import InputError
 
@@ -28,12 +29,18 @@ STYLE = """
 .swgpar-form { width: 330px; max-height: calc(100vh - 80px); overflow-y: auto; flex: none }
 .swgpar-section { flex: 1 1 400px; min-width: 0 }
 .swgpar-plot { height: calc(100vh - 190px); min-height: 320px }
+.swgpar-half { height: calc(50vh - 115px); min-height: 240px }
+.body--dark .text-negative { color: #ff8a80 !important }
 .swgpar-answers { width: 340px; flex: none }
+.swgpar-view { border: 0 }
+.swgpar-search { width: min(90vw, 900px); max-width: none }
+.swgpar-text { max-height: 60vh; overflow: auto; user-select: all }
 .swgpar-log { white-space: pre-wrap; font-family: monospace; font-size: 11px }
 @media (max-width: 1000px) {
   .swgpar-columns { flex-wrap: wrap }
   .swgpar-form, .swgpar-answers, .swgpar-section { width: 100%; max-height: none; flex: 1 1 100% }
   .swgpar-plot { height: 60vh }
+  .swgpar-half { height: 40vh }
   .swgpar-section { order: -1 }
 }
 """
@@ -68,11 +75,15 @@ def open_workspace(source: Path) -> Workspace:
         raise InputError(f"{source} is not there: give a folder or a design file")
     workspace = Workspace(folder)
     workspace.bring_back()
-    if source.is_file() and source.stem not in workspace.variants:
-        workspace.open(source)
+    if source.is_file():
+        if source.stem not in workspace.variants:
+            workspace.open(source)
+        workspace.shown = source.stem
+    else:
+        workspace.open_all()
     if not workspace.variants:
         workspace.add("drive", new(ratio=100.0, diameter=50.8, torque=30.0))
-    workspace.shown = workspace.shown or sorted(workspace.variants)[0]
+        workspace.keep()
     return workspace
 
 
@@ -86,7 +97,7 @@ def serve(source: Path, port: int | None = None, *, show: bool = True) -> None:
     worker = PlaneWorker()
     app.on_shutdown(worker.close)
     state = AppState(workspace, JobQueue(workspace.folder), worker)
-    worker.want(state.variant.design)
+    worker.want([state.variant.design])
     results = workspace.folder / RESULTS
     results.mkdir(exist_ok=True)
     app.add_static_files(f"/{RESULTS}", results)

@@ -9,12 +9,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import tomli_w
-
 from swgpar.api.ratings import load_rated_design
 from swgpar.api.runs import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
+from swgpar.input.commented_file import commented_toml
 from swgpar.input.quantities import show
 from swgpar.input.toml_file import apply_overrides, read_toml
 from swgpar.results.atomic import write_file
@@ -55,16 +54,21 @@ class Variant:
     """A design under a name, and its former and later states.
 
     before, after : designs that undo and redo lead to, the nearest one last
+    dragged : key that a slider changes while it moves; one step of undo is its whole way
     """
 
     name: str
     design: DriveDesign
     before: list[DriveDesign] = field(default_factory=list)
     after: list[DriveDesign] = field(default_factory=list)
+    dragged: str = ""
 
-    def change(self, values: Mapping[str, Any]) -> None:
-        """Set keys of the design; a value of None leaves the key out. Raises InputError, and keeps
-        the design, where the values do not fit."""
+    def change(self, values: Mapping[str, Any], *, dragged: str = "") -> None:
+        """Set keys of the design; a value of None leaves the key, or a section, out. Raises
+        InputError, and keeps the design, where the values do not fit.
+
+        dragged : key that a slider goes on changing
+        """
         table = self.design.model_dump(exclude_unset=True)
         for key in [key for key, value in values.items() if value is None]:
             *sections, name = key.split(".")
@@ -76,9 +80,10 @@ class Variant:
         changed = drive_of(table, given)
         if changed.model_dump() == self.design.model_dump():
             return
-        self.before = [*self.before[1 - UNDONE :], self.design]
+        if not dragged or dragged != self.dragged:
+            self.before = [*self.before[1 - UNDONE :], self.design]
         self.after.clear()
-        self.design = changed
+        self.design, self.dragged = changed, dragged
 
     def undo(self) -> bool:
         """Go back by one change; whether there was one."""
@@ -92,13 +97,13 @@ class Variant:
         if not source:
             return False
         other.append(self.design)
-        self.design = source.pop()
+        self.design, self.dragged = source.pop(), ""
         return True
 
     @property
     def text(self) -> str:
-        """Its design file."""
-        return tomli_w.dumps(self.design.model_dump(exclude_unset=True, exclude_none=True))
+        """Its design file, with the meaning of every key."""
+        return commented_toml(self.design)
 
 
 class Workspace:
@@ -106,17 +111,32 @@ class Workspace:
     `KEPT`, so that a server that is killed loses none.
 
     folder : resolved;  variants : by name;  shown : name of the one that is shown
+    beside : name of the one that is compared with it, empty without one
     """
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder.resolve()
         self.variants: dict[str, Variant] = {}
-        self.shown = ""
+        self.shown = self.beside = ""
 
     @property
     def variant(self) -> Variant:
         """The one that is shown."""
         return self.variants[self.shown]
+
+    @property
+    def other(self) -> Variant | None:
+        """The one beside it."""
+        return self.variants.get(self.beside)
+
+    def free_name(self, stem: str) -> str:
+        """A name that no variant has, from letters of another name."""
+        stem, number = re.sub(r"[^A-Za-z0-9_-]", "_", stem)[:50] or "design", 2
+        if stem not in self.variants and NAME.fullmatch(stem):
+            return stem
+        while f"{stem}_{number}" in self.variants:
+            number += 1
+        return f"{stem}_{number}"
 
     def add(self, name: str, design: DriveDesign) -> Variant:
         """A new variant, which is shown. Raises InputError where the name is taken or not
@@ -142,6 +162,15 @@ class Workspace:
         for path in sorted((self.folder / KEPT).glob("*.toml")):
             with suppress(InputError):
                 self.open(path)
+
+    def open_all(self) -> None:
+        """Open the designs of drives in the folder; other files, links and names that are not
+        allowed are left. The first variant is shown."""
+        for path in sorted(self.folder.glob("*.toml")):
+            if path.stem not in self.variants and not path.is_symlink():
+                with suppress(InputError):
+                    self.open(path)
+        self.shown = min(self.variants, default="")
 
     def save(self, *, overwrite: bool = False) -> Path:
         """Write the variant that is shown to NAME.toml. Raises OutputError where there is such a

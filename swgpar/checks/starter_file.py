@@ -10,8 +10,7 @@ from swgpar.checks.starter_teeth import RIM
 from swgpar.checks.starter_torques import torque_text
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import printable
-from swgpar.input.quantities import Section
-from swgpar.input.toml_file import toml_value
+from swgpar.input.commented_file import section_lines
 
 SOURCES = "docs/howto/own_drive.md, Proportions"
 """Where the numbers of the sources are."""
@@ -68,25 +67,3 @@ def _sources(request: Request) -> dict[str, str]:
             f"wall of {WALL:g} rims: public drives have 0.6 to 1"
         )
     return sources
-
-
-def section_lines(
-    title: str, section: Section, content: dict[str, Any], sources: dict[str, str]
-) -> list[str]:
-    """Lines of a section: its source, its plain keys with the texts of their fields, then the
-    sections in it."""
-    tables = {key: value for key, value in content.items() if isinstance(value, dict)}
-    entries = {
-        key: f"{key} = {toml_value(value)}" for key, value in content.items() if key not in tables
-    }
-    width = max(map(len, entries.values()))
-    fields = type(section).model_fields
-    lines = [
-        "",
-        f"[{title}]",
-        *(f"# {source}" for source in [sources.get(title)] if source),
-        *(f"{entry:{width}s}  # {fields[key].description}" for key, entry in entries.items()),
-    ]
-    for key, value in tables.items():
-        lines += section_lines(f"{title}.{key}", getattr(section, key), value, sources)
-    return lines

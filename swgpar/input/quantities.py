@@ -106,6 +106,32 @@ def unit_of_key(design: BaseModel, key: str) -> str:
     return unit_of(field) if field is not None else ""
 
 
+def plain_type(annotation: Any) -> Any:
+    """The type of a key that may be left out, without None; of a choice of types the choice."""
+    others = [each for each in get_args(annotation) if each is not type(None)]
+    return others[0] if type(None) in get_args(annotation) and len(others) == 1 else annotation
+
+
+def limits_of(field: FieldInfo) -> dict[str, Any]:
+    """Limits of the numbers of a field, as declared with `quantity`: any of ``gt``, ``ge``, ``lt``,
+    ``le``."""
+    kinds = {
+        "ge": annotated_types.Ge,
+        "gt": annotated_types.Gt,
+        "le": annotated_types.Le,
+        "lt": annotated_types.Lt,
+    }
+    of_items = [
+        limit for item in get_args(field.annotation) for limit in getattr(item, "__metadata__", ())
+    ]
+    return {
+        name: getattr(limit, name)
+        for limit in [*field.metadata, *of_items]
+        for name, kind in kinds.items()
+        if isinstance(limit, kind)
+    }
+
+
 def allowed(field: FieldInfo, *, smallest: bool = False) -> str:
     """Return the allowed range of a field as words, for example ``allowed above 0 to 100000 mm``.
 
@@ -114,18 +140,11 @@ def allowed(field: FieldInfo, *, smallest: bool = False) -> str:
     """
     least, largest = map(show, magnitudes(unit_of(field)))
     lower, upper = f"-{largest}", largest
-    of_items = [
-        limit for item in get_args(field.annotation) for limit in getattr(item, "__metadata__", ())
-    ]
-    for limit in [*field.metadata, *of_items]:
-        if isinstance(limit, annotated_types.Ge):
-            lower = show(limit.ge)
-        elif isinstance(limit, annotated_types.Gt):
-            lower = f"above {show(limit.gt)}"
-        elif isinstance(limit, annotated_types.Le):
-            upper = show(limit.le)
-        elif isinstance(limit, annotated_types.Lt):
-            upper = f"below {show(limit.lt)}"
+    for name, limit in limits_of(field).items():
+        if name in ("ge", "gt"):
+            lower = show(limit) if name == "ge" else f"above {show(limit)}"
+        else:
+            upper = show(limit) if name == "le" else f"below {show(limit)}"
     if smallest:
         lower = {"above 0": least, "0": f"0 and {least}"}.get(
             lower, f"{lower} to -{least}, 0 and {least}"

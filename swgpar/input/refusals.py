@@ -11,7 +11,15 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
-from swgpar.input.quantities import MAGNITUDE, WHOLE_SECTION, Section, allowed, show, show_key
+from swgpar.input.quantities import (
+    MAGNITUDE,
+    WHOLE_SECTION,
+    Section,
+    allowed,
+    plain_type,
+    show,
+    show_key,
+)
 
 RANGE_FINDINGS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
 """Kinds of pydantic's findings for numbers beyond the limits of their field."""
@@ -139,7 +147,7 @@ def _bad_section(field: FieldInfo, kind: str, key: str, value: Any) -> str:
 
 def _expected(field: FieldInfo) -> tuple[str, str]:
     """Noun for the values of a field, and the words that say which are allowed."""
-    kind = _required(field.annotation)
+    kind = plain_type(field.annotation)
     if kind is bool:
         return "true or false", "allowed true or false"
     if kind in (int, float):
@@ -151,12 +159,6 @@ def _expected(field: FieldInfo) -> tuple[str, str]:
     if kind is str:
         return "a text", f"allowed {field.description}"
     return "a text", f"allowed {_choices(getattr(kind, '__args__', ()))}"
-
-
-def _required(kind: Any) -> Any:
-    """The type of a key that may be left out, without None."""
-    others = [each for each in get_args(kind) if each is not type(None)]
-    return others[0] if type(None) in get_args(kind) and len(others) == 1 else kind
 
 
 def _bad_value(field: FieldInfo, kind: str, key: str, value: Any) -> str:

@@ -14,6 +14,7 @@ from swgpar import log, watch
 from swgpar.input.arguments import given_path
 from swgpar.input.toml_file import to_toml
 from swgpar.optimisation.bounds import at_bounds
+from swgpar.optimisation.files import BEST, DESIGNS, REPORT, TABLE
 from swgpar.optimisation.problem import Evaluation, Problem, make_problem
 from swgpar.optimisation.report import make_report
 from swgpar.optimisation.result import OptimisationResult
@@ -25,10 +26,6 @@ from swgpar.results.atomic import agreed, on_all, write_from_root
 from swgpar.results.lock import releasing
 from swgpar.results.table import format_csv
 from swgpar.studies.many_runs import claim_folder
-
-TABLE, REPORT, BEST, DESIGNS = "optimise.csv", "optimise.html", "best", "evaluation_*.toml"
-"""Names in the folder: all evaluations, the report, the folder of the winning design files, and
-these."""
 
 SCREEN = " screen"
 """End of the name of the search on the cheaper model."""

@@ -74,7 +74,7 @@ def section_of_cut(cut: pyvista.PolyData, at: np.ndarray, box: Box) -> SectionVi
 class PlaneBody:
     """A whole deformed body of a plane drive.
 
-    points : (n, 2) mm;  quads : (m, 4);  mises : (n,) MPa
+    points : (n, 2) mm;  quads : (m, 4);  mises : (n,) MPa, or another field of the nodes
     """
 
     points: np.ndarray
@@ -107,13 +107,27 @@ class PlaneBody:
         if not reach.any():
             return None
         kept, index = np.unique(self.quads[reach], return_inverse=True)
-        places = points[kept]
-        _, first, same = np.unique(
-            np.rint(places / SAME_PLACE), axis=0, return_index=True, return_inverse=True
-        )
-        quads = same.ravel()[index].reshape(-1, 4)
-        places, mises = places[first], self.mises[kept][first]
-        sides = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2))
-        edges, count = np.unique(sides, axis=0, return_counts=True)
+        first, quads = _joined(points[kept], index.reshape(-1, 4))
+        places, mises = points[kept][first], self.mises[kept][first]
         triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
-        return SectionView(places, triangles, mises, places[edges[count == 1]])
+        return SectionView(places, triangles, mises, places[_free_edges(quads)])
+
+    def surface(self) -> np.ndarray:
+        """Nodes (n,) on its surface."""
+        first, quads = _joined(self.points, self.quads)
+        return first[np.unique(_free_edges(quads))]
+
+
+def _joined(points: np.ndarray, quads: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Of nodes (n, 2) mm at one place the first, (k,), and the elements (m, 4) with these alone."""
+    _, first, same = np.unique(
+        np.rint(points / SAME_PLACE), axis=0, return_index=True, return_inverse=True
+    )
+    return first, same.ravel()[quads]
+
+
+def _free_edges(quads: np.ndarray) -> np.ndarray:
+    """Edges (k, 2) that one element alone has."""
+    sides = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2))
+    edges, count = np.unique(sides, axis=0, return_counts=True)
+    return edges[count == 1]

@@ -15,7 +15,7 @@ from urllib.request import urlopen
 
 import pytest
 
-from support.paths import DESIGN
+from support.paths import DESIGN, RECIPE
 
 CHROMIUM = shutil.which("chromium")
 sync_api = pytest.importorskip("playwright.sync_api")
@@ -57,7 +57,11 @@ def page() -> Iterator[sync_api.Page]:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("workspace")
-    shutil.copy(DESIGN, folder / "one.toml")
+    text = DESIGN.read_text(encoding="utf-8").replace("rotation = 6.0", "rotation = 0.0")
+    (folder / "one.toml").write_text(text.replace("fields = false", "fields = true"))
+    shutil.copy(RECIPE, folder / "tiny.toml")
+    # a name that would be a script in a page, of a design and of a search
+    (folder / "<img src=x onerror=alert(1)>.toml").write_text("[optimise]\n", encoding="utf-8")
     return folder
 
 
@@ -68,6 +72,15 @@ def served(folder: Path, page: sync_api.Page) -> Iterator[Served]:
     page.wait_for_selector(".js-plotly-plot", timeout=SOON)
     yield served
     served.kill()
+
+
+def job(page: sync_api.Page, text: str) -> sync_api.Locator:
+    return page.locator(".swgpar-job").filter(has_text=text)
+
+
+def choose(page: sync_api.Page, label: str, option: str) -> None:
+    page.get_by_label(label, exact=True).click()
+    page.get_by_role("option", name=option, exact=True).click()
 
 
 def enter(page: sync_api.Page, key: str, text: str) -> None:
@@ -104,6 +117,45 @@ def test_a_change_a_wrong_value_and_a_killed_server(
         again.kill()
     assert (folder / "variants" / "one_2.toml").exists()
     assert "module = 1.02" in (folder / "variants" / "one.toml").read_text(encoding="utf-8")
+
+
+def test_a_cup_job_a_cancelled_one_two_variants_and_files(
+    page: sync_api.Page, served: Served, folder: Path
+) -> None:
+    """The cup runs to its end on two ranks while the page is loaded anew, and its view opens; a job
+    is cancelled; a copy stands beside its source; files are saved and exported."""
+    alerts: list[str] = []
+    page.on("dialog", lambda dialog: alerts.append(dialog.message))
+    choose(page, "mesh", "tiny.toml")
+    page.get_by_role("button", name="run", exact=True).click()
+    sync_api.expect(job(page, "1: runs")).to_be_visible(timeout=SOON)
+    assert "mpirun -n 2 swgpar run jobs/1.toml --mesh tiny.toml" in page.content()
+    page.get_by_role("button", name="rate", exact=True).click()
+    job(page, "2: waits").get_by_role("button", name="cancel").click()
+    sync_api.expect(job(page, "2: cancelled")).to_be_visible(timeout=SOON)
+    page.reload()
+    # two variants
+    page.get_by_role("button", name="copy", exact=True).click()
+    sync_api.expect(page.get_by_label("beside")).to_have_value("one", timeout=SOON)
+    enter(page, "drive.addendum_coef", "0.59")
+    changes = page.locator(".swgpar-changes")
+    sync_api.expect(changes).to_contain_text("drive.addendum_coef", timeout=SOON)
+    sync_api.expect(page.locator(".js-plotly-plot")).to_have_count(2, timeout=SOON)
+    name = page.get_by_label("variant").input_value()
+    # files
+    page.get_by_role("button", name="save", exact=True).click()
+    sync_api.expect(page.get_by_text(f"written {name}.toml")).to_be_visible(timeout=SOON)
+    assert "# addendum of gears without their own" in (folder / f"{name}.toml").read_text()
+    sync_api.expect(job(page, "1: finished")).to_be_visible(timeout=SOON)
+    page.locator(".swgpar-export").click()
+    page.get_by_text("DXF", exact=True).click()
+    sync_api.expect(job(page, "3: finished")).to_be_visible(timeout=SOON)
+    assert list((folder / "results" / f"{name}_3").glob("*.dxf"))
+    # the view of the report
+    job(page, "1: finished").get_by_role("button", name="3D").click()
+    frame = page.frame_locator("iframe.swgpar-view")
+    sync_api.expect(frame.locator("#scene canvas")).to_be_visible(timeout=SOON)
+    assert not alerts
 
 
 def test_the_page_is_closed_without_the_token(served: Served, page: sync_api.Page) -> None:

@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import dataclasses
+import json
+import re
+import shutil
 import time
+import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,16 +17,21 @@ import numpy as np
 import pytest
 
 import swgpar
-from support.paths import DESIGN, DRIVERS
+from support.paths import DESIGN, DRIVERS, RECIPE
 from swgpar.app.access import COOKIE, TokenGate
-from swgpar.app.fields import FormField, form_fields
+from swgpar.app.fields import FormField, form_fields, is_optional, missing_sections
 from swgpar.app.jobs import JobQueue, JobState
-from swgpar.app.plane_state import plane_table
+from swgpar.app.plane_state import plane_table, solve_plane
 from swgpar.app.section_picture import section_picture
 from swgpar.app.section_plot import section_figure
-from swgpar.app.workspace import Variant, Workspace
+from swgpar.app.state import recipes_of
+from swgpar.app.workspace import Variant, Workspace, drive_of
+from swgpar.checks.clearance import clearances
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
+from swgpar.input.differences import differences
+from swgpar.optimisation.tried_designs import read_tried
+from swgpar.rating.stored_sheet import StoredRow, read_sheet
 
 ADDENDUM = "drive.addendum_coef"
 DESIGNS = ["cup_45deg.toml", "three_lobes.toml", "rating.toml"]
@@ -73,7 +83,7 @@ def test_gaps_of_the_picture_are_those_of_the_rigid_teeth(name: str, angle: floa
     """None is smaller than the clearance of a turn; near it there is one at each angle."""
     design = drive(DRIVERS / name)
     picture = section_picture(design, angle)
-    smallest = picture.clearance.nearest.distance
+    smallest = clearances(design)[0].nearest.distance
     pitch = 2.0 * np.pi / design.drive.teeth_fs
     assert smallest - 1e-9 <= picture.gaps.gap.min() < smallest + 0.05 * design.drive.module * pitch
     # flanks are drawn where their gaps are taken: on the outline of the spline
@@ -99,7 +109,7 @@ def test_an_overlap_is_marked() -> None:
     design = drive(DRIVERS / "cup_45deg.toml")
     tight = design.with_values({"ring_gear.c_P": 1.01})
     picture = section_picture(tight)
-    assert picture.clearance.overlaps
+    assert clearances(tight)[0].overlaps
     marks = section_figure(tight, picture)["data"][-1]
     assert "x" in marks["marker"]["symbol"]
     assert any("overlap" in text for text in marks["text"])
@@ -239,3 +249,112 @@ def test_other_requests_are_refused(scope: dict[str, Any]) -> None:
     assert answered(scope)[0]["status"] == 403
     (closed,) = answered({"type": "websocket", **scope})
     assert closed["type"] == "websocket.close"
+
+
+def test_a_slider_is_one_step_of_undo() -> None:
+    variant = Variant("one", drive())
+    before = variant.design.drive.addendum_coef
+    for value in (0.58, 0.57, 0.56):
+        variant.change({ADDENDUM: value}, dragged=ADDENDUM)
+    assert variant.undo() and variant.design.drive.addendum_coef == before
+    assert not variant.undo()
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_a_saved_design_has_the_meaning_of_its_keys_and_is_the_same(name: str) -> None:
+    variant = Variant("one", drive(DRIVERS / name))
+    assert drive_of(tomllib.loads(variant.text), {}).model_dump() == variant.design.model_dump()
+    assert re.search(r"^module = \S+ +# module \(mm\)$", variant.text, re.MULTILINE)
+
+
+def test_a_section_is_added_and_left_out() -> None:
+    """The housing needs its thickness, the stiffness nothing."""
+    variant = Variant("one", drive())
+    missing = {one.name: one for one in missing_sections(variant.design)}
+    assert [one.key for one in missing["ring_gear.housing"].required] == [
+        "ring_gear.housing.thickness"
+    ]
+    assert missing["stiffness"].required == [] and not is_optional(variant.design, "drive")
+    variant.change({"ring_gear.housing": {"thickness": 4.0}})
+    assert variant.design.ring_gear.housing.thickness == 4.0
+    assert "ring_gear.housing" not in {one.name for one in missing_sections(variant.design)}
+    assert is_optional(variant.design, "ring_gear.housing")
+    variant.change({"ring_gear.housing": None})
+    assert variant.design.ring_gear.housing is None
+
+
+def test_keys_that_differ() -> None:
+    first = drive()
+    second = first.with_values({ADDENDUM: 0.55, "ring_gear.housing.thickness": 4.0})
+    found = {one.key: (one.first, one.second) for one in differences(first, second)}
+    assert found[ADDENDUM] == (first.drive.addendum_coef, 0.55)
+    assert found["ring_gear.housing.thickness"] == (None, 4.0)
+    assert all(key == ADDENDUM or key.startswith("ring_gear.housing") for key in found)
+    assert differences(first, first) == []
+
+
+@pytest.mark.parametrize(
+    ("value", "sense", "limit", "used"),
+    [(50.0, "at most", 200.0, 0.25), (4.0, "at least", 2.0, 0.5), (3.0, "", None, None)],
+)
+def test_share_of_a_limit(
+    tmp_path: Path, value: float, sense: str, limit: float | None, used: float | None
+) -> None:
+    row = dict.fromkeys((field.name for field in dataclasses.fields(StoredRow)), "")
+    row |= {"verdict": "passes", "value": value, "limit": limit, "sense": sense, "error": None}
+    sheet = {"format": 1, "title": "one", "headline": "passes", "rows": [row]}
+    (tmp_path / "rating.json").write_text(json.dumps(sheet), encoding="utf-8")
+    assert read_sheet(tmp_path).rows[0].used == used
+    (tmp_path / "rating.json").write_text("{}", encoding="utf-8")
+    with pytest.raises(OutputError, match="cannot be read"):
+        read_sheet(tmp_path)
+
+
+def test_tried_designs_of_a_search(tmp_path: Path) -> None:
+    """Each one is the design file with what is set and with its variables."""
+    (tmp_path / "optimise.csv").write_text(
+        "rank,evaluation,wave_generator.beta,wave_generator.C,status,best,mean.fs_vm\n"
+        "1,3,44.5,0.996,feasible,1,230.5\n,4,50.0,0.999,failed,0,\n",
+        encoding="utf-8",
+    )
+    tried = read_tried(DRIVERS / "optimise" / "arcs.toml", tmp_path)
+    assert tried.objectives == ("mean.fs_vm",)
+    best, failed = tried.designs
+    assert best.quantities["mean.fs_vm"] == 230.5 and failed.quantities == {}
+    design = drive_of(tried.table(best), {})
+    assert design.wave_generator.type == "arcs" and design.wave_generator.beta == 44.5
+
+
+def test_the_loaded_state_is_that_of_the_interface() -> None:
+    """Largest tension, balance of shares, and forces of the pairs, in the whole drive."""
+    table = plane_table(drive(DESIGN))
+    state = solve_plane(table)
+    assert state.reason == "" and state.outline is not None
+    values = {one.name: one.value for one in state.answers}
+    outline = state.outline
+    assert outline.s1.max() == pytest.approx(
+        max(values["largest.fs_s1"], values["largest.rg_s1"]), rel=1e-6
+    )
+    assert outline.pairs.share.sum() == pytest.approx(1.0)
+    assert len(outline.pairs.force) == values["sharing.pairs"]
+    assert outline.pairs.share.max() == pytest.approx(values["sharing.largest_force_share"])
+    # what the state draws lies on the teeth
+    radius = np.hypot(*outline.pairs.place.T)
+    design = drive(DESIGN)
+    assert (np.abs(radius - design.teeth("ring_gear").r_pitch) < 3.0 * design.drive.module).all()
+
+
+def test_a_folder_shows_its_designs(tmp_path: Path) -> None:
+    """Not those with a hostile name, links, gear trains and other files."""
+    text = DESIGN.read_text(encoding="utf-8")
+    for name in ("two", "one", "<img src=x onerror=alert(1)>"):
+        (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "link.toml").symlink_to(DESIGN)
+    shutil.copy(DRIVERS / "gear_pair.toml", tmp_path)
+    shutil.copy(RECIPE, tmp_path)
+    workspace = Workspace(tmp_path)
+    workspace.open_all()
+    assert sorted(workspace.variants) == ["one", "two"] and workspace.shown == "one"
+    assert recipes_of(tmp_path) == [RECIPE.name]
+    assert workspace.free_name("one") == "one_2"
+    assert workspace.free_name("<b>") == "_b_"

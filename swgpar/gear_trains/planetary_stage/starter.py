@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from swgpar.checks.starter_file import section_lines
 from swgpar.errors import InputError
 from swgpar.gear_trains.planetary_stage.design import PlanetaryStageDesign
+from swgpar.input.commented_file import section_lines
 from swgpar.input.quantities import show
 from swgpar.input.require import require
 
@@ -95,7 +95,7 @@ def starter(
         f"#   swgpar run {name} --out results/{name.removesuffix('.toml')}",
     ]
     for section, content in table.items():
-        lines += section_lines(section, getattr(design, section), content, {})
+        lines += section_lines(section, getattr(design, section), content)
     return design, "\n".join(lines) + "\n"
 
 

@@ -1,0 +1,98 @@
+"""Seconds of the app on this machine, from a change of a key to the picture and to the loaded state
+of the plane model, in a headless browser."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from playwright.sync_api import Page, sync_playwright
+
+CHANGES = 8
+"""Changes of each key; the first two warm up and are left out."""
+
+KEYS = {"load.torque": -0.004, "drive.addendum_coef": -0.002}
+"""Keys that are changed, and the relative size of a change: the load, and all teeth."""
+
+OBSERVE = """
+() => {
+  window.seen = {};
+  const plot = document.querySelector('.js-plotly-plot');
+  plot.on('plotly_afterplot', () => { window.seen.picture ||= performance.now(); });
+  new MutationObserver(() => {
+    const busy = document.querySelector('[data-plane-state]')?.dataset.planeState;
+    if (busy === 'computed' && window.seen.begun) window.seen.answer ||= performance.now();
+    if (busy === 'busy') window.seen.begun = true;
+  }).observe(document.body, { subtree: true, childList: true, attributes: true });
+}"""
+
+
+def serve(folder: Path) -> tuple[subprocess.Popen[str], str]:
+    """The server of a folder, and its address."""
+    command = [sys.executable, "-P", "-m", "swgpar.cli", "app", str(folder), "--no-browser"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=dict(os.environ))
+    assert process.stdout is not None
+    return process, process.stdout.readline().split()[-1]
+
+
+def seconds(page: Page, key: str, text: str) -> tuple[float, float]:
+    """From the change of a key to the picture and to the answer, s; nan where the picture stays."""
+    page.evaluate("window.seen = {}")
+    page.evaluate(
+        """([key, text]) => {
+          const field = document.querySelector(`input[data-key="${key}"]`);
+          field.value = text;
+          field.dispatchEvent(new Event('input'));
+          window.seen.start = performance.now();
+          field.dispatchEvent(new Event('change'));
+        }""",
+        [key, text],
+    )
+    page.wait_for_function("window.seen.answer", timeout=60_000)
+    seen = page.evaluate("window.seen")
+    picture, answer = (
+        1e-3 * (seen.get(name, math.nan) - seen["start"]) for name in ("picture", "answer")
+    )
+    return picture, answer
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("designs", nargs="+", type=Path)
+    given = parser.parse_args()
+    print("| design | key | change to picture, s | change to plane state, s |\n|---|---|---|---|")
+    with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
+        browser = playwright.chromium.launch(
+            executable_path=shutil.which("chromium"), args=["--no-sandbox"]
+        )
+        for design in given.designs:
+            shutil.copy(design, folder)
+            process, address = serve(Path(folder) / design.name)
+            try:
+                page = browser.new_page(viewport={"width": 1300, "height": 850})
+                page.goto(address)
+                page.wait_for_selector(".js-plotly-plot", timeout=60_000)
+                page.wait_for_selector('[data-plane-state="computed"]', timeout=20_000)
+                page.evaluate(OBSERVE)
+                for key, step in KEYS.items():
+                    first = float(page.locator(f'input[data-key="{key}"]').input_value())
+                    values = [first * (1.0 + step * (k + 1)) for k in range(CHANGES)]
+                    found = [seconds(page, key, f"{value:.8g}") for value in values][2:]
+                    picture, answer = (statistics.median(one) for one in zip(*found, strict=True))
+                    print(f"| {design.stem} | `{key}` | {picture:.2f} | {answer:.2f} |", flush=True)
+                page.close()
+            finally:
+                process.terminate()
+                process.wait()
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,130 @@
+"""The queue: runs, ratings, files of other programs, studies and searches of the folder."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from nicegui import ui
+
+from swgpar.app.jobs import AppJob, JobState
+from swgpar.app.search_panel import show_search
+from swgpar.app.state import AppState, files_of, most_ranks, recipes_of
+from swgpar.errors import SwgparError
+from swgpar.results.folder import FIELD_INDEX
+
+MESHES = ("coarse", "forces", "medium", "full", "plane_coarse", "plane")
+"""Recipes of the package that are offered; those of the folder come after them."""
+
+LAST = 8
+"""Jobs that are shown."""
+
+FORMATS = ("step", "dxf", "csv", "teeth")
+"""Formats of `swgpar export` that a design has."""
+
+
+class JobsPanel:
+    """Buttons that put jobs into the queue, and the queue."""
+
+    def __init__(self, state: AppState) -> None:
+        self.state = state
+        with ui.row().classes("items-center"):
+            ui.button("run", on_click=self._run)
+            ui.button("rate", on_click=lambda: self._design("rate"))
+            with ui.dropdown_button("export", auto_close=True).classes("swgpar-export"):
+                for name in FORMATS:
+                    item = ui.item(name.upper() if name != "teeth" else "points of the teeth")
+                    item.on_click(lambda name=name: self._design("export", "--format", name))
+            meshes = [*MESHES, *recipes_of(state.workspace.folder)]
+            self.mesh = ui.select(meshes, value=MESHES[0], label="mesh").props("dense")
+            self.ranks = ui.number("ranks", value=min(2, most_ranks()), min=1, max=most_ranks())
+            self.ranks.props("dense").classes("w-16")
+        self.files()
+        self.jobs()
+        self.dialogs = ui.element("div")  # the queue is drawn anew while they are open
+
+    @ui.refreshable_method
+    def files(self) -> None:
+        """Studies and searches of the folder."""
+        folder = self.state.workspace.folder
+        for command, section in (("study", "study"), ("optimise", "optimise")):
+            for path in files_of(folder, section):
+                with ui.row().classes("items-center"):
+                    ui.label(f"{command} {path.name}").classes("text-caption")
+                    start = partial(self._file, command, path.name)
+                    ui.button("start", on_click=start).props("flat dense")
+
+    @ui.refreshable_method
+    def jobs(self) -> None:
+        """The last jobs, with their commands and states."""
+        for job in reversed(self.state.queue.jobs[-LAST:]):
+            with ui.card().tight().classes("w-full q-pa-sm swgpar-job"):
+                self._job(job)
+
+    def _job(self, job: AppJob) -> None:
+        queue = self.state.queue
+        ui.label(f"{job.number}: {job.state}").classes("text-bold")
+        ui.label(job.typed).classes("text-caption")
+        if job.reason:
+            ui.label(job.reason).classes("text-negative text-caption")
+        if job.state == JobState.RUNS:
+            ui.label(queue.last_lines(job, 3)).classes("swgpar-log")
+        with ui.row().classes("items-center"):
+            if job.page and (queue.folder / job.page).is_file():
+                ui.link("report", f"/{job.page}", new_tab=True)
+                if job.command == "run" and (queue.folder / job.out / FIELD_INDEX).exists():
+                    ui.button("3D", on_click=lambda: self._view(job)).props("flat dense")
+            if job.command == "optimise":
+                ui.button("designs", on_click=lambda: self._designs(job)).props("flat dense")
+            if job.command == "export" and job.state == JobState.FINISHED:
+                for path in sorted((queue.folder / job.out).iterdir()):
+                    ui.link(path.name, f"/{job.out}/{path.name}").props("download")
+            if job.state in (JobState.WAITS, JobState.RUNS):
+                ui.button("cancel", on_click=lambda: self._cancel(job)).props("flat dense")
+            elif job.continued and job.state != JobState.FINISHED:
+                ui.button("continue", on_click=lambda: self._go_on(job)).props("flat dense")
+
+    def _view(self, job: AppJob) -> None:
+        """The view of the report: turned, cut, with values under the pointer."""
+        card = "w-full h-full"
+        with self.dialogs, ui.dialog().props("maximized") as dialog, ui.card().classes(card):
+            ui.button("close", on_click=dialog.close).props("flat dense")
+            frame = ui.element("iframe").classes("w-full grow swgpar-view")
+            frame.props["src"] = f"/{job.page}#scene"
+            frame.props["title"] = f"deformed drive of job {job.number}"
+        dialog.open()
+
+    def _designs(self, job: AppJob) -> None:
+        with self.dialogs:
+            show_search(self.state, job)
+
+    def _run(self) -> None:
+        self._design("run", "--mesh", self.mesh.value)
+
+    def _ranks(self) -> int:
+        return int(min(max(self.ranks.value or 1, 1), most_ranks()))
+
+    def _design(self, command: str, *options: str) -> None:
+        ranks = 1 if command == "export" else self._ranks()
+        try:
+            self.state.queue_design(command, options, ranks)
+        except SwgparError as error:
+            ui.notify(str(error), type="warning")
+        self.state.draw_jobs()
+
+    def _file(self, command: str, name: str) -> None:
+        out = f"results/{name.removesuffix('.toml')}_{self.state.queue.next_number}"
+        self._add([command, name, "--out", out], out)
+
+    def _go_on(self, job: AppJob) -> None:
+        self._add(job.continued, job.out, job.variant)
+
+    def _add(self, arguments: list[str], out: str, variant: str = "") -> None:
+        try:
+            self.state.queue.add(arguments, out, self._ranks(), variant)
+        except SwgparError as error:
+            ui.notify(str(error), type="warning")
+        self.state.draw_jobs()
+
+    def _cancel(self, job: AppJob) -> None:
+        self.state.queue.cancel(job)
+        self.state.draw_jobs()

@@ -1,0 +1,97 @@
+"""The section of the teeth of the variants that are shown."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from nicegui import ui
+
+from swgpar.app.section_picture import section_picture
+from swgpar.app.section_plot import section_figure
+from swgpar.app.state import AppState
+from swgpar.app.workspace import Variant
+from swgpar.checks.clearance import clearances
+
+VIEWS = {False: "gaps", True: "loaded"}
+"""What the section shows: gaps of the rigid teeth, or stress and forces of the plane model."""
+
+
+class SectionPanel:
+    """Pictures of one or two variants, the angle of the cam, and clearances."""
+
+    def __init__(self, state: AppState) -> None:
+        self.state = state
+        self.plots: list[ui.plotly] = []
+        self.pictures()
+        with ui.row().classes("w-full items-center no-wrap gap-3"):
+            self.view = ui.toggle(VIEWS, value=state.loaded, on_change=self._view)
+            self.view.props("dense no-caps size=sm")
+            ui.label("cam, °")
+            self.slider = ui.slider(min=0.0, max=360.0, step=1.0, value=state.angle_deg)
+            self.slider.props('label aria-label="angle of the cam"').classes("grow")
+            self.slider.on_value_change(lambda event: self._turned(event.value))
+            ui.button("play", on_click=self._play).props("flat dense")
+        self.clearance()
+
+    def draw(self) -> None:
+        """Draw the pictures, others where variants come or go."""
+        if len(self.plots) != len(self.state.shown):
+            self.pictures.refresh()
+            return
+        for plot, variant in zip(self.plots, self.state.shown, strict=True):
+            plot.update_figure(self._figure(variant))
+
+    def draw_states(self) -> None:
+        """Draw loaded states."""
+        if self.state.loaded:
+            self.draw()
+
+    def turn(self) -> None:
+        """Turn the cam on while it plays."""
+        if self.state.plays and not self.state.loaded:
+            self.slider.value = (self.state.angle_deg + 1.0) % 360.0
+
+    @ui.refreshable_method
+    def pictures(self) -> None:
+        """A picture of each variant."""
+        self.plots = []
+        two = len(self.state.shown) > 1
+        with ui.column().classes("w-full gap-0"):
+            for variant in self.state.shown:
+                if two:
+                    ui.label(variant.name).classes("text-bold")
+                plot = ui.plotly(self._figure(variant))
+                plot.classes("w-full swgpar-plot" + (" swgpar-half" if two else ""))
+                plot.props('role=img aria-label="section of the teeth"')
+                self.plots.append(plot)
+
+    @ui.refreshable_method
+    def clearance(self) -> None:
+        """The smallest clearance of a whole turn, with its place."""
+        for variant in self.state.shown:
+            found = clearances(variant.design)[0]
+            word = "overlap" if found.nearest.distance < 0.0 else "smallest clearance"
+            name = f"{variant.name}: " if len(self.state.shown) > 1 else ""
+            text = f"{name}{word} {abs(1e3 * found.nearest.distance):.2f} µm, {found.place}"
+            ui.label(text).classes("text-negative" if found.overlaps else "").props("role=status")
+
+    def _figure(self, variant: Variant) -> dict[str, Any]:
+        design, state = variant.design, self.state
+        if not state.loaded:
+            return section_figure(design, section_picture(design, state.angle_deg))
+        found = state.worker.state(design)
+        loaded = found.outline if found is not None else None
+        return section_figure(design, section_picture(design), loaded)
+
+    def _turned(self, angle: float) -> None:
+        self.state.angle_deg = float(angle)
+        self.draw()
+
+    def _view(self) -> None:
+        self.state.loaded = bool(self.view.value)
+        self.slider.set_enabled(not self.state.loaded)
+        for window in self.state.windows:
+            window.draw_section()
+
+    def _play(self) -> None:
+        self.state.plays = not self.state.plays

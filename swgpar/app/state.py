@@ -1,0 +1,171 @@
+"""What all windows of the app show, and what their controls do."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Protocol
+
+from swgpar.api.runs import load_mesh
+from swgpar.app.fields import FormField
+from swgpar.app.jobs import AppJob, JobQueue
+from swgpar.app.plane_state import PlaneWorker
+from swgpar.app.workspace import Variant, Workspace
+from swgpar.errors import SwgparError
+from swgpar.results.atomic import write_file
+
+SENT = 0.02
+"""Seconds in which a picture goes to the browser before the rest is drawn."""
+
+
+class Window(Protocol):
+    """A page that shows the state."""
+
+    def draw_section(self) -> None:
+        """Draw the pictures of the teeth."""
+
+    def draw_design(self) -> None:
+        """Draw all else that depends on designs."""
+
+    def draw_states(self) -> None:
+        """Draw loaded states."""
+
+    def draw_jobs(self) -> None:
+        """Draw the queue, and what follows from its results."""
+
+
+class AppState:
+    """What all windows of the app show.
+
+    workspace : variants;  queue : jobs;  worker : of plane states
+    angle_deg : of the cam;  plays : whether it turns;  loaded : whether the section shows the
+    loaded state in place of gaps
+    refused : entries that were refused and their sentences, by their keys
+    windows : that are open;  was_busy : whether they show that a state is computed
+    """
+
+    def __init__(self, workspace: Workspace, queue: JobQueue, worker: PlaneWorker) -> None:
+        self.workspace, self.queue, self.worker = workspace, queue, worker
+        self.angle_deg, self.plays, self.loaded = 0.0, False, False
+        self.refused: dict[str, tuple[Any, str]] = {}
+        self.windows: list[Window] = []
+        self.was_busy = False
+
+    @property
+    def variant(self) -> Variant:
+        """The one that is shown."""
+        return self.workspace.variant
+
+    @property
+    def shown(self) -> list[Variant]:
+        """The one that is shown, and the one beside it."""
+        other = self.workspace.other
+        return [self.variant, *([other] if other is not None else [])]
+
+    async def set(self, field: FormField, entry: Any, moves: bool = False) -> None:
+        """Take over an entry of the form; a refused one stays with its sentence.
+
+        moves : whether a slider still moves
+        """
+        try:
+            dragged = field.key if moves else ""
+            self.variant.change({field.key: field.parsed(entry)}, dragged=dragged)
+        except SwgparError as error:
+            self.refused[field.key] = entry, str(error)
+        else:
+            self.refused.clear()
+        await self.draw(keeps=not moves)
+
+    async def change(self, step: Callable[[Variant], Any]) -> str:
+        """Change the variant that is shown; the sentence that refuses it, else an empty one."""
+        try:
+            step(self.variant)
+        except SwgparError as error:
+            return str(error)
+        self.refused.clear()
+        await self.draw()
+        return ""
+
+    async def show(self, name: str, beside: str | None = None) -> None:
+        """Show a variant, and another one beside it; None keeps that."""
+        self.workspace.shown = name
+        if beside is not None:
+            self.workspace.beside = beside
+        self.refused.clear()
+        await self.draw(keeps=False)
+
+    async def draw(self, *, keeps: bool = True) -> None:
+        """Draw all that depends on designs in all windows, the sections first.
+
+        keeps : whether the variant is written into its file
+        """
+        for window in self.windows:
+            window.draw_section()
+        await asyncio.sleep(SENT)
+        if keeps:
+            self.workspace.keep()
+        self.worker.want([variant.design for variant in self.shown])
+        for window in self.windows:
+            window.draw_design()
+
+    def look_at_states(self) -> None:
+        """Take over states that have been computed."""
+        if self.worker.look() or self.was_busy != self.worker.is_busy:
+            self.was_busy = self.worker.is_busy
+            for window in self.windows:
+                window.draw_states()
+
+    def look_at_jobs(self) -> None:
+        """Start and end jobs."""
+        if self.queue.step() or self.queue.runs:
+            self.draw_jobs()
+
+    def draw_jobs(self) -> None:
+        """Draw the queue in all windows."""
+        for window in self.windows:
+            window.draw_jobs()
+
+    def queue_design(self, command: str, options: Sequence[str], ranks: int) -> AppJob:
+        """A job with the design that is shown. Raises SwgparError where it cannot begin."""
+        number = self.queue.next_number
+        name, folder = f"jobs/{number}.toml", self.workspace.folder
+        (folder / "jobs").mkdir(exist_ok=True)
+        write_file(folder / name, self.variant.text.encode())
+        out = f"results/{self.variant.name}_{number}"
+        arguments = [command, name, *options, "--out", out]
+        return self.queue.add(arguments, out, ranks, self.variant.name)
+
+
+def most_ranks() -> int:
+    """Ranks of a job: the cores of this machine."""
+    return os.cpu_count() or 1
+
+
+def files_of(folder: Path, section: str) -> list[Path]:
+    """Files of a folder that begin a search or a study: with the section [SECTION]."""
+    return [
+        path
+        for path in sorted(folder.glob("*.toml"))
+        if not path.is_symlink() and _has_section(path, section)
+    ]
+
+
+def recipes_of(folder: Path) -> list[str]:
+    """Names of mesh recipes of a folder."""
+    names = []
+    for path in sorted(folder.glob("*.toml")):
+        with suppress(SwgparError):
+            load_mesh(path)
+            names.append(path.name)
+    return names
+
+
+def _has_section(path: Path, section: str) -> bool:
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, ValueError):
+        return False
+    return any(line.strip().startswith(f"[{section}]") for line in lines)

@@ -1,0 +1,39 @@
+"""Keys in which two designs differ."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from swgpar.input.design import Design
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A key, dotted, and its values in two designs; None where a design lacks it."""
+
+    key: str
+    first: Any
+    second: Any
+
+
+def differences(first: Design, second: Design) -> list[Difference]:
+    """Keys in which two designs differ, defaults included, in the order of the first one's file.
+
+    A section that one of both lacks is named by its keys.
+    """
+    one, other = (dict(_flat(design.model_dump(), "")) for design in (first, second))
+    return [
+        Difference(key, one.get(key), other.get(key))
+        for key in [*one, *(key for key in other if key not in one)]
+        if one.get(key) != other.get(key)
+    ]
+
+
+def _flat(table: Mapping[str, Any], path: str) -> Iterator[tuple[str, Any]]:
+    for name, value in table.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{path}{name}.")
+        else:
+            yield f"{path}{name}", value
