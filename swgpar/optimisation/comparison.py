@@ -67,6 +67,11 @@ def comparison(result: OptimisationData, numbers: Sequence[int]) -> DesignCompar
     for name, words in wanted.items():
         cells = tuple(each.verdicts.get(name, each.quantities.get(name)) for each in every)
         rows.append(ComparedRow(named(name), ", ".join(words), cells))
+    further = dict.fromkeys(name for each in every for name in each.verdicts if name not in wanted)
+    rows += [
+        ComparedRow(name, "", tuple(each.verdicts.get(name, "") for each in every))
+        for name in further
+    ]
     rows.append(ComparedRow("status", "", tuple(each.status for each in every)))
     return DesignComparison(
         tuple(_head(result, n) for n in numbers), tuple(rows), result.start in numbers

@@ -21,6 +21,7 @@ from swgpar.optimisation.rated_quantities import (
     rated_quantities,
     rated_values,
     require_reachable,
+    row_of_least_margin,
 )
 from swgpar.optimisation.spec import HEADLINE, Constraint, LoadCaseSection, Wanted
 from swgpar.rating.planned_runs import make_rated_drive
@@ -39,7 +40,8 @@ class CaseOutcome:
     """What a load case of a design gives.
 
     values : by the names of quantities;  unbounded : names of those that grow with every finer mesh
-    verdicts : of rows and the headline, by the names that constraints ask for
+    verdicts : of rows and the headline, by the names that constraints ask for, and the rows that
+    have least margins
     distances : of those from what the constraints allow, by the names of the constraints
     reason : why it has failed, empty otherwise;  wall_s : seconds
     """
@@ -144,7 +146,12 @@ class RatingCase(ProblemCase):
         return CaseOutcome(
             rated_values(sheet),
             growing(sheet),
-            {one.name: str(judged_as(sheet, one.quantity)) for one in asked},
+            {one.name: str(judged_as(sheet, one.quantity)) for one in asked}
+            | {
+                f"row of {one.name}": row_of_least_margin(sheet)
+                for one in self.wanted
+                if one.quantity == LEAST_MARGIN
+            },
             {
                 f"{one.name} {one.verdict}": distance(sheet, one.quantity, Judgement(one.verdict))
                 for one in asked

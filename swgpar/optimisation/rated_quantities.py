@@ -46,18 +46,25 @@ def rated_quantities(rows: Iterable[RatingRow]) -> dict[str, Quantity]:
 def rated_values(sheet: RatingSheet) -> dict[str, float]:
     """The numbers of a sheet by name, without those that it does not have."""
     found: dict[str, float] = {}
-    margins = []
     for verdict in sheet.verdicts:
         if verdict.answer is not None and verdict.answer.value is not None:
             found[verdict.name] = verdict.answer.value
         margin = verdict.margin
         if margin is not None:
             found[f"{MARGIN_OF}{verdict.name}"] = margin
-            if verdict.judgement != Judgement.NOT_JUDGED:
-                margins.append(margin)
-    if margins:
-        found[LEAST_MARGIN] = min(margins)
+    if row := row_of_least_margin(sheet):
+        found[LEAST_MARGIN] = found[f"{MARGIN_OF}{row}"]
     return found
+
+
+def row_of_least_margin(sheet: RatingSheet) -> str:
+    """Name of the judged row that has the least margin; empty where no row has one."""
+    judged = [
+        (one.margin, one.name)
+        for one in sheet.verdicts
+        if one.margin is not None and one.judgement != Judgement.NOT_JUDGED
+    ]
+    return min(judged)[1] if judged else ""
 
 
 def growing(sheet: RatingSheet) -> frozenset[str]:

@@ -19,7 +19,13 @@ from swgpar.answers.verdict import Judgement, Limit, Sense, Verdict
 from swgpar.errors import InputError
 from swgpar.input.toml_file import to_toml
 from swgpar.optimisation.problem import make_problem
-from swgpar.optimisation.rated_quantities import LEAST_MARGIN, distance, growing, rated_values
+from swgpar.optimisation.rated_quantities import (
+    LEAST_MARGIN,
+    distance,
+    growing,
+    rated_values,
+    row_of_least_margin,
+)
 from swgpar.optimisation.spec import load_specification
 from swgpar.rating.sheet import RatedVerdict, RatingSheet
 
@@ -192,6 +198,7 @@ def test_the_least_margin_is_of_rows_that_are_judged() -> None:
         verdict("d", math.inf, AT_LEAST),
     )
     found = rated_values(rows)
+    assert row_of_least_margin(rows) == "a"
     assert found[LEAST_MARGIN] == pytest.approx(0.2) and found["margin of d"] == math.inf
     assert growing(rows) == {"c", "margin of c"}
 
