@@ -26,7 +26,7 @@ class SectionPanel:
         with ui.row().classes("w-full items-center no-wrap gap-3"):
             self.view = ui.toggle(VIEWS, value=state.loaded, on_change=self._view)
             self.view.props("dense no-caps size=sm")
-            ui.label("cam, °")
+            ui.label("cam, °").classes("text-no-wrap")
             self.slider = ui.slider(min=0.0, max=360.0, step=1.0, value=state.angle_deg)
             self.slider.props('label aria-label="angle of the cam"').classes("grow")
             self.slider.on_value_change(lambda event: self._turned(event.value))
