@@ -20,7 +20,7 @@ from swgpar.solve.discrete_problem import DiscreteProblem, ResidualInfo
 from swgpar.solve.solve_state import NewtonSettings, Phase, SolveState
 from swgpar.solve.time_limit import passed
 
-SOFT_TOLERANCE = 0.1
+SOFT_TOLERANCE = 0.03
 """Residual over contact force at which a run with softened contact ends. What it leaves is less
 than what the next share of the stiffness changes."""
 
