@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import threading
 import time
@@ -15,6 +14,7 @@ from multiprocessing.connection import wait
 from typing import TYPE_CHECKING, Any
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.results.atomic import to_json
 
 if TYPE_CHECKING:
     from swgpar.api.session import Session
@@ -194,4 +194,4 @@ class PlaneWorker:
 
 
 def _key(table: dict[str, Any]) -> str:
-    return json.dumps(table, sort_keys=True, default=str)
+    return to_json(table).decode()

@@ -11,17 +11,13 @@ from collections.abc import Callable
 
 from swgpar.petsc import PETSc, accepted_options
 
-TIGHTEST, LOOSEST = 1e-4, 0.1
-"""Bounds of GMRES's relative tolerance."""
+RTOL = 1e-2
+"""Relative tolerance of GMRES. While contacts switch, a Newton step reduces the residual tenfold at
+best; the last steps are solved as exactly as the end of Newton's iteration needs."""
 
-FORCING_SHARE = 0.5
-"""Factor of the square of the last decrease of Newton's residual that gives the tolerance between
-the bounds (Eisenstat and Walker 1996, choice 2): while contacts switch, a Newton step reduces the
-residual little, however exactly it is solved for; near the solution the iteration is quadratic."""
-
-GOAL_SHARE = 0.2
-"""Share of the residual at which Newton's iteration ends that GMRES may leave: more exactness is of
-no use to the last step."""
+GOAL_SHARE, LOOSEST = 0.2, 0.1
+"""Share of the residual at which Newton's iteration ends that GMRES leaves, and of the present one
+at most: more exactness is of no use to the last step."""
 
 MAX_ITERATIONS = 40
 """Iterations of GMRES after which a factor is made at once."""
@@ -35,16 +31,16 @@ class ReusedFactor:
 
     like : vector of the system;  multiply, solve : with the present system; with the factor
 
-    `goal` is the residual's norm that ends Newton's iteration at the latest, `norm` that of the
-    last system; `fresh` says that the factor is that of the present system, `discarded` that it is
-    to be renewed before its next use; `iterations` are those of all solves.
+    `goal` is the residual's norm that ends Newton's iteration at the latest; `fresh` says that the
+    factor is that of the present system, `discarded` that it is to be renewed before its next use;
+    `iterations` are those of all solves.
     """
 
     def __init__(self, like: PETSc.Vec, multiply: Operation, solve: Operation) -> None:
         self.fresh, self.discarded = False, True
         self.layout: tuple[int, ...] = ()
         self.iterations: list[int] = []
-        self.goal, self.norm = 0.0, 0.0
+        self.goal = 0.0
         self.fewest = MAX_ITERATIONS
         self.surplus = 0
         self.last = 0
@@ -88,11 +84,8 @@ class ReusedFactor:
     def set_tolerance(self, right: PETSc.Vec) -> None:
         """Set the tolerance by Newton's residual, the right-hand side of the present system."""
         norm = right.norm()
-        decrease = norm / self.norm if self.norm > 0.0 else 1.0
-        enough = GOAL_SHARE * self.goal / norm if norm > 0.0 else LOOSEST
-        asked = max(TIGHTEST, FORCING_SHARE * decrease**2, enough)
-        self.norm = norm
-        self.ksp.setTolerances(rtol=min(asked, LOOSEST), max_it=MAX_ITERATIONS)
+        enough = min(GOAL_SHARE * self.goal / norm, LOOSEST) if norm > 0.0 else LOOSEST
+        self.ksp.setTolerances(rtol=max(RTOL, enough), max_it=MAX_ITERATIONS)
 
     def solve(self, right: PETSc.Vec, x: PETSc.Vec) -> bool:
         """Solve the present system to the tolerance; returns whether GMRES converged."""
