@@ -82,7 +82,7 @@ def open_workspace(source: Path) -> Workspace:
     else:
         workspace.open_all()
     if not workspace.variants:
-        workspace.add("drive", new(ratio=100.0, diameter=50.8, torque=30.0))
+        workspace.add("drive", new(ratio=50.0, diameter=50.0, torque=15.0))
         workspace.keep()
     return workspace
 
