@@ -102,6 +102,7 @@ def _main(arguments: Sequence[str] | None) -> int:
             _abort(error.exit_code)
         return error.exit_code
     except BrokenPipeError:  # the reader of our output has gone
+        _drop_output()
         sys.stderr.close()
         return 1
     except OSError as error:
