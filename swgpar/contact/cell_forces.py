@@ -10,6 +10,7 @@ from swgpar.contact.active_cells import ActiveCells
 from swgpar.contact.cell_placement import PlacedCells
 from swgpar.contact.cells import Stations
 from swgpar.contact.contact_lines import CellLoads, FlankCompliance, Strips
+from swgpar.contact.flank_faces import exact_strips
 from swgpar.contact.flank_pairs import FlankPairs, GapGradients
 from swgpar.contact.line_coupling import LineCoupling
 from swgpar.contact.missing_compliance import MissingCompliance
@@ -39,6 +40,7 @@ class CellForces:
 
     def __init__(self, slave: BodyElements, master: BodyElements, stations: Stations) -> None:
         self.missing = _missing(slave), _missing(master)
+        self._profile = slave.layout.mesh.profile
         self.z = slave.layout.mesh.flanks[0].z
         self._grid = self.missing[1].s, master.layout.mesh.flanks[0].z
         self.n_layer = len(self.z) - 1
@@ -120,21 +122,26 @@ class CellForces:
         active.pressure = np.repeat(pressure[:, None], gap.shape[1], axis=1)
 
     def pressed_lines(self, active: ActiveCells) -> list[PressedLine]:
-        """Pressures of the pairs whose flexible-spline tooth this rank owns."""
+        """Pressures of the pairs whose flexible-spline tooth this rank owns, on widths along
+        the exact flank."""
         pairs, lines = active.flank_pairs, []
+        assert self._profile is not None  # all gears have one
         carries = (active.forces.force > 0.0) & pairs.owned[active.faces.patch]
         for line in np.unique(active.placed.line[carries]):
             on = np.flatnonzero(carries & (active.placed.line == line))
             layer = active.parent[on[0]] % self.n_layer
             station = active.placed.cells.station[on[0]]
+            facet = active.parent[on] % self.n_face // self.n_layer
+            ends = active.placed.cells.low[on], active.placed.cells.high[on]
+            low, high = exact_strips(self._profile, self.missing[0].s, facet, *ends)
             lines.append(
                 PressedLine(
                     pair=pairs.pairs[active.faces.patch[on[0]]],
                     z=float(self.z[layer] + station * (self.z[layer + 1] - self.z[layer])),
                     length=float(active.length[on[0]]),
-                    low=active.slave.low[on],
-                    high=active.slave.high[on],
-                    pressure=active.pressure[on, 0],
+                    low=low,
+                    high=high,
+                    pressure=active.forces.force[on] / (high - low),
                 )
             )
         return lines

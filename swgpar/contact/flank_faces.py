@@ -11,6 +11,7 @@ from swgpar.geometry.micro_geometry import crowning
 from swgpar.geometry.rotation import MIRROR
 from swgpar.meshing.sector import FlankGrid, SectorMesh
 from swgpar.meshing.sweep import grid_quads
+from swgpar.profiles.flank import ToothProfile
 
 SAMPLES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(5) + 0.5) / 5)
 """Positions per direction, in [0, 1], at which the exact surface is sampled; it is interpolated by
@@ -18,6 +19,10 @@ polynomials."""
 
 OF_SAMPLES = np.linalg.inv(chebvander(1.0 - 2.0 * SAMPLES, len(SAMPLES) - 1))
 """Chebyshev coefficients (n, n) of the polynomials that are one at one of `SAMPLES`."""
+
+FEET = 40
+"""Most steps to a foot on the exact flank. Each leaves the height over the facet over the radius of
+curvature of the distance, a tenth at most."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +78,58 @@ def face_samples(grid: FlankGrid) -> tuple[np.ndarray, np.ndarray]:
     z = grid.z[:-1, None] + np.diff(grid.z)[:, None] * SAMPLES
     s, z = np.broadcast_to(s[:, None, :, None], shape), np.broadcast_to(z[None, :, None, :], shape)
     return s.reshape(-1, n, n), z.reshape(-1, n, n)
+
+
+def exact_arc_lengths(
+    profile: ToothProfile, s: np.ndarray, facet: np.ndarray, place: np.ndarray
+) -> np.ndarray:
+    """Arc lengths (n,) mm of the feet on the exact flank of places on its facets.
+
+    s : (n_node,) mm, of the flank's nodes;  facet : (n,) numbers;  place : (n,) in [0, 1] on each
+    """
+    points, low, high = _on_facets(profile, s, facet, place), s[facet], s[facet + 1]
+    arc = low + place * (high - low)
+    for _ in range(FEET):
+        step = np.sum((points - profile.point(arc)) * profile.tangent(arc), axis=1)
+        arc = np.clip(arc + step, low, high)
+        if np.abs(step).max(initial=0.0) < 1e-13 * s[-1]:
+            break
+    return arc
+
+
+def exact_strips(
+    profile: ToothProfile, s: np.ndarray, facet: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Ends (n,) and (n,) mm, arc lengths, of cells on the exact flank, over which the gap of the
+    contact law has the curvature of the flanks.
+
+    low, high : (n,) ends of the cells on their facets, in [0, 1], ascending along the flank;  s,
+    facet : as above
+
+    The gap is that of points on facets with the height of the flank along its own normal. Where the
+    flank is curved a facet is shorter than its arc and inclined to it. The curvature is right over
+    the mean of the lengths along the flank's direction and on the flank (docs/theory,
+    "Widths on arcs"). Cells that touch stay together, around the middle of all of them.
+    """
+    begin, end = (exact_arc_lengths(profile, s, facet, place) for place in (low, high))
+    along = _on_facets(profile, s, facet, high) - _on_facets(profile, s, facet, low)
+    chord = np.sum(along * profile.tangent(0.5 * (begin + end)), axis=1)
+    width = np.sqrt(chord * (end - begin))
+    apart = np.flatnonzero(begin[1:] - end[:-1] > 1e-9 * s[-1]) + 1
+    edges = np.zeros((2, len(width)))
+    for cells in np.split(np.arange(len(width)), apart):
+        ends = np.concatenate([[0.0], np.cumsum(width[cells])])
+        ends += 0.5 * (begin[cells[0]] + end[cells[-1]] - ends[-1])
+        edges[:, cells] = ends[:-1], ends[1:]
+    return edges[0], edges[1]
+
+
+def _on_facets(
+    profile: ToothProfile, s: np.ndarray, facet: np.ndarray, place: np.ndarray
+) -> np.ndarray:
+    """Points (n, 2) mm at places on facets."""
+    nodes = profile.point(s)
+    return (1.0 - place)[:, None] * nodes[facet] + place[:, None] * nodes[facet + 1]
 
 
 def bilinear(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -88,11 +88,11 @@ def test_an_arc_on_a_straight_flank_has_the_pressure_of_hertz() -> None:
         one.line_load_Nmm,
         contact_modulus(*[Isotropic(E=210e3, nu=0.29)] * 2, plane_stress=True),
     )
-    # elements of 25 half widths: what they lack is known to 3 % of the pressure. On 24 to 51 cells
-    # across the overlap it is 1.7 to 2.7 % low
-    assert one.pressure_MPa == pytest.approx(np.sqrt(load * modulus / (np.pi * 1.0)), rel=0.03)
+    # the facet turns by 0.7 rad and has a joint of the profile inside, where the polynomial of its
+    # heights smooths the curvature: the pressure is 2.0 % low and the half width 2.3 %
+    assert one.pressure_MPa == pytest.approx(np.sqrt(load * modulus / (np.pi * 1.0)), rel=0.025)
     assert one.half_width_mm == pytest.approx(
-        np.sqrt(4.0 * load * 1.0 / (np.pi * modulus)), rel=0.02
+        np.sqrt(4.0 * load * 1.0 / (np.pi * modulus)), rel=0.025
     )
     assert not one.edge
 
