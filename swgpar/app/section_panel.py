@@ -6,7 +6,6 @@ from typing import Any
 
 from nicegui import ui
 
-from swgpar.app.section_picture import section_picture
 from swgpar.app.section_plot import section_figure
 from swgpar.app.state import AppState
 from swgpar.app.workspace import Variant
@@ -78,10 +77,9 @@ class SectionPanel:
     def _figure(self, variant: Variant) -> dict[str, Any]:
         design, state = variant.design, self.state
         if not state.loaded:
-            return section_figure(design, section_picture(design, state.angle_deg))
+            return section_figure(design, state.angle_deg)
         found = state.worker.state(design)
-        loaded = found.outline if found is not None else None
-        return section_figure(design, section_picture(design), loaded)
+        return section_figure(design, loaded=found.outline if found is not None else None)
 
     def _turned(self, angle: float) -> None:
         self.state.angle_deg = float(angle)

@@ -105,5 +105,6 @@ def depth_of_hollows(cam: Cam, depth: float) -> float:
     """
     curve = OffsetCam(cam, -depth).outline(OUTLINE_POINTS)
     hull = scipy.spatial.ConvexHull(curve)
+    spanned = np.delete(curve, hull.vertices, axis=0)  # none of a convex curve
     normals, heights = hull.equations[:, :2], hull.equations[:, 2]
-    return max(0.0, -float((curve @ normals.T + heights).max(axis=1).min()))
+    return float((-(spanned @ normals.T + heights).max(axis=1)).max(initial=0.0))

@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 
 from swgpar.geometry.arrays import Complex, Floats
-from swgpar.profiles.flank import NearestPoints
+from swgpar.profiles.flank import FlankPoints, NearestPoints
 
 PANELS, ORDER = 64, 6
 """Panels of the arc length's table and Gauss points in each: round-off on a tooth's curves."""
@@ -130,8 +130,12 @@ class CurvedSegment:
 
     def signed_curvature(self, s: Floats) -> Floats:
         """Return the change of the tangents' angle per arc length (n,), 1/mm, at `s` : (n,) mm."""
+        return self.at(s).curvature
+
+    def at(self, s: Floats) -> FlankPoints:
+        """Return points, angles and curvatures at the local arc lengths `s` : (n,) mm."""
         curve = self.evaluate(self.parameter(s))
-        return curve.angle_rate / curve.speed
+        return FlankPoints(curve.point, curve.angle, curve.angle_rate / curve.speed)
 
     @cached_property
     def _samples(self) -> scipy.spatial.cKDTree:

@@ -101,8 +101,8 @@ class Envelope:
     def contacts(self, segment: FlankSegment, s: Floats, psi: Floats) -> Contacts:
         """State of the points `s` (n,) mm of a segment of the given flank, at the angles psi (n,)
         rad."""
-        x, y = segment.point(s).T
-        z, phi, kappa = x + 1j * y, segment.angle(s), segment.signed_curvature(s)
+        point, phi, kappa = segment.at(s)
+        z = point @ (1.0, 1j)
         half_pitch = np.pi / self.motion.teeth_rg
         if not self.given.external:
             z, phi, kappa = self.motion.mirrored(z), np.pi - phi - half_pitch, -kappa
@@ -119,8 +119,8 @@ class Envelope:
         if self.given.external:
             # mirrored, and run through backwards
             angle, turning = -(phi + pose.angle) - half_pitch, -turning
-        point = self._placed(pose.moved(z))
-        return Contacts(psi, point, angle + self.turn, along, value, slope, bend, turning)
+        placed = self._placed(pose.moved(z))
+        return Contacts(psi, placed, angle + self.turn, along, value, slope, bend, turning)
 
     def _placed(self, points: Complex) -> Complex:
         """Points (n,) x + i y, mm, of the slot, in the frame of the envelope's tooth."""

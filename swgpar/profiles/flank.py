@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,6 +33,18 @@ class NearestPoints:
     angle: Floats
 
 
+class FlankPoints(NamedTuple):
+    """Points of a segment.
+
+    point : (n, 2) mm;  angle : (n,) rad, of the tangents from +x, counter-clockwise
+    curvature : (n,) 1/mm, change of that angle per arc length
+    """
+
+    point: Floats
+    angle: Floats
+    curvature: Floats
+
+
 class FlankSegment(Protocol):
     """A smooth piece of a flank, from the tip towards the root; local arc lengths s in mm."""
 
@@ -52,6 +64,9 @@ class FlankSegment(Protocol):
 
     def signed_curvature(self, s: Floats) -> Floats:
         """Change of that angle per arc length (n,), 1/mm, at `s` : (n,)."""
+
+    def at(self, s: Floats) -> FlankPoints:
+        """All three at `s` : (n,), in less time than one by one."""
 
     def nearest(self, points: Floats) -> NearestPoints:
         """The nearest points to `points` (n, 2), mm."""
@@ -83,6 +98,10 @@ class Segment:
     def signed_curvature(self, s: Floats) -> Floats:
         """Return `curvature` at each of the local arc lengths `s` : (n,) mm."""
         return np.full_like(s, self.curvature)
+
+    def at(self, s: Floats) -> FlankPoints:
+        """Return points, angles and curvatures at the local arc lengths `s` : (n,) mm."""
+        return FlankPoints(self.point(s), self.angle(s), self.signed_curvature(s))
 
     def point(self, s: Floats) -> Floats:
         """Return the points at the local arc lengths `s` : (n,) mm, as (n, 2) mm."""

@@ -147,15 +147,15 @@ def outline(profile: ToothProfile) -> Outline:
         for segment, count in zip(segments, counts, strict=True)
     ]
     begins = np.cumsum([0.0, *(segment.length for segment in segments[:-1])])
-    pieces = list(zip(segments, local, strict=True))
-    angle = np.concatenate([segment.angle(s) for segment, s in pieces])
+    at = [segment.at(s) for segment, s in zip(segments, local, strict=True)]
+    angle = np.concatenate([each.angle for each in at])
     return Outline(
         external=profile.external,
         pitch=2.0 * np.pi / profile.n_teeth,
         place=np.concatenate([begin + s for begin, s in zip(begins, local, strict=True)]),
-        point=np.concatenate([segment.point(s) for segment, s in pieces]) @ (1.0, 1j),
+        point=np.concatenate([each.point for each in at]) @ (1.0, 1j),
         normal=side * 1j * np.exp(1j * angle),
-        curvature=side * np.concatenate([segment.signed_curvature(s) for segment, s in pieces]),
+        curvature=side * np.concatenate([each.curvature for each in at]),
         flank=slice(LAND_STEPS + 1, -LAND_STEPS - 1),
     )
 

@@ -36,6 +36,9 @@ of the tooth that is made does not reach it."""
 NEAR = np.radians(3.0)
 """Change of psi within which a contact belongs to a place of the grid."""
 
+ASTRAY = 3.0 * NEAR
+"""Change of psi from which Newton's method finds no contact that belongs to its start."""
+
 JUMP = np.radians(0.5)
 """Change of psi from one radius to the next, beyond what its rate gives, that is another piece."""
 
@@ -110,19 +113,26 @@ class _SegmentEnvelope:
 
     def _solved(self, radius: Floats, s: Floats, psi: Floats) -> tuple[Floats, Floats, Floats]:
         """Places s (n,) mm and psi (n,) rad of contacts at radii (n,) mm by Newton's method, and
-        its last changes (n,) of psi. The segment is continued by its own length at most."""
+        its last changes (n,) of psi. The segment is continued by its own length at most. Places
+        that go astray are left."""
         low, high = self.span
         beyond = high - low
+        start, s, psi, last = psi, s.copy(), psi.copy(), np.zeros_like(psi)
+        moving = np.arange(len(psi))
         for _ in range(20):
-            contacts, outwards, square = self._contacts(s, psi)
-            missing = (np.abs(contacts.point) - radius) / outwards
+            contacts, outwards, square = self._contacts(s[moving], psi[moving])
+            missing = (np.abs(contacts.point) - radius[moving]) / outwards
             turn = (contacts.bend * missing - contacts.value) / square
-            s = np.clip(s - missing - contacts.along * turn, low - beyond, high + beyond)
-            psi = psi + np.clip(turn, -NEAR, NEAR)
+            along = s[moving] - missing - contacts.along * turn
+            s[moving] = np.clip(along, low - beyond, high + beyond)
+            psi[moving] += np.clip(turn, -NEAR, NEAR)
+            last[moving] = turn
             # the next change would be its square
-            if not np.nanmax(np.abs(turn), initial=0.0) > 1e-8:
+            goes_on = (np.abs(turn) > 1e-8) | (np.abs(missing) > 1e-8)
+            moving = moving[goes_on & (np.abs(psi - start)[moving] < ASTRAY)]
+            if not moving.size:
                 break
-        return s, psi, turn
+        return s, psi, last
 
     def at_radius(self, radius: Floats, s: Floats, psi: Floats) -> Places:
         """See `Passing`."""

@@ -41,9 +41,8 @@ class _Part:
     def evaluate(self, t: Floats) -> CurvePoints:
         """Curve at the parameters t (n,), for `CurvedSegment`."""
         span = self.end - self.begin
-        s = self.begin + span * t
-        (x, y), angle = self.segment.point(s).T, self.segment.angle(s)
-        curvature, z, tangent = self.segment.signed_curvature(s), x + 1j * y, np.exp(1j * angle)
+        point, angle, curvature = self.segment.at(self.begin + span * t)
+        z, tangent = point @ (1.0, 1j), np.exp(1j * angle)
         r = np.abs(z)
         # derivatives by arc length of the radius and of the angle of rotation
         slope = (np.conj(z) * tangent).real / r

@@ -20,9 +20,9 @@ import swgpar
 from support.paths import DESIGN, DRIVERS, RECIPE
 from swgpar.app.access import COOKIE, TokenGate
 from swgpar.app.fields import FormField, form_fields, is_optional, missing_sections
+from swgpar.app.flank_gaps import NEAR, flank_gaps
 from swgpar.app.jobs import JobQueue, JobState
 from swgpar.app.plane_state import plane_table, solve_plane
-from swgpar.app.section_picture import section_picture
 from swgpar.app.section_plot import section_figure
 from swgpar.app.state import recipes_of
 from swgpar.app.workspace import Variant, Workspace, drive_of
@@ -31,6 +31,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
 from swgpar.input.differences import differences
 from swgpar.optimisation.tried_designs import read_tried
+from swgpar.presentation.body_curves import body_curves
 from swgpar.rating.stored_sheet import StoredRow, read_sheet
 
 ADDENDUM = "drive.addendum_coef"
@@ -82,13 +83,14 @@ def test_what_an_entry_means(key: str, entry: str, value: Any) -> None:
 def test_gaps_of_the_picture_are_those_of_the_rigid_teeth(name: str, angle: float) -> None:
     """None is smaller than the clearance of a turn; near it there is one at each angle."""
     design = drive(DRIVERS / name)
-    picture = section_picture(design, angle)
+    gaps = flank_gaps(design, angle)
     smallest = clearances(design)[0].nearest.distance
     pitch = 2.0 * np.pi / design.drive.teeth_fs
-    assert smallest - 1e-9 <= picture.gaps.gap.min() < smallest + 0.05 * design.drive.module * pitch
+    assert smallest - 1e-9 <= gaps.gap.min() < smallest + 0.05 * design.drive.module * pitch
+    assert gaps.gap.max() < NEAR * design.drive.module
     # flanks are drawn where their gaps are taken: on the outline of the spline
-    outline = picture.curves["flexible_spline"][0]
-    for place in picture.gaps.place[:: design.drive.teeth_fs // 4]:
+    outline = body_curves(design, float(np.radians(angle)))["flexible_spline"][0]
+    for place in gaps.place[:: len(gaps.gap) // 8]:
         ahead = np.roll(outline, -1, axis=0) - outline
         along = ((place - outline) * ahead).sum(1) / (ahead**2).sum(1)
         foot = outline + np.clip(along, 0.0, 1.0)[:, None] * ahead
@@ -98,19 +100,22 @@ def test_gaps_of_the_picture_are_those_of_the_rigid_teeth(name: str, angle: floa
 def test_the_picture_repeats_after_a_pitch_of_the_ring_gear() -> None:
     """Then another tooth of the flexible spline is at each place."""
     design = drive()
-    first = section_picture(design, 0.0)
-    later = section_picture(design, 360.0 / design.drive.teeth_rg)
     teeth = design.drive.teeth_fs
-    gaps = [picture.gaps.gap.reshape(2, teeth) for picture in (first, later)]
+    gaps = []
+    for angle in (0.0, 360.0 / design.drive.teeth_rg):
+        found = flank_gaps(design, angle)
+        flank = np.cumsum(np.diff(found.tooth, prepend=0) < 0)
+        gaps.append(np.full((2, teeth), np.inf))
+        gaps[-1][flank, found.tooth] = found.gap
+    assert np.isfinite(gaps[0]).sum() > 8
     assert gaps[1] == pytest.approx(np.roll(gaps[0], 1, axis=1), abs=1e-9)
 
 
 def test_an_overlap_is_marked() -> None:
     design = drive(DRIVERS / "cup_45deg.toml")
     tight = design.with_values({"ring_gear.c_P": 1.01})
-    picture = section_picture(tight)
     assert clearances(tight)[0].overlaps
-    marks = section_figure(tight, picture)["data"][-1]
+    marks = section_figure(tight)["data"][-1]
     assert "x" in marks["marker"]["symbol"]
     assert any("overlap" in text for text in marks["text"])
 

@@ -1,0 +1,60 @@
+"""Gaps of the rigid flanks in the section of the teeth, at an angle of the cam."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GEARS
+from swgpar.geometry.arrays import Floats
+from swgpar.presentation.body_curves import moved_points, tooth_angles
+from swgpar.profiles.mesh_gap import outline
+
+STRIDE = 32
+"""Samples of a flank's outline from one place whose distance is taken to the next."""
+
+NEAR = 0.2
+"""Gap over the module below which a flank is near its partner."""
+
+
+@dataclass(frozen=True)
+class FlankGaps:
+    """Gaps of the undeformed flanks of the flexible spline that are near the ring gear.
+
+    tooth : (n,) numbers from the one that is on +y at the cam's angle 0, counter-clockwise
+    place : (n, 2) mm, of the flank, where it is nearest to the ring gear
+    gap : (n,) mm, below 0 where flanks overlap
+    """
+
+    tooth: np.ndarray
+    place: Floats
+    gap: Floats
+
+
+def flank_gaps(design: DriveDesign, angle_deg: float = 0.0) -> FlankGaps:
+    """Gaps of undeformed teeth on the neutral line, those of the flanks of +x first.
+
+    angle_deg : of the cam, counter-clockwise; the ring gear rests
+    """
+    cam_angle = float(np.radians(angle_deg))
+    spline, ring = (outline(design.profile(gear)) for gear in GEARS)
+    motion, psi = design.tooth_motion(), tooth_angles(design, cam_angle)
+    pose, near = motion.pose(psi), NEAR * design.drive.module
+    flank = spline.point[spline.flank][::STRIDE]
+    to_tooth = np.exp(1j * np.pi / motion.teeth_rg)
+    found = []
+    for points in (flank, -np.conj(flank)):
+        moved = pose.c[:, None] + np.exp(1j * pose.angle)[:, None] * points
+        # the ring gear has no material nearer to the axis than its tips
+        looked = np.abs(moved) > np.abs(ring.point).min() - near
+        distance = np.full(moved.shape, np.inf)
+        distance[looked] = ring.distance(ring.folded(moved[looked] * to_tooth)[0]).distance
+        tooth = np.flatnonzero(distance.min(axis=1) < near)
+        nearest = distance[tooth].argmin(axis=1)
+        both = np.column_stack([points.real, points.imag])
+        places = moved_points(design, psi[tooth], both, cam_angle)
+        index = np.arange(len(tooth))
+        found.append((tooth, places[index, nearest], distance[tooth, nearest]))
+    return FlankGaps(*map(np.concatenate, zip(*found, strict=True)))
