@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from nicegui import events, ui
 
 from swgpar.app.jobs import AppJob
+from swgpar.app.search_plot import EVALUATION, pair_figure, parallel_figure, words
 from swgpar.app.state import AppState
 from swgpar.app.workspace import drive_of
 from swgpar.errors import SwgparError
@@ -15,7 +15,7 @@ from swgpar.errors import SwgparError
 if TYPE_CHECKING:
     from swgpar.optimisation.tried_designs import TriedDesigns
 
-BEST, FEASIBLE, INFEASIBLE = "#d07a20", "#2f7fb8", "#9a9a9a"
+VIEWS = {False: "two quantities", True: "parallel coordinates"}
 
 
 def show_search(state: AppState, job: AppJob) -> None:
@@ -32,70 +32,50 @@ def show_search(state: AppState, job: AppJob) -> None:
 
 
 class SearchDialog:
-    """Objectives of the designs that a search has tried."""
+    """Variables, objectives and constraints of the designs that a search has tried."""
 
     def __init__(self, state: AppState, job: AppJob, tried: TriedDesigns) -> None:
         self.state, self.job, self.tried = state, job, tried
+        objectives = list(dict.fromkeys(one.name for one in tried.section.objective))
+        names = [*tried.section.quantities, *(one.name for one in tried.section.variable)]
         with ui.dialog() as self.dialog, ui.card().classes("swgpar-search"):
             ui.label("a click on a point opens its design as a variant").classes("text-caption")
-            ui.plotly(self._figure()).classes("w-full").on("plotly_click", self._clicked)
-            with ui.row():
-                for one in tried.designs:
-                    if one.best:
-                        name = f"open evaluation {one.number}"
-                        ui.button(name, on_click=partial(self._open, one.number)).props("dense")
+            with ui.row().classes("items-center"):
+                self.view = ui.toggle(VIEWS, value=False, on_change=self._draw)
+                self.view.props("dense no-caps size=sm")
+                first, second = objectives[0], [*objectives, EVALUATION][1]
+                self.x = ui.select([*names, EVALUATION], value=second, label="across")
+                self.y = ui.select(names, value=first, label="up")
+                for axis in (self.x, self.y):
+                    axis.on_value_change(self._draw)
+                    axis.bind_visibility_from(self.view, "value", value=False)
+            self.plot = ui.plotly(self._figure()).classes("w-full")
+            self.plot.props('role=img aria-label="designs of the search"')
+            self.plot.on("plotly_click", self._clicked)
+            if tried.evaluations:
+                numbers = sorted(tried.evaluations, key=lambda n: (n not in tried.best, n))
+                texts = {n: f"{n}: {words(tried, n)}" for n in numbers}
+                with ui.row().classes("items-center"):
+                    chosen = ui.select(texts, value=numbers[0], label="evaluation")
+                    ui.button("open", on_click=lambda: self._open(chosen.value)).props("dense")
             ui.button("close", on_click=self.dialog.close).props("flat dense")
         self.dialog.open()
 
-    def _figure(self) -> dict[str, Any]:
-        """The first objective against the second one, or against the number of the evaluation."""
-        x, y = (*self.tried.objectives, "")[1], self.tried.objectives[0]
-        shown = [
-            one
-            for one in self.tried.designs
-            if y in one.quantities and (not x or x in one.quantities)
-        ]
-        colours = [
-            BEST if one.best else FEASIBLE if one.status == "feasible" else INFEASIBLE
-            for one in shown
-        ]
-        texts = [
-            f"evaluation {one.number}, {one.status}<br>"
-            + "<br>".join(f"{key} = {value}" for key, value in one.values.items())
-            for one in shown
-        ]
-        return {
-            "data": [
-                {
-                    "type": "scatter",
-                    "mode": "markers",
-                    "x": [one.quantities[x] if x else one.number for one in shown],
-                    "y": [one.quantities[y] for one in shown],
-                    "customdata": [one.number for one in shown],
-                    "marker": {"color": colours, "size": 10},
-                    "text": texts,
-                    "hoverinfo": "text",
-                }
-            ],
-            "layout": {
-                "xaxis": {"title": {"text": x or "evaluation"}},
-                "yaxis": {"title": {"text": y}},
-                "margin": {"l": 60, "r": 10, "t": 10, "b": 50},
-                "font": {"color": "#7a7a7a"},
-                "paper_bgcolor": "rgba(0,0,0,0)",
-                "plot_bgcolor": "rgba(0,0,0,0)",
-            },
-            "config": {"displaylogo": False},
-        }
+    def _figure(self) -> dict[str, object]:
+        if self.view.value:
+            return parallel_figure(self.tried)
+        return pair_figure(self.tried, self.x.value, self.y.value)
+
+    def _draw(self) -> None:
+        self.plot.update_figure(self._figure())
 
     async def _clicked(self, event: events.GenericEventArguments) -> None:
         await self._open(int(event.args["points"][0]["customdata"]))
 
     async def _open(self, number: int) -> None:
-        chosen = next(one for one in self.tried.designs if one.number == number)
         workspace = self.state.workspace
         try:
-            design = drive_of(self.tried.table(chosen), {})
+            design = drive_of(self.tried.table(number), {})
         except SwgparError as error:
             ui.notify(str(error), type="warning")
             return

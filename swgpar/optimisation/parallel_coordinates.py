@@ -7,14 +7,14 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from swgpar.optimisation.bounds import position
 from swgpar.optimisation.optimisation_data import OptimisationData
 from swgpar.optimisation.problem import Evaluation
-from swgpar.optimisation.spec import Variable
+from swgpar.optimisation.spec import OptimiseSection, Variable
 from swgpar.results.figure_set import new_figure
 from swgpar.results.page import number
 from swgpar.results.quantity import with_unit
@@ -44,8 +44,32 @@ STYLES: dict[str, dict[str, Any]] = {
 FORBIDDEN = "#c03030"
 
 
+class Searched(Protocol):
+    """Designs of a search, as `OptimisationData` has them."""
+
+    @property
+    def section(self) -> OptimiseSection:
+        """What is sought."""
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Of variables and quantities, by name."""
+
+    @property
+    def evaluations(self) -> dict[int, Evaluation]:
+        """Designs by number."""
+
+    @property
+    def best(self) -> list[int]:
+        """Numbers of the best ones."""
+
+    @property
+    def start(self) -> int | None:
+        """Number of the start design."""
+
+
 @dataclass(frozen=True)
-class _Axis:
+class ParallelAxis:
     """title : below it;  low, high : texts at its ends
     place : where a design is on it, 0 to 1; NaN where it has no value
     limits : place of each limit, and the end of the axis on the side that is not allowed
@@ -60,8 +84,7 @@ class _Axis:
 
 def parallel_coordinates(result: OptimisationData) -> Figure:
     """Every design with a run as a line; an axis for every variable, objective and limit."""
-    axes = [_of_variable(result, one) for one in result.section.variable]
-    axes += [_of_quantity(result, name) for name in result.section.quantities]
+    axes = parallel_axes(result)
     figure = new_figure(figsize=(WIDTH * (len(axes) + 0.5), HEIGHT), layout="constrained")
     panel = figure.add_subplot()
     groups: dict[str, list[int]] = {name: [] for name in STYLES}
@@ -87,7 +110,13 @@ def parallel_coordinates(result: OptimisationData) -> Figure:
     return figure
 
 
-def _draw_axis(panel: Axes, k: int, axis: _Axis) -> None:
+def parallel_axes(result: Searched) -> list[ParallelAxis]:
+    """An axis for every variable, objective and limit."""
+    axes = [_of_variable(result, one) for one in result.section.variable]
+    return axes + [_of_quantity(result, name) for name in result.section.quantities]
+
+
+def _draw_axis(panel: Axes, k: int, axis: ParallelAxis) -> None:
     panel.axvline(k, color="#555555", lw=0.8, zorder=1)
     for place, end in axis.limits:
         panel.plot([k, k], [place, end], color=FORBIDDEN, lw=5.0, alpha=0.35, zorder=1)
@@ -96,9 +125,9 @@ def _draw_axis(panel: Axes, k: int, axis: _Axis) -> None:
         panel.text(k, y, text, ha="center", va=side, fontsize=8, clip_on=False)
 
 
-def _of_variable(result: OptimisationData, variable: Variable) -> _Axis:
+def _of_variable(result: Searched, variable: Variable) -> ParallelAxis:
     ends = variable.choices or [variable.low, variable.high]
-    return _Axis(
+    return ParallelAxis(
         _wrapped(with_unit(variable.name, result.units.get(variable.name, ""))),
         number(ends[0]),
         number(ends[-1]),
@@ -106,7 +135,7 @@ def _of_variable(result: OptimisationData, variable: Variable) -> _Axis:
     )
 
 
-def _of_quantity(result: OptimisationData, name: str) -> _Axis:
+def _of_quantity(result: Searched, name: str) -> ParallelAxis:
     section = result.section
     limits = [
         (limit, sign)
@@ -118,7 +147,7 @@ def _of_quantity(result: OptimisationData, name: str) -> _Axis:
     low, high = _range(result, name, [limit for limit, _ in limits])
     ends = tuple((_place(low, high, limit), 1.0 if sign > 0 else 0.0) for limit, sign in limits)
     title = "\n".join([_wrapped(with_unit(name, result.units.get(name, ""))), *goals])
-    return _Axis(title, number(low), number(high), partial(_of, name, low, high), ends)
+    return ParallelAxis(title, number(low), number(high), partial(_of, name, low, high), ends)
 
 
 def _of(name: str, low: float, high: float, each: Evaluation) -> float:
@@ -129,7 +158,7 @@ def _place(low: float, high: float, value: float) -> float:
     return (value - low) / (high - low)
 
 
-def _range(result: OptimisationData, name: str, limits: list[float]) -> tuple[float, float]:
+def _range(result: Searched, name: str, limits: list[float]) -> tuple[float, float]:
     """Ends of the axis of a quantity: it shows all feasible designs, the start design, limits, and
     most of the other designs."""
     shown = list(limits)

@@ -49,6 +49,11 @@ class Variable(Section):
         return self.low is not None and self.high is not None and self.low <= value <= self.high
 
     @property
+    def is_whole(self) -> bool:
+        """Whether it has whole numbers only."""
+        return self.integer or (bool(self.choices) and all(type(x) is int for x in self.choices))
+
+    @property
     def range_text(self) -> str:
         """The values that it takes, in words."""
         if self.choices:

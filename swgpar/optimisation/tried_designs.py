@@ -9,72 +9,72 @@ from pathlib import Path
 from typing import Any
 
 from swgpar.errors import OutputError
-from swgpar.input.toml_file import apply_overrides, parse_value, read_toml
+from swgpar.input.toml_file import parse_value
 from swgpar.optimisation.files import TABLE
-from swgpar.optimisation.spec import Specification, load_specification
+from swgpar.optimisation.problem import Evaluation, Problem, make_problem
+from swgpar.optimisation.spec import OptimiseSection, Variable, load_specification
 from swgpar.results.atomic import reason_of
 
 
 @dataclass(frozen=True)
-class TriedDesign:
-    """A design of a search.
-
-    number : of its evaluation;  status : as in optimise.csv;  best : whether it is one of the best
-    values : of the variables, by name
-    quantities : of objectives and constraints, by name; without those that it does not have
+class TriedDesigns:
+    """problem : what is sought;  evaluations : by number, without violations
+    best : numbers of the best ones
     """
 
-    number: int
-    status: str
-    best: bool
-    values: dict[str, Any]
-    quantities: dict[str, float]
+    problem: Problem
+    evaluations: dict[int, Evaluation]
+    best: list[int]
 
+    @property
+    def section(self) -> OptimiseSection:
+        """What is sought."""
+        return self.problem.section
 
-@dataclass(frozen=True)
-class TriedDesigns:
-    """objectives : names of what is sought;  designs : in the order of the table"""
+    @property
+    def units(self) -> dict[str, str]:
+        """Of variables and quantities, by name."""
+        return self.problem.units
 
-    specification: Specification
-    objectives: tuple[str, ...]
-    designs: tuple[TriedDesign, ...]
+    @property
+    def start(self) -> int | None:
+        """Number of the start design; None where it is no point of the search."""
+        values = self.problem.start.values
+        return next((n for n, each in self.evaluations.items() if each.values == values), None)
 
-    def table(self, design: TriedDesign) -> dict[str, Any]:
+    def table(self, number: int) -> dict[str, Any]:
         """Content of the design file of a tried design."""
-        section = self.specification.section
-        table = read_toml(self.specification.folder / section.design)
-        values = {
-            key: design.values[variable.name]
-            for variable in section.variable
-            for key in variable.keys
-            if variable.name in design.values
-        }
-        return apply_overrides(apply_overrides(table, section.set), values)
+        return self.problem.applied(self.problem.table, self.evaluations[number].values)
 
 
 def read_tried(specification: Path, folder: Path) -> TriedDesigns:
     """Designs in the folder of a search. Raises InputError and OutputError where a file cannot be
     read."""
-    spec = load_specification(specification)
+    problem = make_problem(load_specification(specification))
     path = folder / TABLE
     try:
         rows = list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
     except (OSError, ValueError) as error:
         raise OutputError(f"{path} cannot be read: {reason_of(error)}") from None
-    section = spec.section
-    variables = [variable.name for variable in section.variable]
-    wanted = list(dict.fromkeys(one.name for one in section.wanted))
-    designs = tuple(
-        TriedDesign(
-            int(row["evaluation"]),
-            row["status"],
-            row["best"] == "1",
-            {name: parse_value(row[name]) for name in variables if row.get(name)},
-            {name: float(row[name]) for name in wanted if _is_number(row.get(name))},
-        )
-        for row in rows
+    evaluations = {int(row["evaluation"]): _evaluation(problem.section, row) for row in rows}
+    best = [int(row["evaluation"]) for row in rows if row["best"] == "1"]
+    return TriedDesigns(problem, evaluations, best)
+
+
+def _evaluation(section: OptimiseSection, row: dict[str, str]) -> Evaluation:
+    return Evaluation(
+        {one.name: _value(one, row[one.name]) for one in section.variable if row.get(one.name)},
+        row["status"],
+        row.get("reason", ""),
+        {name: float(row[name]) for name in section.quantities if _is_number(row.get(name))},
+        {},
     )
-    return TriedDesigns(spec, tuple(one.name for one in section.objective), designs)
+
+
+def _value(variable: Variable, text: str) -> Any:
+    value = parse_value(text)
+    taken = variable.taken(value)
+    return value if taken is None else taken
 
 
 def _is_number(text: str | None) -> bool:

@@ -23,6 +23,7 @@ from swgpar.app.fields import FormField, form_fields, is_optional, missing_secti
 from swgpar.app.flank_gaps import NEAR, flank_gaps
 from swgpar.app.jobs import JobQueue, JobState
 from swgpar.app.plane_state import plane_table, solve_plane
+from swgpar.app.search_plot import EVALUATION, pair_figure, parallel_figure
 from swgpar.app.section_plot import section_figure
 from swgpar.app.state import recipes_of
 from swgpar.app.workspace import Variant, Workspace, drive_of
@@ -316,18 +317,27 @@ def test_share_of_a_limit(
 
 
 def test_tried_designs_of_a_search(tmp_path: Path) -> None:
-    """Each one is the design file with what is set and with its variables."""
+    """Each one is the design file with what is set and with its variables; figures have units, and
+    whole numbers whole ticks."""
     (tmp_path / "optimise.csv").write_text(
         "rank,evaluation,wave_generator.beta,wave_generator.C,status,best,mean.fs_vm\n"
         "1,3,44.5,0.996,feasible,1,230.5\n,4,50.0,0.999,failed,0,\n",
         encoding="utf-8",
     )
     tried = read_tried(DRIVERS / "optimise" / "arcs.toml", tmp_path)
-    assert tried.objectives == ("mean.fs_vm",)
-    best, failed = tried.designs
-    assert best.quantities["mean.fs_vm"] == 230.5 and failed.quantities == {}
-    design = drive_of(tried.table(best), {})
+    assert tried.best == [3] and tried.evaluations[4].quantities == {}
+    assert tried.evaluations[3].quantities["mean.fs_vm"] == 230.5
+    design = drive_of(tried.table(3), {})
     assert design.wave_generator.type == "arcs" and design.wave_generator.beta == 44.5
+    figure = pair_figure(tried, EVALUATION, "mean.fs_vm")
+    (best,) = figure["data"]  # the failed one has no value
+    assert best["name"] == "best" and best["customdata"] == [3]
+    assert "mean.fs_vm = 230.5 MPa" in best["text"][0] and "= 44.5 deg" in best["text"][0]
+    assert figure["layout"]["yaxis"]["title"]["text"] == "mean.fs_vm (MPa)"
+    assert figure["layout"]["xaxis"]["dtick"] == 1
+    lines = parallel_figure(tried)["data"]
+    assert [line["name"] for line in lines] == ["failed", "best"]
+    assert lines[1]["y"][:2] == pytest.approx([0.3, 0.2])  # between the bounds
 
 
 def test_the_loaded_state_is_that_of_the_interface() -> None:
