@@ -1,5 +1,6 @@
 """Seconds of the app on this machine, from a change of a key to the picture and to the loaded state
-of the plane model, in a headless browser."""
+of the plane model, in a headless browser. Processes are those that wanted a core, the app's
+included, on the average of the last minute."""
 
 from __future__ import annotations
 
@@ -18,8 +19,9 @@ from playwright.sync_api import Page, sync_playwright
 CHANGES = 8
 """Changes of each key; the first two warm up and are left out."""
 
-KEYS = {"load.torque": -0.004, "drive.addendum_coef": -0.002}
-"""Keys that are changed, and the relative size of a change: the load, and all teeth."""
+KEYS = {"load.torque": -0.004, "drive.addendum_coef": -0.002, "flexible_spline.rim": -0.002}
+"""Keys that are changed, and the relative size of a change: the load, all teeth, and the neutral
+line."""
 
 OBSERVE = """
 () => {
@@ -67,7 +69,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("designs", nargs="+", type=Path)
     given = parser.parse_args()
-    print("| design | key | change to picture, s | change to plane state, s |\n|---|---|---|---|")
+    heads = ("design", "key", "change to picture, s", "to plane state, s", "processes")
+    print(f"| {' | '.join(heads)} |\n|{'---|' * len(heads)}")
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
         browser = playwright.chromium.launch(
             executable_path=shutil.which("chromium"), args=["--no-sandbox"]
@@ -82,11 +85,14 @@ def main() -> None:
                 page.wait_for_selector('[data-plane-state="computed"]', timeout=20_000)
                 page.evaluate(OBSERVE)
                 for key, step in KEYS.items():
-                    first = float(page.locator(f'input[data-key="{key}"]').input_value())
+                    first = float(page.locator(f'input[data-key="{key}"]').input_value() or 0.0)
+                    if not first:
+                        continue
                     values = [first * (1.0 + step * (k + 1)) for k in range(CHANGES)]
                     found = [seconds(page, key, f"{value:.8g}") for value in values][2:]
                     picture, answer = (statistics.median(one) for one in zip(*found, strict=True))
-                    print(f"| {design.stem} | `{key}` | {picture:.2f} | {answer:.2f} |", flush=True)
+                    cells = (design.stem, f"`{key}`", f"{picture:.2f}", f"{answer:.2f}")
+                    print(f"| {' | '.join(cells)} | {os.getloadavg()[0]:.1f} |", flush=True)
                 page.close()
             finally:
                 process.terminate()

@@ -44,7 +44,7 @@ class FormField:
 
     def parsed(self, text: str | float | bool | None) -> Any:
         """The value that an entry means; a text that is no number stays one, and is refused by the
-        design. A comma is a decimal sign, as in many countries."""
+        design."""
         if self.kind in ("switch", "choice") or text is None:
             return text
         entry = str(text).strip()
@@ -52,12 +52,21 @@ class FormField:
             return None
         if self.kind == "text":
             return entry
-        entry = entry.replace(",", ".") if entry.count(",") == 1 and "." not in entry else entry
-        try:
-            number = float(entry)
-        except ValueError:
-            return entry
-        return int(number) if self.kind == "whole number" and number.is_integer() else number
+        number = number_of(entry)
+        if self.kind == "whole number" and isinstance(number, float) and number.is_integer():
+            return int(number)
+        return number
+
+
+def number_of(entry: str) -> Any:
+    """The number that an entry means, else its text. A comma is a decimal sign, as in many
+    countries."""
+    entry = entry.strip()
+    entry = entry.replace(",", ".") if entry.count(",") == 1 and "." not in entry else entry
+    try:
+        return float(entry)
+    except ValueError:
+        return entry
 
 
 def form_fields(design: Design) -> list[FormField]:

@@ -9,6 +9,7 @@ from nicegui import ui
 from swgpar.app.jobs import AppJob, JobState
 from swgpar.app.search_panel import show_search
 from swgpar.app.state import AppState, files_of, most_ranks, recipes_of
+from swgpar.app.tables import heading, live_label, say
 from swgpar.errors import SwgparError
 from swgpar.results.folder import FIELD_INDEX
 
@@ -17,6 +18,9 @@ MESHES = ("coarse", "forces", "medium", "full", "plane_coarse", "plane")
 
 LAST = 8
 """Jobs that are shown."""
+
+SAID = 3
+"""Jobs whose states are said."""
 
 FORMATS = ("step", "dxf", "csv", "teeth")
 """Formats of `swgpar export` that a design has."""
@@ -27,6 +31,7 @@ class JobsPanel:
 
     def __init__(self, state: AppState) -> None:
         self.state = state
+        self._logs: list[tuple[AppJob, ui.label, bool]] = []
         with ui.row().classes("items-center"):
             ui.button("run", on_click=self._run)
             ui.button("rate", on_click=lambda: self._design("rate"))
@@ -39,6 +44,8 @@ class JobsPanel:
             self.ranks = ui.number("ranks", value=min(2, most_ranks()), min=1, max=most_ranks())
             self.ranks.props("dense").classes("w-16")
         self.files()
+        heading("jobs")
+        self.said = live_label().classes("text-caption")
         self.jobs()
         self.dialogs = ui.element("div")  # the queue is drawn anew while they are open
 
@@ -56,9 +63,23 @@ class JobsPanel:
     @ui.refreshable_method
     def jobs(self) -> None:
         """The last jobs, with their commands and states."""
-        for job in reversed(self.state.queue.jobs[-LAST:]):
+        self._logs.clear()
+        last = self.state.queue.jobs[-LAST:]
+        said = ", ".join(f"{job.number} {job.state}" for job in last[-SAID:])
+        say(self.said, f"the last ones: {said}" if said else "")
+        for job in reversed(last):
             with ui.card().tight().classes("w-full q-pa-sm swgpar-job"):
                 self._job(job)
+
+    def draw_logs(self) -> None:
+        """Draw what jobs that run have printed, and the pages that they have written."""
+        if any(had_page != self._has_page(job) for job, _, had_page in self._logs):
+            self.jobs.refresh()
+        for job, log, _ in self._logs:
+            log.text = self.state.queue.last_lines(job, 3)
+
+    def _has_page(self, job: AppJob) -> bool:
+        return job.page is not None and (self.state.queue.folder / job.page).is_file()
 
     def _job(self, job: AppJob) -> None:
         queue = self.state.queue
@@ -67,9 +88,10 @@ class JobsPanel:
         if job.reason:
             ui.label(job.reason).classes("text-negative text-caption")
         if job.state == JobState.RUNS:
-            ui.label(queue.last_lines(job, 3)).classes("swgpar-log")
+            log = ui.label(queue.last_lines(job, 3)).classes("swgpar-log")
+            self._logs.append((job, log, self._has_page(job)))
         with ui.row().classes("items-center"):
-            if job.page and (queue.folder / job.page).is_file():
+            if self._has_page(job):
                 ui.link("report", f"/{job.page}", new_tab=True)
                 if job.command == "run" and (queue.folder / job.out / FIELD_INDEX).exists():
                     ui.button("3D", on_click=lambda: self._view(job)).props("flat dense")

@@ -8,15 +8,13 @@ from typing import Any
 from nicegui import ui
 
 from swgpar.app.fields import FormField
+from swgpar.app.slider import Slider
 
 SLIDERS = 3.0
 """A slider goes from 0 to this multiple of the value that its key has when the form is drawn."""
 
 STEPS = 600
 """Places of a slider."""
-
-MOVING = 0.15
-"""Seconds between two changes while a slider moves."""
 
 
 class KeyControl:
@@ -31,12 +29,13 @@ class KeyControl:
     ) -> None:
         self.field, self._change = field, change
         self._shown = self._moves = False
-        self.slider: ui.slider | None = None
+        self.slider: Slider | None = None
         with ui.element("div").classes("w-full q-mb-sm"):
             self.entry = self._make_entry()
             help_text = "; ".join(text for text in (field.text, field.allowed) if text)
             self.entry.classes("w-full").props("dense").tooltip(help_text)
             self.entry.props["data-key"] = field.key
+            self.entry.props["aria-description"] = help_text
             self.entry.props["aria-label"] = f"{field.key}, {field.unit}".rstrip(", ")
             if field.kind == "number" and isinstance(field.value, float) and field.value > 0.0:
                 self.slider = self._make_slider(field.value)
@@ -50,7 +49,7 @@ class KeyControl:
         if self.entry.value != value:
             self.entry.value = value
         if self.slider is not None and isinstance(field.value, float) and not self._moves:
-            self.slider.value = field.value
+            self.slider.show(field.value)
         self.refusal.text = "" if refused is None else refused[1]
         self.refusal.set_visibility(refused is not None)
         self._shown = False
@@ -69,14 +68,10 @@ class KeyControl:
         entry.on("change", lambda event: self._entered(event.args))
         return entry
 
-    def _make_slider(self, value: float) -> ui.slider:
-        high = min(SLIDERS * value, self.field.high)
-        slider = ui.slider(min=max(0.0, self.field.low), max=high, step=high / STEPS, value=value)
-        slider.props["data-slider"] = slider.props["aria-label"] = self.field.key
-        slider.props("dense").on("change", lambda event: self._slid(event.args, moves=False))
-        slider.on(
-            "update:model-value", lambda event: self._slid(event.args, moves=True), throttle=MOVING
-        )
+    def _make_slider(self, value: float) -> Slider:
+        high, name = min(SLIDERS * value, self.field.high), f"slider of {self.field.key}"
+        slider = Slider(max(0.0, self.field.low), high, high / STEPS, name, self._slid)
+        slider.props["data-slider"] = self.field.key
         return slider
 
     async def _changed(self) -> None:
@@ -88,9 +83,9 @@ class KeyControl:
             entry = None if entry == "" and self.field.optional else entry
             await self._change(self.field, entry, False)
 
-    async def _slid(self, value: float, *, moves: bool) -> None:
+    async def _slid(self, value: float, moves: bool) -> None:
         self._moves = moves
-        await self._change(self.field, f"{float(value):.6g}", moves)
+        await self._change(self.field, f"{value:.6g}", moves)
 
 
 def _as_entry(field: FormField) -> Any:

@@ -12,6 +12,7 @@ from swgpar.app.answers_panel import AnswersPanel
 from swgpar.app.fields import FormField, form_fields, is_optional, missing_sections
 from swgpar.app.jobs_panel import JobsPanel
 from swgpar.app.key_control import KeyControl
+from swgpar.app.new_drive import NewDrive
 from swgpar.app.section_form import SectionDialog
 from swgpar.app.section_panel import SectionPanel
 from swgpar.app.state import AppState
@@ -37,14 +38,13 @@ class Page:
             ui.label("swgpar").classes("text-h6")
             self.header()
         with ui.row().classes("w-full items-start no-wrap-md gap-4 swgpar-columns"):
-            with ui.column().classes("swgpar-form"):
+            with _region("swgpar-form", "keys of the design"):
                 self.form()
-            with ui.column().classes("swgpar-section"):
+            with _region("swgpar-section", "section of the teeth"):
                 self.section = SectionPanel(state)
-            with ui.column().classes("swgpar-answers"):
+            with _region("swgpar-answers", "answers and jobs"):
                 self.answers = AnswersPanel(state)
                 self.jobs = JobsPanel(state)
-        self._names = self._all_names()
         ui.timer(LOOK, state.look_at_states)
         ui.timer(JOBS, state.look_at_jobs)
         ui.timer(PLAY, self.section.turn)
@@ -53,20 +53,18 @@ class Page:
 
     # -- header ------------------------------------------------------------------------------------
 
-    @ui.refreshable_method
     def header(self) -> None:
         """Variants, undo, redo, save, and what can be copied."""
-        workspace = self.state.workspace
-        names = sorted(workspace.variants)
-        show = ui.select(names, value=workspace.shown, label="variant")
-        show.on_value_change(lambda event: self.state.show(event.value))
-        beside = ui.select(["", *names], value=workspace.beside, label="beside")
-        beside.on_value_change(lambda event: self.state.show(workspace.shown, event.value))
-        for choice in (show, beside):
+        self.variant = ui.select([], label="variant", on_change=self._choose)
+        self.beside = ui.select([], label="beside", on_change=self._choose)
+        for choice in (self.variant, self.beside):
             choice.props("dense dark outlined").classes("min-w-24")
+        self._draw_names()
+        self.new_drive = NewDrive(self.state)
         for name, step in (
             ("undo", lambda: self.state.change(lambda variant: variant.undo())),
             ("redo", lambda: self.state.change(lambda variant: variant.redo())),
+            ("new", self.new_drive.open),
             ("copy", self._copy),
             ("save", self._save),
         ):
@@ -75,6 +73,22 @@ class Page:
             ui.item("command line", on_click=lambda: self._clip(self._command()))
             ui.item("Python", on_click=lambda: self._clip(self._python()))
             ui.item("TOML", on_click=lambda: self._clip(self.state.variant.text))
+
+    def _draw_names(self) -> None:
+        """Show which variants there are, and which are shown."""
+        workspace = self.state.workspace
+        names = sorted(workspace.variants)
+        for choice, offered, value in (
+            (self.variant, names, workspace.shown),
+            (self.beside, ["", *names], workspace.beside),
+        ):
+            if choice.options != offered or choice.value != value:
+                choice.set_options(offered, value=value)
+
+    async def _choose(self) -> None:
+        workspace, chosen = self.state.workspace, (self.variant.value, self.beside.value)
+        if chosen != (workspace.shown, workspace.beside):
+            await self.state.show(*chosen)
 
     async def _copy(self) -> None:
         workspace = self.state.workspace
@@ -159,9 +173,7 @@ class Page:
         """Draw all else that depends on designs."""
         self.section.clearance.refresh()
         fields = {field.key: field for field in form_fields(self.state.variant.design)}
-        if self._names != self._all_names():
-            self._names = self._all_names()
-            self.header.refresh()
+        self._draw_names()
         if fields.keys() != self.controls.keys():
             self.form.refresh()
         for key, control in self.controls.items():
@@ -176,9 +188,15 @@ class Page:
     def draw_jobs(self) -> None:
         """Draw the queue, and the sheet that a job may have written."""
         self.jobs.jobs.refresh()
-        self.answers.verdict.refresh()
+        self.answers.verdict.draw()
 
-    def _all_names(self) -> tuple[str, ...]:
-        """Names of variants that the header shows."""
-        workspace = self.state.workspace
-        return workspace.shown, workspace.beside, *sorted(workspace.variants)
+    def draw_logs(self) -> None:
+        """Draw what jobs that run have printed."""
+        self.jobs.draw_logs()
+
+
+def _region(classes: str, name: str) -> ui.column:
+    """A column that screen readers offer by its name."""
+    column = ui.column().classes(classes).props("role=region")
+    column.props["aria-label"] = name
+    return column

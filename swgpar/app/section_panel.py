@@ -7,6 +7,7 @@ from typing import Any
 from nicegui import ui
 
 from swgpar.app.section_plot import section_figure
+from swgpar.app.slider import Slider
 from swgpar.app.state import AppState
 from swgpar.app.workspace import Variant
 from swgpar.checks.clearance import clearances
@@ -25,15 +26,17 @@ class SectionPanel:
         with ui.row().classes("w-full items-center no-wrap gap-3"):
             self.view = ui.toggle(VIEWS, value=state.loaded, on_change=self._view)
             self.view.props("dense no-caps size=sm")
-            ui.label("cam, °").classes("text-no-wrap")
-            self.slider = ui.slider(min=0.0, max=360.0, step=1.0, value=state.angle_deg)
-            self.slider.props('label aria-label="angle of the cam"').classes("grow")
-            self.slider.on_value_change(lambda event: self._turned(event.value))
-            ui.button("play", on_click=self._play).props("flat dense")
-        self.clearance()
+            ui.label("cam").classes("text-no-wrap")
+            self.slider = Slider(0.0, 360.0, 1.0, "angle of the cam, degrees", self._turned)
+            self.slider.show(state.angle_deg)
+            self.angle = ui.label(f"{state.angle_deg:.0f}°").classes("swgpar-angle")
+            self.play = ui.button("play", on_click=self._play).props("flat dense")
+        with ui.element("div").props("role=status"):
+            self.clearance()
 
     def draw(self) -> None:
         """Draw the pictures, others where variants come or go."""
+        self.angle.text = f"{self.state.angle_deg:.0f}°"
         if len(self.plots) != len(self.state.shown):
             self.pictures.refresh()
             return
@@ -48,7 +51,9 @@ class SectionPanel:
     def turn(self) -> None:
         """Turn the cam on while it plays."""
         if self.state.plays and not self.state.loaded:
-            self.slider.value = (self.state.angle_deg + 1.0) % 360.0
+            self.state.angle_deg = (self.state.angle_deg + 1.0) % 360.0
+            self.slider.show(self.state.angle_deg)
+            self.draw()
 
     @ui.refreshable_method
     def pictures(self) -> None:
@@ -72,7 +77,7 @@ class SectionPanel:
             word = "overlap" if found.nearest.distance < 0.0 else "smallest clearance"
             name = f"{variant.name}: " if len(self.state.shown) > 1 else ""
             text = f"{name}{word} {abs(1e3 * found.nearest.distance):.2f} µm, {found.place}"
-            ui.label(text).classes("text-negative" if found.overlaps else "").props("role=status")
+            ui.label(text).classes("text-negative" if found.overlaps else "")
 
     def _figure(self, variant: Variant) -> dict[str, Any]:
         design, state = variant.design, self.state
@@ -81,15 +86,17 @@ class SectionPanel:
         found = state.worker.state(design)
         return section_figure(design, loaded=found.outline if found is not None else None)
 
-    def _turned(self, angle: float) -> None:
-        self.state.angle_deg = float(angle)
+    async def _turned(self, angle: float, _: bool) -> None:
+        self.state.angle_deg = angle
         self.draw()
 
     def _view(self) -> None:
         self.state.loaded = bool(self.view.value)
-        self.slider.set_enabled(not self.state.loaded)
+        self.slider.props["disabled"] = self.state.loaded
+        self.slider.update()
         for window in self.state.windows:
             window.draw_section()
 
     def _play(self) -> None:
         self.state.plays = not self.state.plays
+        self.play.text = "stop" if self.state.plays else "play"

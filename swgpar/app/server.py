@@ -32,6 +32,8 @@ STYLE = """
 .swgpar-half { height: calc(50vh - 115px); min-height: 240px }
 .body--dark .text-negative { color: #ff8a80 !important }
 .swgpar-answers { width: 340px; flex: none }
+.swgpar-slider { width: 100%; accent-color: var(--q-primary) }
+.swgpar-angle { width: 3em; text-align: right }
 .swgpar-view { border: 0 }
 .swgpar-search { width: min(90vw, 900px); max-width: none }
 .swgpar-text { max-height: 60vh; overflow: auto; user-select: all }
@@ -120,5 +122,6 @@ def serve(source: Path, port: int | None = None, *, show: bool = True) -> None:
         reload=False,
         dark=None,
         show_welcome_message=False,
+        ws_per_message_deflate=False,  # pictures do not leave this machine
         reconnect_timeout=RECONNECT,
     )

@@ -36,6 +36,9 @@ class Window(Protocol):
     def draw_jobs(self) -> None:
         """Draw the queue, and what follows from its results."""
 
+    def draw_logs(self) -> None:
+        """Draw what jobs that run have printed."""
+
 
 class AppState:
     """What all windows of the app show.
@@ -89,11 +92,9 @@ class AppState:
         await self.draw()
         return ""
 
-    async def show(self, name: str, beside: str | None = None) -> None:
-        """Show a variant, and another one beside it; None keeps that."""
-        self.workspace.shown = name
-        if beside is not None:
-            self.workspace.beside = beside
+    async def show(self, name: str, beside: str) -> None:
+        """Show a variant, and another one beside it; none under an empty name."""
+        self.workspace.shown, self.workspace.beside = name, beside
         self.refused.clear()
         await self.draw(keeps=False)
 
@@ -120,8 +121,11 @@ class AppState:
 
     def look_at_jobs(self) -> None:
         """Start and end jobs."""
-        if self.queue.step() or self.queue.runs:
+        if self.queue.step():
             self.draw_jobs()
+        elif self.queue.runs:
+            for window in self.windows:
+                window.draw_logs()
 
     def draw_jobs(self) -> None:
         """Draw the queue in all windows."""

@@ -1,10 +1,27 @@
-"""Tables of the page."""
+"""Headings, tables and live texts of the page."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from nicegui import ui
+
+
+def heading(text: str) -> ui.label:
+    """A heading of a part of the page."""
+    return ui.label(text).classes("text-bold").props("role=heading aria-level=2")
+
+
+def live_label() -> ui.label:
+    """A label whose changes screen readers say; it has to stay on the page."""
+    return ui.label().props("role=status")
+
+
+def say(label: ui.label, text: str) -> None:
+    """Show a text in a live label; one that has none takes no place."""
+    if label.text != text:
+        label.text = text
+    label.set_visibility(bool(text))
 
 
 def table(headings: Sequence[str], rows: Sequence[Sequence[str]], name: str) -> ui.table:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -11,11 +12,15 @@ import time
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
+from urllib.error import HTTPError
 from urllib.request import urlopen
 
 import pytest
 
+import swgpar
 from support.paths import DESIGN, RECIPE
+from swgpar.app.plane_state import plane_table, solve_plane
+from swgpar.design.drive_design import DriveDesign
 
 CHROMIUM = shutil.which("chromium")
 sync_api = pytest.importorskip("playwright.sync_api")
@@ -25,62 +30,75 @@ pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs chromium")
 SOON = 60_000
 """ms; a loaded machine is slow."""
 
+HOSTILE = "<img src=x onerror=alert(1)>"
+"""A name that would be a script in a page, of a search and of a design."""
+
+CONTROLS = {"button", "textbox", "combobox", "slider", "spinbutton", "switch", "link", "menuitem"}
+"""Roles of what is operated."""
+
 
 class Served:
     """A server in a workspace, and its address."""
 
-    def __init__(self, folder: Path) -> None:
-        command = [sys.executable, "-P", "-m", "swgpar.cli", "app", str(folder), "--no-browser"]
+    def __init__(self, source: Path) -> None:
+        command = [sys.executable, "-P", "-m", "swgpar.cli", "app", str(source), "--no-browser"]
         # NiceGUI serves otherwise within a test
         alone = {name: value for name, value in os.environ.items() if "PYTEST" not in name}
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=alone)
         assert self.process.stdout is not None
         self.address = self.process.stdout.readline().split()[-1]
-        for _ in range(600):  # it listens a moment after it has said so
-            with suppress(OSError), urlopen(self.address):
-                return
-            time.sleep(0.1)
 
-    def kill(self) -> None:
-        self.process.send_signal(signal.SIGKILL)
-        self.process.wait()
+    @property
+    def children(self) -> list[Path]:
+        """Processes that the server has started, as folders of /proc."""
+        pid = self.process.pid
+        text = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="utf-8")
+        return [Path(f"/proc/{child}") for child in text.split()]
 
-
-@pytest.fixture(scope="module")
-def page() -> Iterator[sync_api.Page]:
-    with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield browser.new_page(viewport={"width": 1300, "height": 850})
-        browser.close()
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("workspace")
-    text = DESIGN.read_text(encoding="utf-8").replace("rotation = 6.0", "rotation = 0.0")
-    (folder / "one.toml").write_text(text.replace("fields = false", "fields = true"))
-    shutil.copy(RECIPE, folder / "tiny.toml")
-    # a name that would be a script in a page, of a design and of a search
-    (folder / "<img src=x onerror=alert(1)>.toml").write_text("[optimise]\n", encoding="utf-8")
-    return folder
+    def ended(self, number: int) -> int:
+        """Exit code of the server after a signal."""
+        self.process.send_signal(number)
+        return self.process.wait(timeout=60.0)
 
 
 @pytest.fixture
-def served(folder: Path, page: sync_api.Page) -> Iterator[Served]:
-    served = Served(folder / "one.toml")
-    page.goto(served.address)
-    page.wait_for_selector(".js-plotly-plot", timeout=SOON)
-    yield served
-    served.kill()
+def folder(tmp_path: Path) -> Path:
+    text = DESIGN.read_text(encoding="utf-8").replace("rotation = 6.0", "rotation = 0.0")
+    (tmp_path / "one.toml").write_text(text.replace("fields = false", "fields = true"))
+    shutil.copy(RECIPE, tmp_path / "tiny.toml")
+    (tmp_path / f"{HOSTILE}.toml").write_text("[optimise]\n", encoding="utf-8")
+    return tmp_path
+
+
+@pytest.fixture
+def page() -> Iterator[sync_api.Page]:
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        page = browser.new_page(viewport={"width": 1300, "height": 850})
+        page.set_default_timeout(SOON)
+        sync_api.expect.set_options(timeout=SOON)
+        yield page
+        browser.close()
+
+
+def opened(page: sync_api.Page, source: Path) -> Served:
+    """A server whose page is shown."""
+    served = Served(source)
+    for _ in range(600):  # it listens a moment after it has said so
+        with suppress(sync_api.Error):
+            page.goto(served.address)
+            break
+        time.sleep(0.1)
+    page.wait_for_selector(".js-plotly-plot .trace")
+    return served
+
+
+def press(page: sync_api.Page, name: str) -> None:
+    page.get_by_role("button", name=name, exact=True).click()
 
 
 def job(page: sync_api.Page, text: str) -> sync_api.Locator:
     return page.locator(".swgpar-job").filter(has_text=text)
-
-
-def choose(page: sync_api.Page, label: str, option: str) -> None:
-    page.get_by_label(label, exact=True).click()
-    page.get_by_role("option", name=option, exact=True).click()
 
 
 def enter(page: sync_api.Page, key: str, text: str) -> None:
@@ -89,94 +107,116 @@ def enter(page: sync_api.Page, key: str, text: str) -> None:
     field.press("Tab")
 
 
-def test_a_change_a_wrong_value_and_a_killed_server(
-    page: sync_api.Page, served: Served, folder: Path
-) -> None:
-    """A key is changed, the clearance follows; a wrong value has its sentence; the plane state
-    comes; after a kill everything is there again."""
-    status = page.get_by_role("status")
-    sync_api.expect(status).to_contain_text("smallest clearance", timeout=SOON)
-    before = status.inner_text()
+def undressed(page: sync_api.Page) -> list[str]:
+    """Controls that a keyboard does not reach, or that have no name for a screen reader."""
+    tree = page.context.new_cdp_session(page).send("Accessibility.getFullAXTree")
+    found = []
+    for node in tree["nodes"]:
+        if node["ignored"] or node["role"]["value"] not in CONTROLS:
+            continue
+        has = {one["name"]: one["value"].get("value") for one in node["properties"]}
+        name = node["name"]["value"].strip()
+        if not name or not (has.get("focusable") or has.get("disabled")):
+            found.append(f"{node['role']['value']} {name!r}")
+    return found
+
+
+def plane_answers(path: Path) -> set[str]:
+    """Answers of the plane model of a design as the page shows them."""
+    design = swgpar.load_design(path)
+    assert isinstance(design, DriveDesign)
+    state = solve_plane(plane_table(design))
+    return {f"{one.text}\t{one.value:.4g} {one.unit}".strip() for one in state.answers}
+
+
+def change_keys(page: sync_api.Page, clearance: sync_api.Locator) -> None:
+    """By field and by slider; a wrong value has its sentence and changes nothing; interference
+    appears and goes."""
+    expect = sync_api.expect
+    expect(clearance).to_contain_text("smallest clearance")
+    first = clearance.inner_text()
     enter(page, "drive.module", "1,02")
-    sync_api.expect(status).not_to_have_text(before, timeout=SOON)
-    after = status.inner_text()
+    expect(clearance).not_to_have_text(first)
+    after = clearance.inner_text()
     enter(page, "drive.module", "-3")
     refusal = page.get_by_role("alert").filter(has_text="drive.module = -3 is out of range")
-    sync_api.expect(refusal).to_be_visible(timeout=SOON)
-    assert status.inner_text() == after
-    page.wait_for_selector(".swgpar-plane td", timeout=SOON)
-    served.kill()
-    again = Served(folder)
-    try:
-        page.goto(again.address)
-        page.wait_for_selector(".js-plotly-plot", timeout=SOON)
-        sync_api.expect(page.get_by_role("status")).to_have_text(after, timeout=SOON)
-        page.get_by_role("button", name="copy").click()
-        sync_api.expect(page.get_by_label("variant")).to_have_value("one_2", timeout=SOON)
-    finally:
-        again.kill()
-    assert (folder / "variants" / "one_2.toml").exists()
-    assert "module = 1.02" in (folder / "variants" / "one.toml").read_text(encoding="utf-8")
+    expect(refusal).to_be_visible()
+    assert clearance.inner_text() == after
+    page.get_by_role("slider", name="drive.module").press("ArrowLeft")
+    expect(clearance).not_to_have_text(after)
+    expect(refusal).not_to_be_visible()
+    page.get_by_text("[ring_gear]").click()
+    enter(page, "ring_gear.c_P", "1.03")
+    expect(clearance).to_contain_text("overlap")
+    press(page, "undo")
+    expect(clearance).to_contain_text("smallest clearance")
 
 
-def test_a_cup_job_a_cancelled_one_two_variants_and_files(
-    page: sync_api.Page, served: Served, folder: Path
-) -> None:
-    """The cup runs to its end on two ranks while the page is loaded anew, and its view opens; a job
-    is cancelled; a copy stands beside its source; files are saved and exported."""
-    alerts: list[str] = []
-    page.on("dialog", lambda dialog: alerts.append(dialog.message))
-    choose(page, "mesh", "tiny.toml")
-    page.get_by_role("button", name="run", exact=True).click()
-    sync_api.expect(job(page, "1: runs")).to_be_visible(timeout=SOON)
-    assert "mpirun -n 2 swgpar run jobs/1.toml --mesh tiny.toml" in page.content()
-    page.get_by_role("button", name="rate", exact=True).click()
-    job(page, "2: waits").get_by_role("button", name="cancel").click()
-    sync_api.expect(job(page, "2: cancelled")).to_be_visible(timeout=SOON)
-    page.reload()
-    # two variants
-    page.get_by_role("button", name="copy", exact=True).click()
-    sync_api.expect(page.get_by_label("beside")).to_have_value("one", timeout=SOON)
-    enter(page, "drive.addendum_coef", "0.59")
+def compare_variants(page: sync_api.Page, folder: Path) -> None:
+    """The plane state is that of the interface; a copy stands beside its source, and is saved."""
+    expect = sync_api.expect
+    expect(page.get_by_text("no estimate of errors by the mesh")).to_be_visible()
+    rows = page.locator(".swgpar-plane tbody tr").all_inner_texts()
+    known = plane_answers(folder / "variants" / "one.toml")
+    assert known and {re.sub(r" ±.*", "", row) for row in rows} == known
+    press(page, "copy")
+    expect(page.get_by_label("variant")).to_have_value("one_2")
+    expect(page.get_by_label("beside")).to_have_value("one")
+    enter(page, "drive.addendum_coef", "0.57")
     changes = page.locator(".swgpar-changes")
-    sync_api.expect(changes).to_contain_text("drive.addendum_coef", timeout=SOON)
-    sync_api.expect(page.locator(".js-plotly-plot")).to_have_count(2, timeout=SOON)
-    name = page.get_by_label("variant").input_value()
-    # files
-    page.get_by_role("button", name="save", exact=True).click()
-    sync_api.expect(page.get_by_text(f"written {name}.toml")).to_be_visible(timeout=SOON)
-    assert "# addendum of gears without their own" in (folder / f"{name}.toml").read_text()
-    sync_api.expect(job(page, "1: finished")).to_be_visible(timeout=SOON)
+    expect(changes).to_contain_text("drive.addendum_coef")
+    expect(page.locator(".js-plotly-plot")).to_have_count(2)
+    press(page, "save")
+    expect(page.get_by_text("written one_2.toml")).to_be_visible()
+    assert re.search(r"addendum_coef = 0\.57 +# addendum", (folder / "one_2.toml").read_text())
+    page.reload()
+    expect(changes).to_contain_text("drive.addendum_coef")
+
+
+def look_at_jobs(page: sync_api.Page, folder: Path) -> None:
+    """The first one ends and its view opens; another one is cancelled; files are exported."""
+    expect = sync_api.expect
+    job(page, "1: finished").get_by_role("button", name="3D").click()
+    scene = page.frame_locator("iframe.swgpar-view").locator("#scene canvas")
+    expect(scene).to_be_visible()
+    press(page, "close")
+    press(page, "run")
+    job(page, "2: runs").get_by_role("button", name="cancel").click()
+    expect(job(page, "2: cancelled")).to_be_visible()
     page.locator(".swgpar-export").click()
     page.get_by_text("DXF", exact=True).click()
-    sync_api.expect(job(page, "3: finished")).to_be_visible(timeout=SOON)
-    assert list((folder / "results" / f"{name}_3").glob("*.dxf"))
-    # the view of the report
-    job(page, "1: finished").get_by_role("button", name="3D").click()
-    frame = page.frame_locator("iframe.swgpar-view")
-    sync_api.expect(frame.locator("#scene canvas")).to_be_visible(timeout=SOON)
+    expect(job(page, "3: finished").get_by_role("link")).not_to_have_count(0)
+    assert list((folder / "results" / "one_2_3").glob("*.dxf"))
+
+
+def test_a_session_with_a_killed_server(page: sync_api.Page, folder: Path) -> None:
+    """A run on two ranks goes on while its server is killed and another one takes over. No server
+    leaves a process; a hostile name does nothing; the keyboard reaches every control."""
+    alerts: list[str] = []
+    page.on("dialog", lambda dialog: alerts.append(dialog.message))
+    clearance = page.get_by_role("status").filter(has_text="tip of a lobe")
+    served = opened(page, folder / "one.toml")
+    with pytest.raises(HTTPError, match="403"):
+        urlopen(served.address.partition("?")[0])
+    sync_api.expect(page.get_by_text(f"optimise {HOSTILE}.toml")).to_be_visible()
+    page.get_by_label("mesh", exact=True).click()
+    page.get_by_role("option", name="tiny.toml", exact=True).click()
+    press(page, "run")
+    begun = job(page, "1: runs")
+    sync_api.expect(begun).to_contain_text("mpirun -n 2 swgpar run jobs/1.toml --mesh tiny")
+    change_keys(page, clearance)
+    changed, children = clearance.inner_text(), served.children
+    assert served.ended(signal.SIGKILL) == -signal.SIGKILL and children
+    served = opened(page, folder)
+    sync_api.expect(clearance).to_have_text(changed)
+    compare_variants(page, folder)
+    look_at_jobs(page, folder)
+    assert undressed(page) == []
     assert not alerts
-
-
-def test_the_page_is_closed_without_the_token(served: Served, page: sync_api.Page) -> None:
-    other = page.context.browser.new_context().new_page()
-    answer = other.goto(served.address.partition("?")[0])
-    assert answer is not None and answer.status == 403
-    other.context.close()
-
-
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
-def test_a_server_ends_with_its_processes(folder: Path, number: signal.Signals) -> None:
-    """Also where it is killed."""
-    served = Served(folder)
-    children = Path(f"/proc/{served.process.pid}/task/{served.process.pid}/children")
-    worker = [int(child) for child in children.read_text().split()]
-    assert worker
-    served.process.send_signal(number)
-    assert served.process.wait(timeout=60.0) in (0, 143, -number)
+    children += served.children
+    assert served.ended(signal.SIGTERM) in (0, 143, -signal.SIGTERM)
     for _ in range(300):
-        left = [child for child in worker if Path(f"/proc/{child}").exists()]
-        if not left:
+        if not (left := [child for child in children if child.exists()]):
             return
         time.sleep(0.1)
     raise AssertionError(f"processes {left} go on")

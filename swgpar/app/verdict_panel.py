@@ -1,0 +1,152 @@
+"""The rating sheet of the variant that is shown, and what has changed since another one."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from pathlib import Path
+
+from nicegui import ui
+
+from swgpar.answers.verdict import Judgement
+from swgpar.app.jobs import AppJob, JobState
+from swgpar.app.state import AppState
+from swgpar.app.tables import heading, live_label, say, table
+from swgpar.app.workspace import drive_of
+from swgpar.checks.remarks import remarks
+from swgpar.errors import SwgparError
+from swgpar.input.differences import Difference, differences
+from swgpar.input.toml_file import read_toml
+from swgpar.rating.sheet_differences import RowDifference, sheet_differences
+from swgpar.rating.stored_sheet import StoredRow, StoredSheet, read_sheet
+
+COLOURS = {
+    Judgement.PASSES: "positive",
+    Judgement.NOT_JUDGED: "grey",
+    Judgement.WITHIN_ERROR: "warning",
+    Judgement.FAILS: "negative",
+}
+
+
+class VerdictPanel:
+    """The sheet of the last rating of the variant that is shown."""
+
+    def __init__(self, state: AppState) -> None:
+        self.state = state
+        self.remarks()
+        heading("rating sheet")
+        self.headline = live_label().classes("text-bold")
+        self.verdict()
+        self.since()
+
+    def draw(self) -> None:
+        """Draw what depends on designs and on ratings."""
+        self.remarks.refresh()
+        self.verdict.refresh()
+        self.since.refresh()
+
+    @ui.refreshable_method
+    def remarks(self) -> None:
+        """What deserves a word."""
+        for remark in remarks(self.state.variant.design):
+            ui.label(remark).classes("text-orange-9")
+
+    @ui.refreshable_method
+    def verdict(self) -> None:
+        """The sheet, and the keys that have changed since then."""
+        job = self._last(self.state.variant.name)
+        sheet = self._sheet(job)
+        if job is None or sheet is None:
+            text = "not rated yet: press rate" if self._can_rate() else "add [rating], then rate"
+            say(self.headline, "")
+            ui.label(text).classes("text-caption")
+            return
+        say(self.headline, f"{sheet.headline}: {sheet.title}")
+        self.headline.classes(replace=f"text-{COLOURS[sheet.headline]} text-bold")
+        for row in sheet.rows:
+            _gauge(row)
+        changed = self._changed_keys(job)
+        if changed:
+            keys = ", ".join(one.key for one in changed)
+            ui.label(f"changed since this rating: {keys}").classes("text-orange-9 text-caption")
+
+    @ui.refreshable_method
+    def since(self) -> None:
+        """Answers that differ from those of the variant beside, or of the rating before."""
+        variant, other = self.state.variant.name, self.state.workspace.other
+        last, before = self._last(variant), self._last(variant, 1)
+        names = ("before", "last")
+        if other is not None and other.name != variant:
+            before, names = self._last(other.name), (other.name, variant)
+        first, second = self._sheet(before), self._sheet(last)
+        if first is None or second is None:
+            return
+        heading("answers that differ")
+        rows = [_difference(one) for one in sheet_differences(first, second)]
+        if not rows:
+            ui.label("none").classes("text-caption")
+            return
+        table(["answer", *names, "change"], rows, "answers that differ").classes("swgpar-since")
+        ui.label("± is the sum of both errors").classes("text-caption")
+
+    def _can_rate(self) -> bool:
+        return self.state.variant.design.rating is not None
+
+    def _last(self, variant: str, before: int = 0) -> AppJob | None:
+        """The last rating of a variant that has ended, or one before it."""
+        jobs = [
+            job
+            for job in self.state.queue.jobs
+            if job.command == "rate" and job.variant == variant and job.state == JobState.FINISHED
+        ]
+        return jobs[-1 - before] if len(jobs) > before else None
+
+    def _sheet(self, job: AppJob | None) -> StoredSheet | None:
+        return None if job is None else _read(self.state.queue.folder / job.out)
+
+    def _changed_keys(self, job: AppJob) -> list[Difference]:
+        """Keys that have changed since a job."""
+        try:
+            table = read_toml(self.state.queue.folder / job.arguments[1])
+            return differences(drive_of(table, {}), self.state.variant.design)
+        except SwgparError:
+            return []
+
+
+@lru_cache(maxsize=16)
+def _read(folder: Path) -> StoredSheet | None:
+    """The sheet of a rating that has ended; None where it cannot be read."""
+    try:
+        return read_sheet(folder)
+    except SwgparError:
+        return None
+
+
+def _gauge(row: StoredRow) -> None:
+    """A row of the sheet with the share of its limit."""
+    judgement = Judgement(row.verdict)
+    with ui.element("div").classes("w-full swgpar-gauge"):
+        limit = "" if row.limit is None else f", {row.sense} {row.limit:.4g}"
+        ui.label(f"{row.row}: {_value(row)} {row.unit}{limit}").classes("text-caption")
+        if row.used is not None:
+            bar = ui.linear_progress(min(row.used, 1.0), show_value=False, size="8px")
+            bar.props(f"color={COLOURS[judgement]}")
+            bar.props["aria-label"] = f"{row.row}: {100.0 * row.used:.0f} % of the limit"
+        text = f"{judgement}: {row.reason}" if row.reason else str(judgement)
+        ui.label(text).classes(f"text-{COLOURS[judgement]} text-caption")
+
+
+def _value(row: StoredRow | None) -> str:
+    if row is None or row.value is None:
+        return "—"
+    return f"{row.value:.4g}" + ("" if row.error is None else f" ± {row.error:.2g}")
+
+
+def _difference(one: RowDifference) -> list[str]:
+    """A row of the table of differences."""
+    verdicts = [row.verdict for row in (one.first, one.second) if row is not None]
+    change = "—" if one.change is None else f"{one.change:+.3g}"
+    change += "" if one.change is None or one.error is None else f" ± {one.error:.2g}"
+    if len(set(verdicts)) > 1:
+        change += f"; {verdicts[0]}, now {verdicts[1]}"
+    name = f"{one.name} ({one.unit})" if one.unit else one.name
+    return [name, _value(one.first), _value(one.second), change]
