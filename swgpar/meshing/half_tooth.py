@@ -34,6 +34,16 @@ from swgpar.profiles.flank import ToothProfile
 TIP_NORMAL, ROOT_NORMAL = np.radians(60.0), np.radians(45.0)
 """Inclination of the flank's normal, above the tangent of the pitch circle, at K and at Q."""
 
+SHORTEST_EDGE = 0.02
+"""Least length of a rounded tip edge over that of the flank: a shorter one has no element."""
+
+LOWEST_CAP = 0.5
+"""Largest part of the height from J to K that the cap takes: the core needs the rest."""
+
+LEAST_UNDER = 0.5
+"""Least height of W over the interface circle over that of J: on low teeth the line from Q through
+J would meet the circle."""
+
 DEEP_LEAN = 0.4
 """Least polar angle at the interface circle of the line that begins at Q, over that of Q."""
 
@@ -69,15 +79,18 @@ def snap(profile: ToothProfile, s: float, within: float) -> float:
 
 
 def block_ends(profile: ToothProfile) -> tuple[float, float]:
-    """Return the arc lengths of K and Q, mm; K is T on a tooth whose tip edge is not rounded."""
+    """Return the arc lengths of K and Q, mm; K is T on a tooth whose tip edge is sharp or short."""
     s = profile.length * even(4096)
     angle = inclination(profile, s)
     middle = int(np.argmin(angle))
     tip = np.flatnonzero(angle[: middle + 1] > TIP_NORMAL)
     root = np.flatnonzero(angle[middle:] < ROOT_NORMAL)
-    k = s[tip[-1]] if tip.size else 0.0
+    edge = s[tip[-1]] if tip.size else 0.0
     q = min(s[middle + root[-1]], profile.length) if root.size else s[middle]
-    return snap(profile, k, 0.1 * profile.length), snap(profile, q, 0.04 * profile.length)
+    k = snap(profile, edge, 0.1 * profile.length)
+    if k == 0.0 and edge >= SHORTEST_EDGE * profile.length:
+        k = edge  # K at the beginning of a rounded edge would have the normal of the top land
+    return k, snap(profile, q, 0.04 * profile.length)
 
 
 class HalfTooth:
@@ -146,7 +159,7 @@ class HalfTooth:
         b = polar(interface, theta_b)
         bottom = polar(interface, theta_b * even(n_core + n_layer))
         j, w = self._shoulder(q, b, n_core / (n_core + n_layer))
-        i, a = self._apex(k, n_core, n_layer)
+        i, a = self._apex(side, j, n_core, n_layer)
         inner, centre = self._core_sides(side, i, a, j, w)
         k_to_i, q_to_j = line(k, i, fractions), line(q, j, fractions)
         w_to_q = np.concatenate((line(w, j, even(n_core))[:-1], q_to_j[::-1]))
@@ -209,16 +222,28 @@ class HalfTooth:
         direction /= np.hypot(*direction)
         width = (1.0 - fraction) * q[0]
         j = q + direction * width / abs(direction[0])
-        return j, np.array((0.0, j[1] + 0.5 * (j[1] - q[1]) * j[0] / width * fraction))
+        towards_tip = 1.0 if self.profile.external else -1.0
+        least = self.interface + LEAST_UNDER * (j[1] - self.interface)
+        height = j[1] + 0.5 * (j[1] - q[1]) * j[0] / width * fraction
+        return j, np.array((0.0, towards_tip * max(towards_tip * height, towards_tip * least)))
 
-    def _apex(self, k: Floats, n_core: int, n_layer: int) -> tuple[Floats, Floats]:
-        """Return I and A, the inner corners of the cap."""
+    def _apex(self, side: Floats, j: Floats, n_core: int, n_layer: int) -> tuple[Floats, Floats]:
+        """Return I and A, the inner corners of the cap.
+
+        side : (n, 2) mm, nodes from K to Q
+        """
+        k = side[0]
         inwards = -self.profile.normal(self.s_side[0])[0]
         if self.s_side[0] == 0.0:
             # a sharp edge: halfway between the flank and the top land
-            inwards = inwards - k / np.hypot(*k) * (1.0 if self.profile.external else -1.0)
+            upwards = k / np.hypot(*k) * (1.0 if self.profile.external else -1.0)
+            if -inwards @ upwards > np.sin(TIP_NORMAL):  # a short rounded edge: of its chord
+                x, y = (side[1] - k) / np.hypot(*(side[1] - k))
+                inwards = np.array((y, -x)) * np.sign(upwards[1])
+            inwards = inwards - upwards
             inwards = inwards / np.hypot(*inwards)
         reach = np.hypot(*(self.tip[0] - k)) + 0.5 * self.profile.top_land
         depth = min(0.5 * n_layer * reach / n_core + 0.25 * reach, 0.5 * k[0] / abs(inwards[0]))
+        depth = min(depth, LOWEST_CAP * abs(k[1] - j[1]) / abs(inwards[1]))
         i = k + depth * inwards
         return i, np.array((0.0, i[1] - 0.25 * inwards[1] / abs(inwards[1]) * abs(k[1] - i[1])))
