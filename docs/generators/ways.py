@@ -26,6 +26,10 @@ THINGS = {
 }
 
 
+MOST = {"design": {"modules": 25, "climbs": 8}}
+"""Largest counts of a way: a module that needs one part of the design takes that part."""
+
+
 def measured(thing: str) -> dict[str, Any]:
     """What `scripts/number_path.py` finds in a short run."""
     command = [
@@ -39,6 +43,15 @@ def measured(thing: str) -> dict[str, Any]:
     return json.loads(
         subprocess.run(command, check=True, capture_output=True, text=True, cwd=ROOT).stdout
     )
+
+
+def require_short(ways: dict[str, dict[str, Any]]) -> None:
+    """End with a sentence where a way is longer than `MOST` allows."""
+    for thing, limits in MOST.items():
+        for name, most in limits.items():
+            found = ways[thing]["counts"][name]
+            if found > most:
+                raise SystemExit(f"the way of the {thing} has {found} {name}: allowed are {most}")
 
 
 def counts_table(ways: dict[str, dict[str, Any]]) -> str:
@@ -70,6 +83,7 @@ def stays_table(way: dict[str, Any]) -> str:
 def main(folder: Path) -> None:
     """Write both tables."""
     ways = {name: measured(name) for name in THINGS}
+    require_short(ways)
     (folder / "ways.md").write_text(counts_table(ways), encoding="utf-8")
     (folder / "way_of_the_torque.md").write_text(stays_table(ways["torque"]), encoding="utf-8")
 

@@ -9,6 +9,7 @@ that the result is the same to the solver's tolerance.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from mpi4py import MPI
 
@@ -26,13 +27,10 @@ from swgpar.meshing.recipe_counts import coarser
 from swgpar.model.drive_model import DriveModel
 
 
-def levels(design: DriveDesign, recipe: MeshRecipe) -> list[MeshRecipe]:
-    """Recipes of the coarser meshes of a start, the coarsest first.
-
-    None with friction, because the loaded state then depends on the path to it.
-    """
+def levels(count: int, recipe: MeshRecipe) -> list[MeshRecipe]:
+    """Recipes of at most so many coarser meshes, the coarsest first."""
     recipes = [recipe]
-    while len(recipes) <= design.steps.start_levels and not design.contact.friction:
+    while len(recipes) <= count:
         simpler = coarser(recipes[0])
         if simpler == recipes[0]:
             break
@@ -40,52 +38,59 @@ def levels(design: DriveDesign, recipe: MeshRecipe) -> list[MeshRecipe]:
     return recipes[:-1]
 
 
-def solve_to_load(
-    design: DriveDesign,
-    recipe: MeshRecipe,
-    comm: MPI.Comm,
-    coarse: DriveModel | None = None,
-    *,
-    kept: StartStates | None = None,
-    models: ModelSource = NEW_MODELS,
-) -> DriveModel:
-    """The loaded drive on one mesh, from the loaded state of the model `coarse`, which is given
-    back.
+@dataclass(frozen=True)
+class MeshedDrive:
+    """A drive that is loaded on one mesh after another.
 
-    kept : loaded states of an earlier run, to which this one is added
-    models : of all meshes; a state of the mesh under another load comes before that of `coarse`
-
-    Raises ConvergenceError or InputError where a mesh does not allow it.
+    models : where the models on its meshes come from
     """
-    model = None
-    try:
-        model = models.take(design, recipe, comm)
-        stepper = LoadStepper(model)
-        taken_over = kept is not None and kept.restore(model, recipe)
-        if taken_over or (known := _from_other_load(stepper, models)) is not None:
-            if coarse is not None:
-                models.give_back(coarse)
+
+    design: DriveDesign
+    comm: MPI.Comm
+    models: ModelSource = NEW_MODELS
+
+    def load(
+        self,
+        recipe: MeshRecipe,
+        coarse: DriveModel | None = None,
+        kept: StartStates | None = None,
+    ) -> DriveModel:
+        """The loaded drive on a mesh, from the loaded state of the model `coarse`, which is given
+        back; a state of the mesh under another load comes before that. Collective.
+
+        kept : loaded states of an earlier run, to which this one is added
+
+        Raises ConvergenceError or InputError where a mesh does not allow it.
+        """
+        models, model = self.models, None
+        try:
+            model = models.take(self.design, recipe, self.comm)
+            stepper = LoadStepper(model)
+            taken_over = kept is not None and kept.restore(model, recipe)
+            if taken_over or (known := _from_other_load(stepper, models)) is not None:
+                if coarse is not None:
+                    models.give_back(coarse)
+                    coarse = None
+                iterations = [_settle(stepper) if taken_over else known]
+            elif coarse is not None:
+                iterations = [take_over(coarse, stepper, models)]
                 coarse = None
-            iterations = [_settle(stepper) if taken_over else known]
-        elif coarse is not None:
-            iterations = [take_over(coarse, stepper, models)]
-            coarse = None
-        else:
-            iterations = _reach_load(stepper)
-        if kept is not None and not taken_over:
-            kept.save(model, recipe)
-            _settle(stepper)  # so that the forces are those of a run that takes this state over
-    except SwgparError:
-        for one in (coarse, model):
-            if one is not None:
-                models.drop(one)
-        raise
-    models.keep_loaded(stepper)
-    counted = " + ".join(map(str, iterations))
-    logger.info(
-        "loaded on a mesh of %d elements, Newton iterations %s", model.n_elements(), counted
-    )
-    return model
+            else:
+                iterations = _reach_load(stepper)
+            if kept is not None and not taken_over:
+                kept.save(model, recipe)
+                _settle(stepper)  # so that the forces are those of a run that takes this state over
+        except SwgparError:
+            for one in (coarse, model):
+                if one is not None:
+                    models.drop(one)
+            raise
+        models.keep_loaded(stepper)
+        counted = " + ".join(map(str, iterations))
+        logger.info(
+            "loaded on a mesh of %d elements, Newton iterations %s", model.n_elements(), counted
+        )
+        return model
 
 
 def _settle(stepper: LoadStepper) -> int:
@@ -110,14 +115,9 @@ def _from_other_load(stepper: LoadStepper, models: ModelSource) -> int | None:
     return stepper.iterations
 
 
-def starts_bent(design: DriveDesign) -> bool:
-    """Whether a run begins with the bent shape; not with friction, as `levels`."""
-    return design.steps.bent_start and not design.contact.friction
-
-
 def _reach_load(stepper: LoadStepper) -> list[int]:
     """From the bent shape if that is asked for and works, else step by step; Newton iterations."""
-    if starts_bent(stepper.design):
+    if stepper.design.starts_bent:
         try:
             _jump(stepper)
             return [stepper.iterations]
@@ -140,31 +140,32 @@ def _jump(stepper: LoadStepper) -> None:
 
 def start_at_load(
     stepper: LoadStepper,
+    drive: MeshedDrive,
     recipe: MeshRecipe,
     on_coarse: Callable[[DriveModel, MeshRecipe], None],
     kept: StartStates,
-    models: ModelSource = NEW_MODELS,
 ) -> bool:
     """Reach the loaded state from that under another load, on coarser meshes or from the bent
     shape; False if that is not asked for, or fails.
 
     recipe : of the stepper's mesh;  for the others see `start_loaded`
     """
-    coarser_ones, compares = levels(stepper.design, recipe), stepper.design.compares_meshes
+    compares = drive.design.compares_meshes
+    coarser_ones = levels(drive.design.start_levels, recipe)
     ways: list[tuple[list[MeshRecipe], list[MeshRecipe]]] = []
     if coarser_ones:
         last = coarser_ones.pop()
         ways.append((coarser_ones, with_finer_flanks(last, recipe) if compares else [last]))
-    if starts_bent(stepper.design):
+    if drive.design.starts_bent:
         if compares and not ways and (compared := coarser_recipes(recipe)):
             ways.append(([], compared))
         ways.append(([], []))
-    if ways and models.resume(stepper):
+    if ways and drive.models.resume(stepper):
         asked = compares or stepper.sequence.samples > 0
         ways.insert(0, ([], ways[0][1] if asked else []))
     for recipes, compared in ways:
         try:
-            start_loaded(stepper, recipes + compared, on_coarse, kept, len(compared), models)
+            start_loaded(stepper, drive, recipes + compared, on_coarse, kept, len(compared))
             return True
         except (ConvergenceError, InputError) as error:
             known = stepper.load_state.is_periodic
@@ -176,27 +177,27 @@ def start_at_load(
 
 def start_loaded(
     stepper: LoadStepper,
+    drive: MeshedDrive,
     recipes: list[MeshRecipe],
     on_coarse: Callable[[DriveModel, MeshRecipe], None] = lambda model, recipe: None,
     kept: StartStates | None = None,
     compared: int = 0,
-    models: ModelSource = NEW_MODELS,
 ) -> None:
     """Bring `stepper` to the loaded state: from that under another load where it has one, by way of
     coarser meshes, the coarsest of `recipes` first, or bent at once.
 
+    drive : that of the stepper, on any mesh
     on_coarse : called with the model on each of the last `compared` ones of the coarser meshes, and
         its recipe; it raises nothing
-    kept, models : see `solve_to_load`
+    kept : see `MeshedDrive.load`
 
     Raises ConvergenceError or InputError where a mesh does not allow it; `stepper` is then to be
     reset.
     """
-    target, coarse = stepper.model, None
-    with target.phases("start"):
+    models, coarse = drive.models, None
+    with stepper.model.phases("start"):
         for left, recipe in zip(range(len(recipes), 0, -1), recipes):
-            keys = target.design, recipe, target.comm, coarse
-            coarse = solve_to_load(*keys, kept=kept, models=models)
+            coarse = drive.load(recipe, coarse, kept)
             if left <= compared:
                 on_coarse(coarse, recipe)
         if stepper.load_state.is_periodic:
@@ -210,7 +211,7 @@ def start_loaded(
     models.keep_loaded(stepper)
 
 
-def take_over(coarse: DriveModel, stepper: LoadStepper, models: ModelSource = NEW_MODELS) -> int:
+def take_over(coarse: DriveModel, stepper: LoadStepper, models: ModelSource) -> int:
     """Take over the loaded state of the model on another mesh, which is given back, and solve;
     Newton iterations."""
     loaded = stepper.sequence.loaded

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.analysis.coarse_start import solve_to_load
+from swgpar.analysis.coarse_start import MeshedDrive
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.constraints.distributing_coupling import TILT_X, TILT_Y, X, Y
@@ -120,7 +120,7 @@ class DeviatingDrive:
     def __init__(self, design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> None:
         self.design, self.deviations = turn_design(design), design.deviations
         mesh = turn_mesh(recipe) if self.deviations.mesh == "coarse" else recipe
-        self.model: DriveModel = solve_to_load(self.design, mesh, comm)
+        self.model: DriveModel = MeshedDrive(self.design, comm).load(mesh)
         problem = self.model.problem
         near = NEAR * design.drive.module + design.backlash
         problem.contact_search = replace(

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from swgpar.analysis.bearing_errors import bearing_errors
 from swgpar.analysis.coarse_period import coarse_period
-from swgpar.analysis.coarse_start import solve_to_load, start_at_load
+from swgpar.analysis.coarse_start import MeshedDrive, start_at_load
 from swgpar.analysis.coarse_wall import coarse_wall
 from swgpar.analysis.contact_errors import contact_errors
 from swgpar.analysis.drive_mesh_error import (
@@ -20,7 +20,6 @@ from swgpar.analysis.drive_mesh_error import (
 )
 from swgpar.analysis.evaluate_run import evaluate_run
 from swgpar.analysis.follow_turns import follow_turns
-from swgpar.analysis.model_sources import ModelSource
 from swgpar.analysis.recorder import FolderRecorder, Recorder
 from swgpar.analysis.saved_state import StartStates
 from swgpar.analysis.step_control import StepControl
@@ -29,7 +28,6 @@ from swgpar.drive_results.drive_data import DriveData
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.evaluation.loaded_bearing import loaded_bearing
 from swgpar.evaluation.period import continued
-from swgpar.evaluation.ratcheting import why_ended
 from swgpar.evaluation.result_frame import history_rows
 from swgpar.evaluation.transmission_error import period_rows
 from swgpar.fem.body import RING_GEAR
@@ -47,23 +45,24 @@ from swgpar.run_options import RunOptions
 class DriveRun:
     """One run on its mesh: start or restart, all increments, end.
 
-    recipe : of the model's mesh;  kept : loaded states on the meshes of the start
+    drive : on this mesh and on others;  recipe : of the model's mesh
+    kept : loaded states on the meshes of the start
     begin : time.perf_counter() at the run's start
-    models : of this mesh and of the others
     """
 
     def __init__(
         self,
         recorder: Recorder,
+        drive: MeshedDrive,
         recipe: MeshRecipe,
         kept: StartStates,
         options: RunOptions,
         begin: float,
-        models: ModelSource,
     ) -> None:
         self.recorder, self.stepper, self.model = recorder, recorder.stepper, recorder.model
-        self.recipe, self.kept, self.options, self.begin = recipe, kept, options, begin
-        self.models, self.earlier_seconds, self.ended_early = models, 0.0, False
+        self.drive, self.recipe, self.kept = drive, recipe, kept
+        self.options, self.begin = options, begin
+        self.earlier_seconds, self.ended_early = 0.0, False
         self.coarser: list[CoarserMesh | None] = []
         self.comparison: MeshComparison | None = None
         counts = self.model.counts()
@@ -101,7 +100,7 @@ class DriveRun:
             self.stepper.resume_at(sequence.loaded)
             return sequence.from_loaded
         record.starts_loaded = start_at_load(
-            self.stepper, self.recipe, self._keep_coarse, self.kept, self.models
+            self.stepper, self.drive, self.recipe, self._keep_coarse, self.kept
         )
         return sequence.from_loaded if record.starts_loaded else sequence.states
 
@@ -135,10 +134,9 @@ class DriveRun:
     def _load_coarser(self) -> None:
         """Load the drive on the coarser meshes in the steps of the run, where it did not start on
         them."""
-        design, comm = self.model.design, self.model.comm
         for recipe in coarser_recipes(self.recipe):
             try:
-                model = solve_to_load(design, recipe, comm, models=self.models)
+                model = self.drive.load(recipe)
             except (ConvergenceError, InputError) as error:
                 logger.info("the error by the mesh of the drive is not known: %s", error)
                 self.coarser.append(None)
@@ -146,12 +144,12 @@ class DriveRun:
             try:
                 self._keep_coarse(model, recipe)
             finally:
-                self.models.give_back(model)
+                self.drive.models.give_back(model)
 
     def go_through(self, states: Sequence[LoadState]) -> None:
         """Compute and record the increments that are left."""
         stepper, recorder, terminal = self.stepper, self.recorder, self.options.terminal
-        record, design = recorder.record, self.model.design
+        record = recorder.record
         steps = StepControl(stepper, record.torque_points, record.slip_checks)
         loaded = next((state for state in reversed(states) if state.stage == Stage.LOAD), None)
         with IncrementProgress(
@@ -161,21 +159,17 @@ class DriveRun:
                 state.stage.label, np.degrees(state.angle), its, ratio
             )
             for state in states[len(record.rows) :]:
-                ended = design.ratcheting is not None and why_ended(
-                    design.ratcheting, record.torque_points, design.negligible_torque_Nm
-                )
-                if ended or self.ended_early:
+                if steps.has_ended() or self.ended_early:
                     break
                 start = time.perf_counter()
                 # a start at once ends with the first one
                 if state != stepper.load_state and not self._advance(steps, state):
                     break
                 seconds = time.perf_counter() - start
-                if state == loaded and design.compares_meshes:
+                if state == loaded:
                     self._compare(state)
-                if design.resolves_root_stress:
-                    record.root_stress = self._root_stress(state, state == loaded)
-                if state == loaded and design.resolves_wall:
+                record.root_stress = self._root_stress(state, state == loaded)
+                if state == loaded:
                     record.wall_stress = self._wall_stress(state)
                 recorder.keep(seconds, self.seconds)
                 if len(record.rows) == 1:
@@ -207,8 +201,10 @@ class DriveRun:
 
     def _root_stress(self, state: LoadState, loaded: bool) -> RootStress | None:
         """Largest tensile stress at the teeth by windows; the one known before where a window
-        cannot be computed."""
+        cannot be computed, or none is asked for."""
         known, sequence = self.recorder.record.root_stress, self.stepper.sequence
+        if not self.model.design.resolves_root_stress:
+            return known
         # of two periods the first one settles
         further = sequence.samples and sequence.periods == 1 and state.stage == Stage.ROTATE
         try:
@@ -225,10 +221,11 @@ class DriveRun:
         return known
 
     def _compare(self, state: LoadState) -> None:
-        """Compare contacts and bearing of the loaded state with those on coarser meshes, where
-        these are not known before."""
+        """Compare contacts and bearing of the loaded state with those on coarser meshes, where that
+        is asked for and not known before."""
         record = self.recorder.record
-        if record.root_stress is not None:  # the choice of the mesh has compared it
+        # the choice of the mesh has compared the state whose stress is known
+        if not self.model.design.compares_meshes or record.root_stress is not None:
             return
         if not self.coarser:
             with self.model.phases("coarser mesh"):
@@ -250,8 +247,11 @@ class DriveRun:
         return found if self.comparison is None else self.comparison.with_errors(found)
 
     def _wall_stress(self, state: LoadState) -> WallStress | None:
-        """Largest stresses of the wall behind the teeth; None where they cannot be computed."""
+        """Largest stresses of the wall behind the teeth; None where they are not asked for or
+        cannot be computed."""
         record = self.recorder.record
+        if not self.model.design.resolves_wall:
+            return None
         at_teeth = 0.0 if record.root_stress is None else record.root_stress.s1
         try:
             with self.model.phases("windows"):
@@ -262,18 +262,14 @@ class DriveRun:
 
     def finish(self, recipe_name: str) -> DriveData:
         """Summarise the run."""
-        recorder, model, sequence = self.recorder, self.model, self.stepper.sequence
-        design, rows, error = model.design, recorder.record.rows, None
-        if design.stiffness is not None and design.stiffness.mesh_error:
-            with model.phases("coarser mesh"):
-                keys = design, self.recipe, recorder.program_rows(), model.comm
-                error = stiffness_error(*keys, self.models)
-        if design.deviations is not None:
+        recorder, sequence, rows = self.recorder, self.stepper.sequence, self.recorder.record.rows
+        of_stiffness = self._stiffness_error()
+        if self.model.design.deviations is not None:
             follow_turns(self.recipe, recorder)
         else:
             recorder.keep_turns(period_rows(sequence, rows))
         if sequence.samples and rows:
-            self.models.keep_period(self.stepper)
+            self.drive.models.keep_period(self.stepper)
             rows = continued(sequence, rows)
         rows = history_rows(sequence.kinematics, rows)
         summary, tables = evaluate_run(
@@ -281,13 +277,22 @@ class DriveRun:
             rows,
             recipe_name,
             self.seconds,
-            stiffness_error=error,
+            stiffness_error=of_stiffness,
             ended_early=self.ended_early,
         )
         for remark in filter(None, (summary.rotation.jammed, summary.rotation.energy)):
             logger.warning("%s", remark)
         self._log_penetration()
         return recorder.finish(rows, summary, tables)
+
+    def _stiffness_error(self) -> Mapping[str, float] | None:
+        """Errors of the torsional stiffness by the mesh; None where they are not asked for or not
+        known."""
+        section = self.model.design.stiffness
+        if section is None or not section.mesh_error:
+            return None
+        with self.model.phases("coarser mesh"):
+            return stiffness_error(self.drive, self.recipe, self.recorder.program_rows())
 
     def _log_penetration(self) -> None:
         """Say once how deep cam and pins have got into the flexible spline, where augmentations did

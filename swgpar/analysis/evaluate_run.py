@@ -34,7 +34,7 @@ from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.evaluation.stress_factors import root_factor, stress_factors
 from swgpar.evaluation.transmission_error import evaluate_turns
 from swgpar.largest_stress.places import LargestStresses
-from swgpar.load.load_program import stiffness_program
+from swgpar.load.load_sequence import stiffness_program
 from swgpar.petsc import PETSc
 from swgpar.results.history import Row, loaded_increments
 from swgpar.version import __version__
@@ -144,7 +144,7 @@ def evaluate_run(
         bolts=evaluate_bolts(design.cup, record.bolts, _increments_under_load(rows))
         if design.is_bolted
         else None,
-        clearance=rigid_clearance(clearances(design)),
+        clearance=rigid_clearance(clearances(design.rigid_pairs)),
         frequencies=NaturalFrequencies(modes=record.modes) if record.modes else None,
         housing=HousingStresses(**record.housing) if record.housing else None,
     )

@@ -18,7 +18,7 @@ from mpi4py import MPI
 from swgpar.analysis.shortcuts import SAMPLES, with_shortcuts
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutOfMemoryError
-from swgpar.load.load_program import program_points
+from swgpar.load.load_sequence import program_points
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.sector_counts import sector_counts
 from swgpar.petsc import is_out_of_memory

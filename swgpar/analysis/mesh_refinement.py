@@ -10,11 +10,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from mpi4py import MPI
-
 from swgpar.analysis.accuracy import ROUGH
 from swgpar.analysis.bearing_errors import bearing_errors
-from swgpar.analysis.coarse_start import solve_to_load
+from swgpar.analysis.coarse_start import MeshedDrive
 from swgpar.analysis.coarse_wall import coarse_wall
 from swgpar.analysis.contact_errors import contact_errors
 from swgpar.analysis.drive_mesh_error import (
@@ -24,9 +22,7 @@ from swgpar.analysis.drive_mesh_error import (
     with_finer_flanks,
 )
 from swgpar.analysis.forecast import fits, forecast
-from swgpar.analysis.model_sources import NEW_MODELS, ModelSource
 from swgpar.analysis.saved_state import StartStates
-from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.evaluation.contact_error_shares import ContactErrorShares
 from swgpar.evaluation.loaded_bearing import loaded_bearing
@@ -88,12 +84,12 @@ class Refinement:
 
     Parameters
     ----------
+    drive : on any mesh
     recipe : the first mesh, compared with a coarser one, or where that would not find the contacts
         with a finer one
     largest : elements of the whole drive beyond which no mesh is taken
     kept : loaded states of an earlier run, to which those of this one are added
     levels : windows on the first mesh; None for the usual ones
-    models : of all meshes
 
     Attributes
     ----------
@@ -102,17 +98,14 @@ class Refinement:
 
     def __init__(
         self,
-        design: DriveDesign,
+        drive: MeshedDrive,
         recipe: MeshRecipe,
-        comm: MPI.Comm,
         largest: int,
         kept: StartStates | None = None,
         levels: int | None = None,
-        models: ModelSource = NEW_MODELS,
     ) -> None:
-        self.design, self.comm, self.largest, self.kept = design, comm, largest, kept
-        self.models = models
-        self.loaded, self.kind = load_sequence(design).loaded, design.drive.model
+        self.drive, self.design, self.largest, self.kept = drive, drive.design, largest, kept
+        self.loaded, self.kind = load_sequence(self.design).loaded, self.design.drive.model
         self.levels = levels or LEVELS[self.kind]
         coarser = coarser_recipes(recipe)
         if not coarser:
@@ -121,7 +114,7 @@ class Refinement:
         try:
             self.known = self._refined(coarser, recipe)
         except SwgparError:
-            models.drop(self.model)
+            drive.models.drop(self.model)
             raise
 
     def _refined(
@@ -166,14 +159,13 @@ class Refinement:
 
     def _solved(self, recipe: MeshRecipe, coarse: DriveModel | None = None) -> DriveModel:
         """The loaded model on a mesh, from the state of a coarser one if it is given."""
-        keys = self.design, recipe, self.comm, coarse
-        return solve_to_load(*keys, kept=self.kept, models=self.models)
+        return self.drive.load(recipe, coarse, self.kept)
 
     def _replace(self, recipe: MeshRecipe) -> None:
         """Take the model on this mesh, from the present one's state where its path is of no
         account."""
         if self.design.contact.friction:
-            self.models.give_back(self.model)
+            self.drive.models.give_back(self.model)
             self.model = self._solved(recipe)
             return
         try:
@@ -202,7 +194,7 @@ class Refinement:
         try:
             finer = refined(self.known.recipe)
             needs = forecast(self.design, finer)
-            if needs.elements > self.largest or not fits(needs, limit, self.comm):
+            if needs.elements > self.largest or not fits(needs, limit, self.drive.comm):
                 return False
             build_sector_meshes(self.design.geometry, finer)
         except InputError:
@@ -212,54 +204,53 @@ class Refinement:
             self.known = self._refined(coarser, finer, self.known.found)
         except (ConvergenceError, InputError) as error:
             logger.warning("no finer mesh of the drive: %s", error)
-            self.models.give_back(self.model)
+            self.drive.models.give_back(self.model)
             self.model = self._solved(self.known.recipe)
             return False
         return True
 
 
 def choose_mesh(
-    design: DriveDesign,
+    drive: MeshedDrive,
     recipe: MeshRecipe,
     accuracy: float,
-    comm: MPI.Comm,
     *,
     largest: int | None = None,
     kept: StartStates | None = None,
-    models: ModelSource = NEW_MODELS,
 ) -> ChosenMesh:
     """Refine `recipe` and the windows until the estimated relative error of the root's stress is at
     most `accuracy`.
 
     largest : elements of the whole drive beyond which no finer mesh is taken; None for `LARGEST`
-    kept, models : see `Refinement`
+    kept : see `Refinement`
 
     Ends with the best mesh where the accuracy is out of reach, and says so. Raises ConvergenceError
     or InputError like a run on one of the first two meshes.
     """
-    largest = LARGEST[design.drive.model] if largest is None else largest
-    levels = FEWEST_LEVELS[design.drive.model] if accuracy >= ROUGH else None
-    drive = Refinement(design, recipe, comm, largest, kept, levels, models)
-    refine = {"windows": drive.refine_windows, "mesh": drive.refine_drive}
-    while relative_error(drive.known.found) > accuracy:
+    kind = drive.design.drive.model
+    largest = LARGEST[kind] if largest is None else largest
+    levels = FEWEST_LEVELS[kind] if accuracy >= ROUGH else None
+    present = Refinement(drive, recipe, largest, kept, levels)
+    refine = {"windows": present.refine_windows, "mesh": present.refine_drive}
+    while relative_error(present.known.found) > accuracy:
         errors = {
-            "windows": _bound(drive.known.found.error),
-            "mesh": _bound(drive.known.found.drive_error),
+            "windows": _bound(present.known.found.error),
+            "mesh": _bound(present.known.found.drive_error),
         }
-        allowed = accuracy * drive.known.found.s1
+        allowed = accuracy * present.known.found.s1
         if not refine or any(errors[part] > allowed for part in errors.keys() - refine.keys()):
             logger.info(
                 "no finer mesh is taken: the drive has at most %d elements, and its run fits into "
                 "the memory",
-                drive.largest,
+                present.largest,
             )
             break
         part = max(refine, key=lambda part: errors[part])
         if not refine[part]():
             del refine[part]
-    known = drive.known
+    known = present.known
     return ChosenMesh(
-        drive.model,
+        present.model,
         known.recipe,
         known.found,
         relative_error(known.found),

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from swgpar.analysis.accuracy import require_refinable, with_accuracy
+from swgpar.analysis.coarse_start import MeshedDrive
 from swgpar.analysis.drive_run import DriveRun
 from swgpar.analysis.forecast import forecast, reported_memory, require_memory
 from swgpar.analysis.identity import identity
@@ -90,13 +91,12 @@ def run_drive(
             way = "taking over loaded states" if kept.found(comm) else "starting from the beginning"
             logger.info("no increment was saved: %s", way)
         what = identity(design.decisive_keys, recipe, options.accuracy)
-        chosen = None
+        drive, chosen = MeshedDrive(design, comm, models), None
         if options.accuracy is not None:
             if resumed:
                 recipe = on_all(comm, lambda: load_recipe(folder / RECIPE))
             else:
-                asked = design, recipe, options.accuracy, comm
-                chosen = choose_mesh(*asked, kept=kept, models=models)
+                chosen = choose_mesh(drive, recipe, options.accuracy, kept=kept)
                 recipe = chosen.recipe
         model = models.take(design, recipe, comm) if chosen is None else chosen.model
         stepper = LoadStepper(model)
@@ -106,7 +106,7 @@ def run_drive(
         try:
             if chosen is not None:
                 recorder.keep_choice(chosen, options.accuracy)
-            run = DriveRun(recorder, recipe, kept, options, begin, models)
+            run = DriveRun(recorder, drive, recipe, kept, options, begin)
             run.go_through(run.resume() if resumed else run.start())
             result = run.finish(recipe_name)
         except SwgparError as error:

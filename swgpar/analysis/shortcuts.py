@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.load.load_program import program_points
+from swgpar.load.load_sequence import program_points
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import coarser
 

@@ -73,6 +73,10 @@ class StepControl:
             return
         stepper.advance(target)
 
+    def has_ended(self) -> bool:
+        """Whether the rotation of [ratcheting] has gone far enough."""
+        return self._path.has_ended()
+
     # -- prescribed rotations ----------------------------------------------------------------------
 
     def _torque_point(self) -> TorquePoint:

@@ -8,18 +8,16 @@ mesh. The sizes of both errors are added (docs/theory/stiffness.md).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
-from mpi4py import MPI
-
-from swgpar.analysis.coarse_start import solve_to_load
+from swgpar.analysis.coarse_start import MeshedDrive
 from swgpar.analysis.drive_mesh_error import ORDER, SAFETY, coarser_recipes, smallest_ratio
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.analysis.model_sources import ModelSource
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.evaluation.program_results import PointRow, point_rows
 from swgpar.evaluation.stiffness import CHORDS, NAMES, StiffnessValues, by_position
-from swgpar.load.load_program import stiffness_program
+from swgpar.load.load_sequence import stiffness_program
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import body_ratio, with_equal_doubled
@@ -33,15 +31,11 @@ DOUBLED = 1.0 / (1.0 - 2.0**-ORDER)
 
 
 def stiffness_error(
-    design: DriveDesign,
-    recipe: MeshRecipe,
-    rows: Sequence[PointRow],
-    comm: MPI.Comm,
-    models: ModelSource,
+    drive: MeshedDrive, recipe: MeshRecipe, rows: Sequence[PointRow]
 ) -> dict[str, float] | None:
     """Error of every value of `StiffnessValues` on the mesh of `recipe`; None where there is none.
 
-    rows : of program.csv on that mesh;  models : of other meshes. Collective.
+    rows : of program.csv on that mesh. Collective.
     """
     coarser = coarser_recipes(recipe)
     if not coarser or body_ratio(coarser[0], recipe) is None:
@@ -50,15 +44,15 @@ def stiffness_error(
             "contacts"
         )
         return None
-    first = _first_position(design)
+    first = replace(drive, design=_first_position(drive.design))
     coarse, ratio = coarser[0], smallest_ratio(coarser[0], recipe)
-    fine = by_position(stiffness_program(first), rows)[0.0]
+    fine = by_position(stiffness_program(first.design), rows)[0.0]
     try:
-        found = _stiffness_on(first, coarse, comm, models)
+        found = _stiffness_on(first, coarse)
         changes = [_changes(found, fine, 1.0 / (ratio**ORDER - 1.0))]
-        if design.drive.model == "plane":
+        if drive.design.drive.model == "plane":
             finer = with_equal_doubled(recipe, coarse)
-            doubled = _stiffness_on(first, finer, comm, models)
+            doubled = _stiffness_on(first, finer)
             changes.append(_changes(fine, doubled, DOUBLED))
     except (ConvergenceError, InputError) as error:
         logger.info("the error of the stiffness by the mesh is not known: %s", error)
@@ -94,11 +88,9 @@ def _first_position(design: DriveDesign) -> DriveDesign:
     return design.model_copy(update={"stiffness": section})
 
 
-def _stiffness_on(
-    design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm, models: ModelSource
-) -> StiffnessValues:
-    """The stiffness at the only position of a design, on another mesh."""
-    model = solve_to_load(design, recipe, comm, models=models)
+def _stiffness_on(drive: MeshedDrive, recipe: MeshRecipe) -> StiffnessValues:
+    """The stiffness at the only position of a drive, on another mesh."""
+    model = drive.load(recipe)
     try:
         stepper = LoadStepper(model)
         sequence = stepper.sequence
@@ -108,6 +100,6 @@ def _stiffness_on(
             stepper.advance(state)
             rows.append(stepper.row())
     finally:
-        models.give_back(model)
+        drive.models.give_back(model)
     points = point_rows(sequence.points, sequence.kinematics, rows)
-    return by_position(stiffness_program(design), points)[0.0]
+    return by_position(stiffness_program(drive.design), points)[0.0]

@@ -40,7 +40,8 @@ def flank_gaps(design: DriveDesign, angle_deg: float = 0.0) -> FlankGaps:
     """
     cam_angle = float(np.radians(angle_deg))
     spline, ring = (outline(design.profile(gear)) for gear in GEARS)
-    motion, psi = design.tooth_motion(), tooth_angles(design, cam_angle)
+    motion = design.tooth_motion()
+    psi = tooth_angles(motion, cam_angle)
     pose, near = motion.pose(psi), NEAR * design.drive.module
     flank = spline.point[spline.flank][::STRIDE]
     to_tooth = np.exp(1j * np.pi / motion.teeth_rg)
@@ -54,7 +55,7 @@ def flank_gaps(design: DriveDesign, angle_deg: float = 0.0) -> FlankGaps:
         tooth = np.flatnonzero(distance.min(axis=1) < near)
         nearest = distance[tooth].argmin(axis=1)
         both = np.column_stack([points.real, points.imag])
-        places = moved_points(design, psi[tooth], both, cam_angle)
+        places = moved_points(motion.line, psi[tooth], both, cam_angle)
         index = np.arange(len(tooth))
         found.append((tooth, places[index, nearest], distance[tooth, nearest]))
     return FlankGaps(*map(np.concatenate, zip(*found, strict=True)))

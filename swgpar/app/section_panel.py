@@ -73,7 +73,7 @@ class SectionPanel:
     def clearance(self) -> None:
         """The smallest clearance of a whole turn, with its place."""
         for variant in self.state.shown:
-            found = clearances(variant.design)[0]
+            found = clearances(variant.design.rigid_pairs)[0]
             word = "overlap" if found.nearest.distance < 0.0 else "smallest clearance"
             name = f"{variant.name}: " if len(self.state.shown) > 1 else ""
             text = f"{name}{word} {abs(1e3 * found.nearest.distance):.2f} µm, {found.place}"

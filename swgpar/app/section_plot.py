@@ -37,7 +37,8 @@ def section_figure(
     The view is that of the teeth at the lobe next to +y, and stays where a user has moved it.
     """
     angle = float(np.radians(angle_deg))
-    traces = [_body(name, curves) for name, curves in body_curves(design, angle).items()]
+    bodies = body_curves(design.geometry, design.tooth_motion(), design.cam(), angle)
+    traces = [_body(name, curves) for name, curves in bodies.items()]
     width = 7.0 * np.pi * design.drive.module
     top = design.major_semi_axis + design.flexible_spline.rim
     x, y = -top * np.sin(angle), top * np.cos(angle)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GearName
 from swgpar.profiles.mesh_gap import NearestPlace
+from swgpar.profiles.rigid_teeth import RigidTeeth
 
 WORDS = {
     "ring_gear": "smallest flank clearance, kinematic (mm)",
@@ -61,9 +62,9 @@ class Clearance:
         )
 
 
-def clearances(design: DriveDesign) -> list[Clearance]:
-    """Of all ring gears of a drive."""
+def clearances(teeth: Mapping[GearName, RigidTeeth]) -> list[Clearance]:
+    """Of the flexible spline in each ring gear. teeth : of both, by the name of the ring gear"""
     return [
-        Clearance(ring, design.rigid_teeth(ring).nearest_place(), -TAKEN_UP * design.drive.module)
-        for ring in design.gears[1:]
+        Clearance(ring, pair.nearest_place(), -TAKEN_UP * pair.module)
+        for ring, pair in teeth.items()
     ]

@@ -38,7 +38,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
     """Quantities that follow from a design: names with units, and values. `swgpar check` prints
     them."""
     spline, ring = design.profile("flexible_spline"), design.profile("ring_gear")
-    cam, line, every = design.cam(), design.tooth_motion().line, clearances(design)
+    cam, line, every = design.cam(), design.tooth_motion().line, clearances(design.rigid_pairs)
     lobe, valley = line.deflections
     driving = "ring gear" if design.kinematics.wave_generator_is_fixed else "wave generator"
     return {

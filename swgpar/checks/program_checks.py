@@ -8,7 +8,8 @@ from itertools import pairwise
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.input.require import require, require_available
-from swgpar.load.load_program import NO_TORQUE, RATCHETING, controls, stiffness_program
+from swgpar.load.load_program import NO_TORQUE, RATCHETING, controls
+from swgpar.load.load_sequence import stiffness_program
 
 NAME = re.compile(r"[A-Za-z0-9_ +-]+")
 """Names of stages: they stand in tables and in names of quantities."""

@@ -17,7 +17,7 @@ STRETCH = 1e-3
 
 def remarks(design: DriveDesign) -> list[str]:
     """Sentences about what is allowed and may not be meant."""
-    sentences = [clearance.remark for clearance in clearances(design) if clearance.overlaps]
+    sentences = [one.remark for one in clearances(design.rigid_pairs) if one.overlaps]
     stretch = design.tooth_motion().line.stretch
     if stretch > STRETCH and design.wave_generator.lobes_are_alike:
         hoop = stretch * design.materials["flexible_spline"].modulus

@@ -12,8 +12,8 @@ from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.drive_sections import DriveSections
 from swgpar.design.negligible_torque import negligible_torque
 from swgpar.design.sections import ExternalGear, GearName, InternalGear
-from swgpar.geometry.bearing import BallLines, BearingSizes, ball_lines
-from swgpar.geometry.cams import Cam, make_cam
+from swgpar.geometry.bearing import BallLines, BearingSizes, RigidParts, ball_lines
+from swgpar.geometry.cams import Cam, OffsetCam, make_cam
 from swgpar.geometry.cams.semi_axes import minor_semi_axis, radial_deflection
 from swgpar.geometry.disc_surface import CamSurface, GrownSurface, cam_surface
 from swgpar.geometry.neutral_line import neutral_line
@@ -279,6 +279,11 @@ class DriveDesign(DriveSections):
         lobes = self.wave_generator.lobes
         return RigidTeeth(*profiles, motion, lobes, drive.teeth_fs, drive.module)
 
+    @property
+    def rigid_pairs(self) -> dict[GearName, RigidTeeth]:
+        """`rigid_teeth` of every ring gear, by its name."""
+        return {ring: self.rigid_teeth(ring) for ring in self.gears[1:]}
+
     def cam(self) -> Cam:
         """Exact curve of the cam, major axis along +y. Raises InputError where its keys give no
         closed curve."""
@@ -332,6 +337,15 @@ class DriveDesign(DriveSections):
             return factor * centre, normal, curvature / factor
 
         return grown
+
+    @property
+    def rigid_parts(self) -> RigidParts:
+        """The cam, and the balls on it at its temperature."""
+        width, sizes = self.wave_generator.face_width, self.bearing
+        if sizes is None:
+            return RigidParts(self.cam(), width)
+        groove = OffsetCam(self.cam(), -(sizes.race_thickness + sizes.ball_diameter))
+        return RigidParts(groove, width, self.grown_ball_lines(), sizes.ball_diameter)
 
     @property
     def ball_clearance(self) -> float:

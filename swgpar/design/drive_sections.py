@@ -201,6 +201,17 @@ class DriveSections(Design):
         return self.resolves_root_stress or compares
 
     @property
+    def start_levels(self) -> int:
+        """Coarser meshes on which a run starts; none with friction, because the loaded state then
+        depends on the path to it."""
+        return 0 if self.contact.friction else self.steps.start_levels
+
+    @property
+    def starts_bent(self) -> bool:
+        """Whether a run begins with the bent shape; not with friction either."""
+        return self.steps.bent_start and not self.contact.friction
+
+    @property
     def resolves_wall(self) -> bool:
         """Whether rings resolve the stress of the wall of a cup."""
         return self.output.root_stress and self.has_cup

@@ -47,7 +47,7 @@ def checks(summary: DriveSummary, history: Mapping[str, np.ndarray]) -> list[Che
             contact.friction > 0.0,
         ),
         _penetration(tolerance, history),
-        _clearance(clearances(summary.design)),
+        _clearance(clearances(summary.design.rigid_pairs)),
         _edge(summary.contact),
         _resolution(summary.root_stress, summary.accuracy),
         _meshed(summary.stresses),

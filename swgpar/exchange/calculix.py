@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from swgpar.analysis.bent_start import BentSpline
+from swgpar.analysis.bent_spline import BentSpline
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.exchange.calculix_growth import initial_temperature, temperatures

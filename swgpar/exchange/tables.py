@@ -14,7 +14,7 @@ from swgpar.drive_results.drive_tables import DriveTables
 from swgpar.errors import InputError
 from swgpar.evaluation.stiffness import Loop, rows_by_position
 from swgpar.exchange.loaded_losses import LoadedLosses
-from swgpar.load.load_program import stiffness_program
+from swgpar.load.load_sequence import stiffness_program
 from swgpar.log import logger
 from swgpar.results.table import as_rows, format_columns
 

@@ -68,6 +68,20 @@ class BearingSizes:
         )
 
 
+@dataclass(frozen=True)
+class RigidParts:
+    """What of a wave generator is rigid, in the frame of the cam, without crowning and slope.
+
+    curve : of the cam, or of the groove of the inner race on it;  width : mm
+    ball_lines, ball_diameter : of the balls, mm; None and 0 without a bearing
+    """
+
+    curve: Cam
+    width: float
+    ball_lines: BallLines | None = None
+    ball_diameter: float = 0.0
+
+
 def ball_lines(
     cam: Cam, depth: float, angle: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -1,7 +1,5 @@
 """Load programs: the points at which a path of torques, output rotations and wave-generator angles
-stops.
-
-A program is written in the design file, or generated from its sections [stiffness] and
+stops. They are written in the design file, or generated from its sections [stiffness] and
 [ratcheting].
 """
 
@@ -13,7 +11,6 @@ from typing import Literal
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
 from swgpar.design.kinematics import Kinematics
 from swgpar.design.program_sections import ProgramStage, Ratcheting, Stiffness
 
@@ -54,15 +51,6 @@ class ProgramPoint:
     angle: float
     control: Control
     value: float
-
-
-def program_points(design: DriveDesign) -> list[ProgramPoint]:
-    """All points of the design's load program in order; none without a program."""
-    if design.stiffness:
-        return stiffness_program(design).points()
-    if design.ratcheting:
-        return ratcheting_points(design.ratcheting, design.kinematics)
-    return stage_points(design.load.program)
 
 
 def stage_points(stages: Sequence[ProgramStage]) -> list[ProgramPoint]:
@@ -195,22 +183,6 @@ class StiffnessProgram:
         if halfway or (self.starts_mirrored and k == 0):
             return way[:1] if k else (POSITIVE_LOADING,)
         return way
-
-
-def stiffness_program(design: DriveDesign) -> StiffnessProgram:
-    """The program of a design with [stiffness]."""
-    section = design.stiffness
-    torque = section.torque or design.load.torque
-    period = float(np.degrees(design.kinematics.period_angle))
-    return StiffnessProgram(
-        section,
-        torque,
-        section.rated_torque or torque,
-        design.negligible_torque_Nm,
-        tuple(period * k / section.positions for k in range(section.positions)),
-        uses_mirror=not section.loop and design.is_mirror_symmetric,
-        starts_mirrored=not section.loop and design.starts_mirror_symmetric,
-    )
 
 
 def ratcheting_points(section: Ratcheting, kinematics: Kinematics) -> list[ProgramPoint]:

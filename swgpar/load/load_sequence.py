@@ -12,7 +12,12 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.design.kinematics import Kinematics
 from swgpar.design.sections import Steps
 from swgpar.geometry.cams import pin_travel
-from swgpar.load.load_program import ProgramPoint, program_points
+from swgpar.load.load_program import (
+    ProgramPoint,
+    StiffnessProgram,
+    ratcheting_points,
+    stage_points,
+)
 from swgpar.load.load_states import (
     CAM_START_CLEARANCE,
     FLANK_START_CLEARANCE,
@@ -28,6 +33,31 @@ def start_state(design: DriveDesign) -> LoadState:
     if design.uses_pins:
         return LoadState(Stage.START, 0, pin_inset=travel)
     return LoadState(Stage.START, 0, cam_clearance=travel)
+
+
+def program_points(design: DriveDesign) -> list[ProgramPoint]:
+    """All points of the design's load program in order; none without a program."""
+    if design.stiffness:
+        return stiffness_program(design).points()
+    if design.ratcheting:
+        return ratcheting_points(design.ratcheting, design.kinematics)
+    return stage_points(design.load.program)
+
+
+def stiffness_program(design: DriveDesign) -> StiffnessProgram:
+    """The program of a design with [stiffness]."""
+    section = design.stiffness
+    torque = section.torque or design.load.torque
+    period = float(np.degrees(design.kinematics.period_angle))
+    return StiffnessProgram(
+        section,
+        torque,
+        section.rated_torque or torque,
+        design.negligible_torque_Nm,
+        tuple(period * k / section.positions for k in range(section.positions)),
+        uses_mirror=not section.loop and design.is_mirror_symmetric,
+        starts_mirrored=not section.loop and design.starts_mirror_symmetric,
+    )
 
 
 @dataclass(frozen=True)

@@ -5,63 +5,60 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import GearName
 from swgpar.geometry.arrays import Floats
-from swgpar.geometry.cams import cam_outlines
+from swgpar.geometry.cams import Cam, cam_outlines
+from swgpar.geometry.neutral_line import NeutralLine
 from swgpar.geometry.rotation import rotated
+from swgpar.meshing.drive_geometry import DriveGeometry
+from swgpar.profiles import ToothMotion, ToothProfile
 
 FLANK_POINTS = 12
 """On one flank, on all its segments together."""
 
 
-def tooth_angles(design: DriveDesign, cam_angle: float) -> Floats:
+def tooth_angles(motion: ToothMotion, cam_angle: float) -> Floats:
     """Angles (n,) rad of the flexible spline's teeth from the tip of the lobe, in the undeformed
     spline; the first one is there at the cam's angle 0, rad, and the ring gear rests."""
-    drive = design.drive
-    angle = 2.0 * np.pi / drive.teeth_fs * np.arange(drive.teeth_fs)
+    angle = 2.0 * np.pi / motion.teeth_fs * np.arange(motion.teeth_fs)
     # the cam passes as many pitches of the spline as of the ring gear
-    return angle - cam_angle * drive.teeth_rg / drive.teeth_fs
+    return angle - cam_angle * motion.teeth_rg / motion.teeth_fs
 
 
-def moved_points(design: DriveDesign, psi: Floats, points: Floats, cam_angle: float) -> Floats:
+def moved_points(line: NeutralLine, psi: Floats, points: Floats, cam_angle: float) -> Floats:
     """Points (k, 2) mm of the undeformed spline at the angle 0, after every rotation by one of the
     angles psi (n,) rad, and the deflection; (n, k, 2)."""
-    radius = design.inner_radius + 0.5 * design.flexible_spline.rim
-    line = design.tooth_motion().line
     place = line.position(psi)
     middle = np.column_stack([place.real, place.imag])
-    turned = rotated((points - [0.0, radius])[None], (psi + line.tilt(psi)[0])[:, None])
+    turned = rotated((points - [0.0, line.radius])[None], (psi + line.tilt(psi)[0])[:, None])
     return rotated(middle[:, None] + turned, cam_angle)
 
 
-def body_curves(design: DriveDesign, cam_angle: float = 0.0) -> dict[str, list[Floats]]:
+def body_curves(
+    geometry: DriveGeometry, motion: ToothMotion, cam: Cam, cam_angle: float = 0.0
+) -> dict[str, list[Floats]]:
     """Closed curves (n, 2) mm of every body, by its name.
 
+    motion : of the flexible spline's tooth in its slot of the ring gear
     cam_angle : rad, of the cam's major axis from +y, counter-clockwise; the ring gear rests
     """
-    drive = design.drive
-    angle = 2.0 * np.pi / drive.teeth_rg * (np.arange(drive.teeth_rg) + 0.5)
-    ring = rotated(_tooth(design, "ring_gear")[None], angle[:, None]).reshape(-1, 2)
-    outer = design.geometry.gears["ring_gear"].outer_radius
-    psi = tooth_angles(design, cam_angle)
-    teeth = moved_points(design, psi, _tooth(design, "flexible_spline"), cam_angle)
+    spline, ring_gear = geometry.gears["flexible_spline"], geometry.gears["ring_gear"]
+    angle = 2.0 * np.pi / motion.teeth_rg * (np.arange(motion.teeth_rg) + 0.5)
+    ring = rotated(_tooth(ring_gear.profile)[None], angle[:, None]).reshape(-1, 2)
+    outer, line = ring_gear.outer_radius, motion.line
+    teeth = moved_points(line, tooth_angles(motion, cam_angle), _tooth(spline.profile), cam_angle)
     around = np.linspace(0.0, 2.0 * np.pi, 721)[:-1]
-    bore = np.array([[0.0, design.inner_radius]])
-    inside = moved_points(design, around, bore, cam_angle)
-    curves = {"housing": [_circle(design.geometry.outer_radius), _circle(outer)]}
-    return (curves if design.housing else {}) | {
+    bore = np.array([[0.0, geometry.inner_radius]])
+    inside = moved_points(line, around, bore, cam_angle)
+    curves = {"housing": [_circle(geometry.outer_radius), _circle(outer)]}
+    return (curves if geometry.housing else {}) | {
         "ring_gear": [_circle(outer), ring],
         "flexible_spline": [teeth.reshape(-1, 2), inside.reshape(-1, 2)],
-        "wave_generator": [
-            rotated(curve[:, :2], cam_angle) for curve in cam_outlines(design.cam(), 720)
-        ],
+        "wave_generator": [rotated(curve[:, :2], cam_angle) for curve in cam_outlines(cam, 720)],
     }
 
 
-def _tooth(design: DriveDesign, gear: GearName) -> Floats:
+def _tooth(profile: ToothProfile) -> Floats:
     """One tooth (n, 2), mm, centred on +y, from its clockwise to its counter-clockwise root."""
-    profile = design.profile(gear)
     ends = profile.breaks
     s = np.concatenate(
         [np.linspace(a, b, FLANK_POINTS // len(ends) + 3)[:-1] for a, b in zip(ends[:-1], ends[1:])]

@@ -106,7 +106,7 @@ class Sheet:
 
 def draw_drive(design: DriveDesign) -> list[Sheet]:
     """All drawings of a design."""
-    curves = body_curves(design)
+    curves = body_curves(design.geometry, design.tooth_motion(), design.cam())
     sheets = [_front(design, curves), _teeth(design, curves)]
     return [*sheets, _meridian(design)] if design.has_cup else sheets
 

@@ -203,9 +203,9 @@ def _fields(source: FieldSource, body: str, number: int, names: tuple[str, ...])
 
 def _solids(result: DriveData, number: int) -> dict[str, RigidSolid]:
     """Rigid bodies by name, in the frame of the cam."""
-    design = result.summary.design
-    balls = ball_solids(design, result.balls, number - 1) if result.balls else None
-    return {"wave generator": cam_solid(design)} | ({"balls": balls} if balls else {})
+    parts = result.summary.design.rigid_parts
+    balls = ball_solids(parts, result.balls, number - 1) if result.balls else None
+    return {"wave generator": cam_solid(parts)} | ({"balls": balls} if balls else {})
 
 
 def _solid_points(result: DriveData, number: int, names: list[str]) -> list[dict[str, Any] | None]:

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from swgpar.geometry.cams import OffsetCam, cam_outlines
+from swgpar.geometry.bearing import RigidParts
+from swgpar.geometry.cams import cam_outlines
 from swgpar.geometry.rotation import rotated
-
-if TYPE_CHECKING:
-    from swgpar.design.drive_design import DriveDesign
 
 CAM_POINTS = 360
 """Around the cam, which is drawn without crowning and slope."""
@@ -52,15 +49,11 @@ def _joined(solids: list[RigidSolid]) -> RigidSolid:
     )
 
 
-def cam_solid(design: DriveDesign) -> RigidSolid:
-    """The cam, or its rollers, as prisms, with the major axis along +y.
-
-    A cam on a bearing reaches to the groove of the inner race, on which the balls roll.
-    """
-    cam, half = design.cam(), 0.5 * design.wave_generator.face_width
-    if design.bearing is not None:
-        cam = OffsetCam(cam, -(design.bearing.race_thickness + design.bearing.ball_diameter))
-    return _joined([_prism(outline, half) for outline in cam_outlines(cam, CAM_POINTS)])
+def cam_solid(parts: RigidParts) -> RigidSolid:
+    """The cam, or its rollers, as prisms, with the major axis along +y; on a bearing it reaches to
+    the groove of the inner race."""
+    outlines = cam_outlines(parts.curve, CAM_POINTS)
+    return _joined([_prism(outline, 0.5 * parts.width) for outline in outlines])
 
 
 def _prism(outline: np.ndarray, half: float) -> RigidSolid:
@@ -81,18 +74,16 @@ def _prism(outline: np.ndarray, half: float) -> RigidSolid:
     return RigidSolid(points, together, np.full(len(together), len(points) - 1))
 
 
-def ball_solids(
-    design: DriveDesign, balls: Mapping[str, np.ndarray], row: int
-) -> RigidSolid | None:
+def ball_solids(parts: RigidParts, balls: Mapping[str, np.ndarray], row: int) -> RigidSolid | None:
     """The balls at a row of the history, from 0, in the frame of the cam; None without any.
 
     balls : columns of balls.csv
     """
     here = balls["increment"] == row + 1
-    if design.bearing is None or not here.any():
+    if parts.ball_lines is None or not here.any():
         return None
-    centres, _, _ = design.grown_ball_lines()(np.radians(balls["cam_angle_deg"][here]))
-    ball = _ball(0.5 * design.bearing.ball_diameter)
+    centres, _, _ = parts.ball_lines(np.radians(balls["cam_angle_deg"][here]))
+    ball = _ball(0.5 * parts.ball_diameter)
     return _joined(
         [RigidSolid(ball.points + [*centre, 0.0], ball.quads, ball.middles) for centre in centres]
     )

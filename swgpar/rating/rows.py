@@ -311,7 +311,7 @@ def _motion(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
 
 
 def _computation(design: DriveDesign, accuracy: float) -> Iterator[RatingRow]:
-    for clearance in clearances(design):
+    for clearance in clearances(design.rigid_pairs):
         limit = Limit(clearance.allowed, Sense.AT_LEAST, "an overlap that loaded teeth take up")
         where = "" if clearance.ring == "ring_gear" else f" in the {clearance.ring}"
         yield RatingRow(

@@ -23,8 +23,8 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.evaluation.program_results import PointRow, point_rows, work_by_torque
 from swgpar.evaluation.ratcheting import AT_TEETH, SUFFICIENT
-from swgpar.load.load_program import FIRST_LOADING, NO_TORQUE, program_points
-from swgpar.load.load_sequence import load_sequence
+from swgpar.load.load_program import FIRST_LOADING, NO_TORQUE
+from swgpar.load.load_sequence import load_sequence, program_points
 from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
 from swgpar.presentation.drive_result import DriveResult

@@ -15,7 +15,7 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stepping import load_stepper, row
 from swgpar import load_design
-from swgpar.analysis.coarse_start import levels, start_loaded
+from swgpar.analysis.coarse_start import MeshedDrive, levels, start_loaded
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.mesh_refinement import choose_mesh
 from swgpar.evaluation.period import continued
@@ -49,9 +49,9 @@ def rotated(
     sequence = load_sequence(design)
     items = sequence.states
     if design.steps.start_levels or design.steps.bent_start:
-        recipes = levels(design, mesh)
+        recipes = levels(design.start_levels, mesh)
         assert len(recipes) == design.steps.start_levels
-        start_loaded(stepper, recipes)
+        start_loaded(stepper, MeshedDrive(design, stepper.model.comm), recipes)
         items = sequence.from_loaded[1:]
     for item in items:
         stepper.advance(item)
@@ -303,7 +303,8 @@ def test_a_start_on_a_coarser_mesh_takes_over_what_is_inside() -> None:
         ]
         design, mesh = load_design(DESIGN, overrides), load_recipe("plane_coarse")
         stepper = load_stepper(design, recipe=mesh)
-        start_loaded(stepper, levels(design, mesh))
+        drive = MeshedDrive(design, stepper.model.comm)
+        start_loaded(stepper, drive, levels(design.start_levels, mesh))
         iterations.append(stepper.iterations)
     print(iterations)
     assert iterations[1] <= iterations[0] + 1
@@ -364,7 +365,7 @@ def test_a_mesh_is_chosen_alike_on_any_number_of_ranks() -> None:
     design = load_design(DESIGN, ["steps.rotation=3", "solver.rtol=1e-9"])
     found = []
     for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
-        chosen = choose_mesh(design, load_recipe(RECIPE), 0.2, comm)
+        chosen = choose_mesh(MeshedDrive(design, comm), load_recipe(RECIPE), 0.2)
         # a coarser mesh than this one would not find the contacts: it is compared with a finer one
         assert chosen.error <= 0.2 and chosen.recipe.flexible_spline.flank == 3
         found.append((chosen, chosen.model.stresses()[0]))

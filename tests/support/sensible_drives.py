@@ -110,7 +110,7 @@ def _drive(
         try:
             thinner = _with_backlash(table, backlash)
             design = make_drive(thinner)
-            if any(one.overlaps for one in clearances(design)):
+            if any(one.overlaps for one in clearances(design.rigid_pairs)):
                 continue
             build_sector_meshes(design.geometry, load_recipe(MESHES[model]))
         except InputError:

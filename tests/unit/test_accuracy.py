@@ -15,7 +15,7 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar import load_design
 from swgpar.analysis.accuracy import with_accuracy
-from swgpar.analysis.coarse_start import solve_to_load
+from swgpar.analysis.coarse_start import MeshedDrive
 from swgpar.analysis.drive_mesh_error import (
     LEAST,
     LEAST_AT_LOADED_ENDS,
@@ -57,13 +57,8 @@ def chosen(
     """The small plane drive on the mesh for an accuracy. times : elements in every direction of the
     first mesh"""
     design = with_accuracy(load_design(DESIGN, [*PLANE, *LOADED, *overrides]), accuracy)
-    return choose_mesh(
-        design,
-        resized(load_recipe(RECIPE), times),
-        accuracy,
-        MPI.COMM_SELF,
-        largest=largest,
-    )
+    drive, recipe = MeshedDrive(design, MPI.COMM_SELF), resized(load_recipe(RECIPE), times)
+    return choose_mesh(drive, recipe, accuracy, largest=largest)
 
 
 def test_a_resized_recipe_scales_every_count_and_no_grading() -> None:
@@ -246,7 +241,7 @@ def test_contacts_on_edges_leave_more_of_an_error() -> None:
     recipe = load_recipe("plane_coarse")
     for values, least in ((profiles, LEAST_WITH_EDGES), ({}, LEAST["plane"])):
         design = with_shortcuts(load_design(PLANE_DRIVE, values), recipe, levels=False).design
-        model = solve_to_load(design, recipe, MPI.COMM_SELF)
+        model = MeshedDrive(design, MPI.COMM_SELF).load(recipe)
         contacts = pair_contacts(model, load_sequence(design).loaded)
         for part in (BETWEEN, ENDS):
             assert least_error("plane", contacts, part) == least
@@ -262,7 +257,7 @@ def test_the_error_holds() -> None:
     found = chosen(0.2, times=2.0)
     error, s1, design = found.root_stress.total_error, found.root_stress.s1, found.model.design
     found.model.destroy()
-    finer = solve_to_load(design, resized(found.recipe, 2.0), MPI.COMM_SELF)
+    finer = MeshedDrive(design, MPI.COMM_SELF).load(resized(found.recipe, 2.0))
     loaded = load_sequence(design).loaded
     reference = resolve_root_stress(finer, loaded, LEVELS["plane"] + 1).s1
     finer.destroy()
@@ -287,7 +282,7 @@ def test_with_friction_every_mesh_is_loaded_step_by_step() -> None:
     """The state is the one that a run has on this mesh, which depends on the path to it."""
     found = chosen(0.2, "contact.friction=0.1")
     design = found.model.design
-    alone = solve_to_load(design, found.recipe, MPI.COMM_SELF)
+    alone = MeshedDrive(design, MPI.COMM_SELF).load(found.recipe)
     assert found.error <= 0.2
     assert found.model.stresses()[0] == pytest.approx(alone.stresses()[0], rel=1e-9)
     for model in (found.model, alone):

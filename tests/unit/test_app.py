@@ -85,12 +85,13 @@ def test_gaps_of_the_picture_are_those_of_the_rigid_teeth(name: str, angle: floa
     """None is smaller than the clearance of a turn; near it there is one at each angle."""
     design = drive(DRIVERS / name)
     gaps = flank_gaps(design, angle)
-    smallest = clearances(design)[0].nearest.distance
+    smallest = clearances(design.rigid_pairs)[0].nearest.distance
     pitch = 2.0 * np.pi / design.drive.teeth_fs
     assert smallest - 1e-9 <= gaps.gap.min() < smallest + 0.05 * design.drive.module * pitch
     assert gaps.gap.max() < NEAR * design.drive.module
     # flanks are drawn where their gaps are taken: on the outline of the spline
-    outline = body_curves(design, float(np.radians(angle)))["flexible_spline"][0]
+    keys = design.geometry, design.tooth_motion(), design.cam(), float(np.radians(angle))
+    outline = body_curves(*keys)["flexible_spline"][0]
     for place in gaps.place[:: len(gaps.gap) // 8]:
         ahead = np.roll(outline, -1, axis=0) - outline
         along = ((place - outline) * ahead).sum(1) / (ahead**2).sum(1)
@@ -115,7 +116,7 @@ def test_the_picture_repeats_after_a_pitch_of_the_ring_gear() -> None:
 def test_an_overlap_is_marked() -> None:
     design = drive(DRIVERS / "cup_45deg.toml")
     tight = design.with_values({"ring_gear.c_P": 1.01})
-    assert clearances(tight)[0].overlaps
+    assert clearances(tight.rigid_pairs)[0].overlaps
     marks = section_figure(tight)["data"][-1]
     assert "x" in marks["marker"]["symbol"]
     assert any("overlap" in text for text in marks["text"])

@@ -10,7 +10,7 @@ import swgpar
 from support.drive_groups import PLANE, cams, table_of
 from support.paths import RECIPE, REFERENCE
 from swgpar import load_design
-from swgpar.analysis.bent_start import BentSpline
+from swgpar.analysis.bent_spline import BentSpline
 from swgpar.checks.design_file import make_drive
 from swgpar.geometry.neutral_line import bent_ring
 

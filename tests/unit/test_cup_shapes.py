@@ -27,7 +27,7 @@ from support.paths import DRIVERS, RECIPE
 from support.sector_motion import TANGENTIAL, stiffness_between
 from support.stepping import loaded
 from swgpar.analysis.accuracy import require_refinable, with_accuracy
-from swgpar.analysis.bent_start import BentSpline
+from swgpar.analysis.bent_spline import BentSpline
 from swgpar.analysis.forecast import forecast
 from swgpar.checks.derived_geometry import derived_geometry
 from swgpar.design.drive_design import DriveDesign

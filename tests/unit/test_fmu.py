@@ -24,7 +24,7 @@ from swgpar.evaluation.stiffness import torsional_stiffness
 from swgpar.exchange.fmu import VARIABLES, write_fmu
 from swgpar.exchange.loaded_losses import LoadedLosses
 from swgpar.exchange.tables import ripple_table, spring_table
-from swgpar.load.load_program import program_points, stiffness_program
+from swgpar.load.load_sequence import program_points, stiffness_program
 
 fmpy = pytest.importorskip("fmpy")
 pytestmark = pytest.mark.skipif(not shutil.which("cc"), reason="no C compiler")

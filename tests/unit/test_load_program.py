@@ -31,10 +31,8 @@ from swgpar.load.load_program import (
     NO_TORQUE,
     POSITIVE_UNLOADING,
     TRAVEL,
-    program_points,
-    stiffness_program,
 )
-from swgpar.load.load_sequence import load_sequence
+from swgpar.load.load_sequence import load_sequence, program_points, stiffness_program
 from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
 

@@ -40,13 +40,15 @@ def test_check_names_interference() -> None:
 
 def test_check_looks_between_the_minor_axes() -> None:
     """Tip over tip at 62 degrees from the lobe, 17 degrees beyond half of the way."""
-    clearance = rigid_clearance(clearances(swgpar.load_design(DATA / "public" / "tip_clash.toml")))
+    clearance = rigid_clearance(
+        clearances(swgpar.load_design(DATA / "public" / "tip_clash.toml").rigid_pairs)
+    )
     assert clearance.ring_gear == pytest.approx(-0.0645, abs=1e-4)
     (sentence,) = clearance.interference
     assert "62.0° from the tip of a lobe, tip of the flexible spline to flank" in sentence
     (answer,) = clearance.answers()
     assert answer.value == clearance.ring_gear and answer.place in sentence
-    assert not rigid_clearance(clearances(swgpar.load_design(DESIGN))).interference
+    assert not rigid_clearance(clearances(swgpar.load_design(DESIGN).rigid_pairs)).interference
 
 
 @pytest.mark.parametrize(("samples", "shown"), [(0, None), (2, 1), (6, 3), (5, None)])

@@ -88,7 +88,7 @@ def _volume(solid: RigidSolid) -> float:
 
 def test_cam_and_balls_have_their_sizes_and_places() -> None:
     design = swgpar.load_design(DESIGN, PLANE)
-    cam, width = cam_solid(design), design.wave_generator.face_width
+    cam, width = cam_solid(design.rigid_parts), design.wave_generator.face_width
     x, y = design.cam().outline(3600).T
     area = 0.5 * abs(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
     assert _volume(cam) == pytest.approx(area * width, rel=1e-3)
@@ -96,13 +96,13 @@ def test_cam_and_balls_have_their_sizes_and_places() -> None:
     assert abs(tip[0]) == pytest.approx(design.major_semi_axis, rel=1e-6)
     on_balls = swgpar.load_design(DESIGN, [*PLANE, *BEARING])
     balls = {"increment": np.full(22, 1), "cam_angle_deg": np.arange(22) * 360.0 / 22}
-    solid = ball_solids(on_balls, balls, 0)
-    assert solid is not None and ball_solids(on_balls, balls, 1) is None
+    solid = ball_solids(on_balls.rigid_parts, balls, 0)
+    assert solid is not None and ball_solids(on_balls.rigid_parts, balls, 1) is None
     assert _volume(solid) == pytest.approx(22 * np.pi / 6.0 * 4.0**3, rel=0.05)  # 12 by 24 facets
     surface = np.unique(solid.quads)
     gap = on_balls.cam().evaluate(solid.points[surface, :2])[0]
     assert gap.max() == pytest.approx(-0.6, abs=0.02) and gap.min() == pytest.approx(-4.6, abs=0.02)
-    inner = cam_solid(on_balls)
+    inner = cam_solid(on_balls.rigid_parts)
     edge = np.unique(inner.quads[: len(inner.quads) // 3])
     assert np.abs(on_balls.cam().evaluate(inner.points[edge, :2])[0] + 4.6).max() < 1e-6
 

@@ -11,7 +11,7 @@ from support.messages import Messages
 from support.paths import DESIGN
 from support.small_drive import PLANE
 from swgpar import load_design
-from swgpar.analysis.coarse_start import solve_to_load
+from swgpar.analysis.coarse_start import MeshedDrive
 from swgpar.analysis.saved_state import StartStates
 from swgpar.meshing import load_recipe
 from swgpar.results import made_files
@@ -30,7 +30,7 @@ def test_a_loaded_state_is_taken_over(tmp_path: Path) -> None:
 
     def solve() -> tuple[np.ndarray, str]:
         with Messages() as messages:
-            model = solve_to_load(design, recipe, comm, kept=kept)
+            model = MeshedDrive(design, comm).load(recipe, kept=kept)
         x = model.problem.x.array_r.copy()
         model.destroy()
         return x, "\n".join(messages.texts)
