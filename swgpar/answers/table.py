@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 
-from swgpar.answers.answer import Answer
+from swgpar.answers.answer import Answer, AnswerKind
 
 
 class AnswerTable(Mapping[str, Answer]):
@@ -15,6 +15,10 @@ class AnswerTable(Mapping[str, Answer]):
     @abstractmethod
     def answers(self) -> Iterator[Answer]:
         """The answers in the order in which they are shown."""
+
+    def find(self, kind: AnswerKind) -> Answer | None:
+        """The answer of this kind; None where the run does not have it."""
+        return self._by_name.get(kind.name)
 
     @cached_property
     def _by_name(self) -> dict[str, Answer]:

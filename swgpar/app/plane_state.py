@@ -17,6 +17,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.results.atomic import to_json
 
 if TYPE_CHECKING:
+    from swgpar.answers.answer import AnswerKind
     from swgpar.api.session import Session
     from swgpar.presentation.loaded_outline import LoadedOutline
 
@@ -33,16 +34,6 @@ KEPT = 50
 
 NICE = 5
 """Steps by which the priority of the process is below that of the server."""
-
-SHOWN = (
-    "largest.fs_s1",
-    "largest.rg_s1",
-    "contact.pressure",
-    "contact.edge_force",
-    "sharing.pairs",
-    "sharing.largest_force_share",
-)
-"""Answers of the state, by name."""
 
 
 @dataclass(frozen=True)
@@ -105,13 +96,23 @@ def solve_plane(table: dict[str, Any]) -> PlaneState:
         outline = loaded_outline(result)
     except SwgparError as error:
         return PlaneState((), time.perf_counter() - begin, str(error))
-    found = (result.summary.get(name) for name in SHOWN)
+    found = map(result.summary.find, _shown())
     answers = tuple(
         PlaneAnswer(one.name, one.text, float(one.value), one.unit, one.error, one.place)
         for one in found
         if one is not None and one.value is not None
     )
     return PlaneState(answers, time.perf_counter() - begin, outline=outline)
+
+
+def _shown() -> tuple[AnswerKind, ...]:
+    """Answers that are shown of a state."""
+    from swgpar.evaluation.largest_contact import EDGE_FORCE, FLANK_PRESSURE
+    from swgpar.evaluation.load_sharing import FORCE_SHARE, PAIRS
+    from swgpar.largest_stress.places import stress_kind
+
+    stresses = stress_kind("fs", "s1"), stress_kind("rg", "s1")
+    return (*stresses, FLANK_PRESSURE, EDGE_FORCE, PAIRS, FORCE_SHARE)
 
 
 @cache

@@ -29,10 +29,22 @@ MICROMETRES = 1000.0
 NO_SHARES: Mapping[str, float] = MappingProxyType({})
 """Errors that are not known."""
 
+BALL_LOAD = AnswerKind("bearing.largest_load", "largest ball load under load", "N", place="place")
+BALL_PRESSURE = AnswerKind(
+    "bearing.pressure", "largest pressure of a ball on a race", "MPa", place="place"
+)
+APPROACH = AnswerKind(
+    "bearing.approach", "largest approach of the races at a ball", "µm", place="place"
+)
+LIFE_HOURS = AnswerKind("bearing.life_hours", "rating life L10 of the bearing", "h")
+RACE_MISES = AnswerKind(
+    "bearing.race_vm", "largest von Mises stress in the outer race under load", "MPa"
+)
+
 LARGEST = {
-    "bearing.largest_load": lambda rows: max((row["load_N"] for row in rows), default=0.0),
-    "bearing.pressure": lambda rows: max((_pressure(row) for row in rows), default=0.0),
-    "bearing.approach": lambda rows: max((row["approach_um"] for row in rows), default=0.0),
+    BALL_LOAD.name: lambda rows: max((row["load_N"] for row in rows), default=0.0),
+    BALL_PRESSURE.name: lambda rows: max((_pressure(row) for row in rows), default=0.0),
+    APPROACH.name: lambda rows: max((row["approach_um"] for row in rows), default=0.0),
 }
 """What of rows of balls.csv the answers are that the increments may miss."""
 
@@ -63,6 +75,10 @@ def _shares(kind: str) -> Iterator[AnswerKind]:
         yield AnswerKind(name, text, path=f"{kind}_share.{part}")
 
 
+TORSIONAL_SHARE, TORSIONAL_SHARE_OF_BALLS = _shares("torsional")
+RADIAL_SHARE, RADIAL_SHARE_OF_BALLS = _shares("radial")
+
+
 @evaluation
 class BearingLife:
     """Rating life of a bearing.
@@ -81,7 +97,7 @@ class BearingLife:
     L10_turns: float | None = answer(
         "bearing.life_turns", "rating life L10 of the bearing, turns of the wave generator"
     )
-    L10_hours: float | None = answer("bearing.life_hours", "rating life L10 of the bearing", "h")
+    L10_hours: float | None = part_answers(LIFE_HOURS)
 
 
 @evaluation
@@ -100,15 +116,9 @@ class BallLoads(AnswerGroup):
     load_ripple : None without load;  torsional_share, radial_share : None without a torque
     """
 
-    largest_load_N: float = answer(
-        "bearing.largest_load", "largest ball load under load", "N", place="place"
-    )
-    largest_pressure_MPa: float = answer(
-        "bearing.pressure", "largest pressure of a ball on a race", "MPa", place="place"
-    )
-    largest_approach_um: float = answer(
-        "bearing.approach", "largest approach of the races at a ball", "µm", place="place"
-    )
+    largest_load_N: float = part_answers(BALL_LOAD)
+    largest_pressure_MPa: float = part_answers(BALL_PRESSURE)
+    largest_approach_um: float = part_answers(APPROACH)
     wg_angle_deg: float
     cam_angle_deg: float
     mean_load_N: float = answer("bearing.mean_load", "mean ball load under load", "N")
@@ -123,20 +133,17 @@ class BallLoads(AnswerGroup):
     load_ripple: float | None = answer(
         "bearing.load_ripple", "range of the largest ball load over its mean"
     )
-    torsional_share: ComplianceShares | None = part_answers(*_shares("torsional"))
-    radial_share: ComplianceShares | None = part_answers(*_shares("radial"))
+    torsional_share: ComplianceShares | None = part_answers(
+        TORSIONAL_SHARE, TORSIONAL_SHARE_OF_BALLS
+    )
+    radial_share: ComplianceShares | None = part_answers(RADIAL_SHARE, RADIAL_SHARE_OF_BALLS)
     race_s1_MPa: float | None = answer(
         "bearing.race_s1", "largest tension in the outer race under load", "MPa", default=None
     )
     race_s3_MPa: float | None = answer(
         "bearing.race_s3", "largest compression in the outer race under load", "MPa", default=None
     )
-    race_vm_MPa: float | None = answer(
-        "bearing.race_vm",
-        "largest von Mises stress in the outer race under load",
-        "MPa",
-        default=None,
-    )
+    race_vm_MPa: float | None = part_answers(RACE_MISES, default=None)
     life: BearingLife
     errors: Mapping[str, float] = field(default_factory=dict)
 

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.answers.answer import AnswerGroup, AnswerKind, answer, evaluation
+from swgpar.answers.answer import AnswerGroup, AnswerKind, answer, evaluation, part_answers
 from swgpar.constraints.distributing_coupling import ROTATION
 from swgpar.constraints.supports import SPLINE_COUPLING
 from swgpar.design.cup_section import Cup
@@ -27,7 +27,15 @@ from swgpar.results.history import Row, column
 EDGE = 8.0
 """Diameter of a circle times its area over its section modulus."""
 
-SAFETIES = "bolts.sliding_safety", "bolts.gaping_safety"
+SLIDING = AnswerKind(
+    "bolts.sliding_safety",
+    "least safety factor of a bolt against sliding",
+    place="places.sliding",
+)
+GAPING = AnswerKind(
+    "bolts.gaping_safety", "least safety factor of a bolt against gaping", place="places.gaping"
+)
+SAFETIES = SLIDING.name, GAPING.name
 """Answers that need a preload."""
 
 
@@ -146,12 +154,8 @@ class BoltLoads(AnswerGroup):
         "N·mm",
         place="places.tilting_Nmm",
     )
-    sliding: float | None = answer(
-        SAFETIES[0], "least safety factor of a bolt against sliding", place="places.sliding"
-    )
-    gaping: float | None = answer(
-        SAFETIES[1], "least safety factor of a bolt against gaping", place="places.gaping"
-    )
+    sliding: float | None = part_answers(SLIDING)
+    gaping: float | None = part_answers(GAPING)
     places: Mapping[str, str]
     judged: bool
 

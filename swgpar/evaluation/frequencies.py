@@ -61,13 +61,15 @@ class NaturalMode:
         return f"{text}; {self.waves or 'no'} wave{'' if self.waves == 1 else 's'} around"
 
 
+FREQUENCY = AnswerKind("frequency.NUMBER", "natural frequency NUMBER of the loaded drive", "Hz")
+LOWEST = FREQUENCY.of("NUMBER", "1")
+
+
 @evaluation
 class NaturalFrequencies(AnswerGroup):
     """Modes of the loaded state, from the lowest on."""
 
-    modes: list[NaturalMode] = part_answers(
-        AnswerKind("frequency.NUMBER", "natural frequency NUMBER of the loaded drive", "Hz")
-    )
+    modes: list[NaturalMode] = part_answers(FREQUENCY)
 
     TITLE = "natural frequencies under load"
     ASKED_BY = "[frequencies]"

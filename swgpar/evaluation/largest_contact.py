@@ -31,12 +31,31 @@ TOLD = 0.02
 """Share of the largest force in an increment from which a pair without a pressure is told of."""
 
 
-POWERS = {
-    "contact.force": 2.0,
-    "contact.line_load": 2.0,
-    "contact.half_width": 2.0,
-    "contact.shear": 1.0,
-}
+FLANK_PRESSURE = AnswerKind(
+    "contact.pressure",
+    "largest pressure of the flanks under load",
+    "MPa",
+    "largest.pressure_MPa",
+    error="error_MPa",
+)
+FORCE = AnswerKind("contact.force", "force of the pair there", "N", "largest.force_N")
+LINE_LOAD = AnswerKind("contact.line_load", "line load there", "N/mm", "largest.line_load_Nmm")
+HALF_WIDTH = AnswerKind(
+    "contact.half_width", "half width of the contact there", "mm", "largest.half_width_mm"
+)
+SHEAR = AnswerKind(
+    "contact.shear", "largest shear stress below the surface there", "MPa", "largest.shear_MPa"
+)
+PRESSURE_OFF_EDGES = AnswerKind(
+    "contact.pressure_off_edges",
+    "the same of the pairs that do not lie on an edge",
+    "MPa",
+    "off_edges.pressure_MPa",
+    error="error_off_edges_MPa",
+)
+EDGE_FORCE = AnswerKind("contact.edge_force", "largest force under load of a pair on an edge", "N")
+
+POWERS = {FORCE.name: 2.0, LINE_LOAD.name: 2.0, HALF_WIDTH.name: 2.0, SHEAR.name: 1.0}
 """Error of what the pair with the largest pressure has, as a share, over that of its pressure. On a
 line the pressure is as the root of the line load. The half width is a quotient of both."""
 
@@ -86,39 +105,9 @@ class LargestContact(AnswerGroup):
     on_lines : whether the errors of the other values of `largest` follow, see `POWERS`
     """
 
-    largest: LoadedPair | None = part_answers(
-        AnswerKind(
-            "contact.pressure",
-            "largest pressure of the flanks under load",
-            "MPa",
-            "largest.pressure_MPa",
-            error="error_MPa",
-        ),
-        AnswerKind("contact.force", "force of the pair there", "N", "largest.force_N"),
-        AnswerKind("contact.line_load", "line load there", "N/mm", "largest.line_load_Nmm"),
-        AnswerKind(
-            "contact.half_width",
-            "half width of the contact there",
-            "mm",
-            "largest.half_width_mm",
-        ),
-        AnswerKind(
-            "contact.shear",
-            "largest shear stress below the surface there",
-            "MPa",
-            "largest.shear_MPa",
-        ),
-    )
-    off_edges: LoadedPair | None = answer(
-        "contact.pressure_off_edges",
-        "the same of the pairs that do not lie on an edge",
-        "MPa",
-        "off_edges.pressure_MPa",
-        error="error_off_edges_MPa",
-    )
-    edge_force_N: float = answer(
-        "contact.edge_force", "largest force under load of a pair on an edge", "N"
-    )
+    largest: LoadedPair | None = part_answers(FLANK_PRESSURE, FORCE, LINE_LOAD, HALF_WIDTH, SHEAR)
+    off_edges: LoadedPair | None = part_answers(PRESSURE_OFF_EDGES)
+    edge_force_N: float = part_answers(EDGE_FORCE)
     on_edge: bool = answer(
         "contact.on_edge", "whether a contact under load lies on an edge: 1 or 0", exact=True
     )
@@ -134,7 +123,7 @@ class LargestContact(AnswerGroup):
         return super().kinds(design) if design.compares_meshes else ()
 
     def answers(self) -> Iterator[Answer]:
-        pairs = {"contact.pressure": self.largest, "contact.pressure_off_edges": self.off_edges}
+        pairs = {FLANK_PRESSURE.name: self.largest, PRESSURE_OFF_EDGES.name: self.off_edges}
         largest = self.largest
         for one in super().answers():
             pair = pairs.get(one.name)
@@ -143,15 +132,15 @@ class LargestContact(AnswerGroup):
             if one.name in POWERS and self.on_lines and self.error_MPa is not None:
                 share = POWERS[one.name] * self.error_MPa / largest.pressure_MPa
                 one = with_error(one, share * one.value)
-            if largest and largest.edge and one.name in ("contact.pressure", "contact.shear"):
+            if largest and largest.edge and one.name in (FLANK_PRESSURE.name, SHEAR.name):
                 one = with_no_limit(one)
             yield one
 
     def reasons(self) -> Mapping[str, str]:
         unknown = f"{NO_ESTIMATE}: {self._unknown}"
         return {
-            "contact.pressure": unknown,
-            "contact.pressure_off_edges": f"all of the pairs lie on edges, with up to "
+            FLANK_PRESSURE.name: unknown,
+            PRESSURE_OFF_EDGES.name: f"all of the pairs lie on edges, with up to "
             f"{self.edge_force_N:.4g} N"
             if self.largest
             else unknown,
@@ -169,7 +158,7 @@ class LargestContact(AnswerGroup):
         edge = ""
         if pair.edge:
             edge = f"{pair.force_N:.4g} N on the {pair.edge_place or 'edge'}: {EDGE}"
-        elif self.on_edge and name == "contact.pressure":
+        elif self.on_edge and name == FLANK_PRESSURE.name:
             edge = (
                 f"another pair lies on an edge, with up to {self.edge_force_N:.4g} N: {OTHER_EDGE}"
             )

@@ -22,6 +22,21 @@ class Spread:
     largest: float
 
 
+def _pairs(name: str, words: str, part: str) -> AnswerKind:
+    text = f"pairs of flanks in contact, {words} over the rotation"
+    return AnswerKind(f"sharing.{name}", text, path=f"pairs.{part}", exact=True)
+
+
+PAIRS = _pairs("pairs", "mean", "mean")
+MOST_PAIRS = _pairs("largest_pairs", "most", "largest")
+FEWEST_PAIRS = _pairs("smallest_pairs", "fewest", "smallest")
+FORCE_SHARE = AnswerKind(
+    "sharing.largest_force_share",
+    "largest share of one tooth in the force of all pairs",
+    error="force_share_error",
+)
+
+
 @evaluation
 class LoadSharing(AnswerGroup):
     """Numbers of touching pairs of flanks and their largest shares of the load over the rotation.
@@ -33,32 +48,14 @@ class LoadSharing(AnswerGroup):
     known
     """
 
-    pairs: Spread = part_answers(
-        *(
-            AnswerKind(
-                f"sharing.{name}",
-                f"pairs of flanks in contact, {words} over the rotation",
-                path=f"pairs.{part}",
-                exact=True,
-            )
-            for name, words, part in (
-                ("pairs", "mean", "mean"),
-                ("largest_pairs", "most", "largest"),
-                ("smallest_pairs", "fewest", "smallest"),
-            )
-        )
-    )
+    pairs: Spread = part_answers(PAIRS, MOST_PAIRS, FEWEST_PAIRS)
     teeth_share: Spread = answer(
         "sharing.teeth_share",
         "share of the flexible spline's teeth in contact, mean over the rotation",
         path="teeth_share.mean",
         exact=True,
     )
-    largest_force_share: float = answer(
-        "sharing.largest_force_share",
-        "largest share of one tooth in the force of all pairs",
-        error="force_share_error",
-    )
+    largest_force_share: float = part_answers(FORCE_SHARE)
     largest_force_N: float = answer(
         "sharing.largest_force", "largest force of one pair", "N", error="force_error"
     )

@@ -13,7 +13,7 @@ from dataclasses import astuple
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.answers.answer import AnswerGroup, answer, evaluation
+from swgpar.answers.answer import AnswerGroup, AnswerKind, answer, evaluation, part_answers
 from swgpar.design.bearing_drag import BearingDrag
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.stress_cycle import StressCycle, elements_of_rank
@@ -54,6 +54,10 @@ class LossParts:
     )
 
 
+EFFICIENCY = AnswerKind("losses.efficiency", "efficiency")
+NO_LOAD_TORQUE = AnswerKind("losses.no_load_torque", "input torque without a load", "N·mm")
+
+
 @evaluation
 class DriveLosses(AnswerGroup):
     """Losses over a turn of the wave generator.
@@ -66,10 +70,8 @@ class DriveLosses(AnswerGroup):
 
     loss_torque_Nmm: float = answer("losses.torque", "input torque that the losses take", "N·mm")
     parts_Nmm: LossParts
-    efficiency: float | None = answer("losses.efficiency", "efficiency")
-    no_load_torque_Nmm: float | None = answer(
-        "losses.no_load_torque", "input torque without a load", "N·mm"
-    )
+    efficiency: float | None = part_answers(EFFICIENCY)
+    no_load_torque_Nmm: float | None = part_answers(NO_LOAD_TORQUE)
     work_per_turn_J: float = answer(
         "losses.work_per_turn", "work of all losses per turn", "J", detail=True
     )

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.answers.answer import AnswerGroup, answer, evaluation
+from swgpar.answers.answer import AnswerGroup, AnswerKind, answer, evaluation, part_answers
 from swgpar.design.kinematics import Kinematics
 from swgpar.design.program_sections import Ratcheting
 from swgpar.fem.body import FLEXIBLE_SPLINE
@@ -38,6 +38,11 @@ class TorquePoint:
     teeth_deg: float
 
 
+PEAK_TORQUE = AnswerKind(
+    "ratcheting.peak_torque_Nm", "largest torque of the output", "N·m", remark="peak_remark"
+)
+
+
 @evaluation
 class RatchetingTorque(AnswerGroup):
     """The largest torque of the output under a prescribed rotation, and what gave way.
@@ -53,12 +58,7 @@ class RatchetingTorque(AnswerGroup):
     states : computed, those between the points of the program among them
     """
 
-    peak_torque_Nm: float = answer(
-        "ratcheting.peak_torque_Nm",
-        "largest torque of the output",
-        "N·m",
-        remark="peak_remark",
-    )
+    peak_torque_Nm: float = part_answers(PEAK_TORQUE)
     peak_error_Nm: float | None
     peak_rotation_deg: float = answer(
         "ratcheting.peak_rotation_deg", "rotation of the output there", "deg"

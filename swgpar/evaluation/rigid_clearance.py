@@ -5,9 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from swgpar.answers.answer import Answer, AnswerGroup, AnswerKind, answer, evaluation
+from swgpar.answers.answer import Answer, AnswerGroup, AnswerKind, evaluation, part_answers
 from swgpar.checks.clearance import Clearance
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GearName
+
+CLEARANCES: dict[GearName, AnswerKind] = {
+    "ring_gear": AnswerKind("clearance.ring_gear", "smallest clearance of the rigid teeth", "mm"),
+    "dynamic_spline": AnswerKind(
+        "clearance.dynamic_spline", "smallest clearance in the dynamic spline", "mm"
+    ),
+}
 
 
 @evaluation
@@ -18,10 +26,8 @@ class RigidClearance(AnswerGroup):
     places : by gear;  interference : a sentence for each gear whose teeth overlap
     """
 
-    ring_gear: float = answer("clearance.ring_gear", "smallest clearance of the rigid teeth", "mm")
-    dynamic_spline: float | None = answer(
-        "clearance.dynamic_spline", "smallest clearance in the dynamic spline", "mm", default=None
-    )
+    ring_gear: float = part_answers(CLEARANCES["ring_gear"])
+    dynamic_spline: float | None = part_answers(CLEARANCES["dynamic_spline"], default=None)
     places: dict[str, str]
     interference: tuple[str, ...]
 

@@ -61,6 +61,14 @@ def _by_column(group: str, field: str, words: str, *, detail: bool) -> Iterator[
         )
 
 
+MAIN_MEANS = tuple(
+    kind
+    for kind in _by_column("mean", "means", "mean", detail=False)
+    if kind.name.partition(".")[2] in ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
+)
+"""What tables and figures show of a drive whose output rotates."""
+
+
 @evaluation
 class Rotation(AnswerGroup):
     """What the increments of the rotation give; without a rotation there are no means.

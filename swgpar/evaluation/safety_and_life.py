@@ -65,6 +65,9 @@ class RegionSafety:
     warning: str
 
 
+LIFE_HOURS = AnswerKind("fatigue.life_hours", "life by Basquin", "h")
+
+
 @evaluation
 class Life:
     """Damage and life by Basquin, in turns of the wave generator or in passages of the load
@@ -78,7 +81,7 @@ class Life:
     life_turns: float | None = answer(
         "fatigue.life_turns", "life by Basquin, turns of the wave generator", default=None
     )
-    life_hours: float | None = answer("fatigue.life_hours", "life by Basquin", "h", default=None)
+    life_hours: float | None = part_answers(LIFE_HOURS, default=None)
     cycles_per_turn: float | None = None
     damage_per_program: float | None = None
     life_programs: float | None = answer(

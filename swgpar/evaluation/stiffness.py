@@ -8,7 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from swgpar.answers.answer import Answer, AnswerGroup, answer, evaluation, with_error
+from swgpar.answers.answer import (
+    Answer,
+    AnswerGroup,
+    AnswerKind,
+    answer,
+    evaluation,
+    part_answers,
+    with_error,
+)
 from swgpar.evaluation.program_results import PointRow, work_by_torque
 from swgpar.load.load_program import (
     BRANCHES,
@@ -39,6 +47,18 @@ WAY_BACK = {
 """The branch that is the same without friction."""
 
 
+CHORDS = {
+    name: AnswerKind(f"stiffness.{name}", f"torsional stiffness {where}", "N·m/rad")
+    for name, where in (
+        ("K1", "up to the first break point"),
+        ("K2", "between the break points"),
+        ("K3", "above the second break point"),
+    )
+}
+LOST_MOTION = AnswerKind("stiffness.lost_motion", "lost motion", "arc minutes")
+HYSTERESIS = AnswerKind("stiffness.hysteresis", "width of the loop at zero torque", "arc minutes")
+
+
 @evaluation
 class StiffnessValues:
     """Torsional stiffness at one angle of the wave generator, or its mean, spread or error over
@@ -50,26 +70,17 @@ class StiffnessValues:
     backlash : where the torque changes its sign
     """
 
-    K1: float | None = answer(
-        "stiffness.K1", "torsional stiffness up to the first break point", "N·m/rad"
-    )
-    K2: float | None = answer(
-        "stiffness.K2", "torsional stiffness between the break points", "N·m/rad"
-    )
-    K3: float | None = answer(
-        "stiffness.K3", "torsional stiffness above the second break point", "N·m/rad"
-    )
-    lost_motion: float = answer("stiffness.lost_motion", "lost motion", "arc minutes")
-    hysteresis: float = answer(
-        "stiffness.hysteresis", "width of the loop at zero torque", "arc minutes"
-    )
+    K1: float | None = part_answers(CHORDS["K1"])
+    K2: float | None = part_answers(CHORDS["K2"])
+    K3: float | None = part_answers(CHORDS["K3"])
+    lost_motion: float = part_answers(LOST_MOTION)
+    hysteresis: float = part_answers(HYSTERESIS)
     backlash: float = answer(
         "stiffness.backlash", "rotation without torque between the flanks", "arc minutes"
     )
     loop_work: float = answer("stiffness.loop_work", "area of the loop", "N·mm")
 
 
-CHORDS = ("K1", "K2", "K3")
 NAMES = tuple(field.name for field in fields(StiffnessValues))
 
 
@@ -113,7 +124,7 @@ class TorsionalStiffness(StiffnessValues, AnswerGroup):
 
     def reasons(self) -> Mapping[str, str]:
         reason = "the torque between the break points is too small beside the spline's bending"
-        return {f"stiffness.{name}": reason for name in CHORDS if getattr(self, name) is None}
+        return {kind.name: reason for name, kind in CHORDS.items() if getattr(self, name) is None}
 
     def remarks(self) -> Iterator[str]:
         yield (

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.answers.answer import AnswerGroup, answer, evaluation
+from swgpar.answers.answer import AnswerGroup, AnswerKind, answer, evaluation, part_answers
 from swgpar.design.deviations import Deviations, TiltedOffset
 from swgpar.design.kinematics import Kinematics
 from swgpar.design.sections import GearName
@@ -84,6 +84,14 @@ class TorqueOverTurns:
     error_Nmm: float | None = None
 
 
+PEAK_TO_PEAK = AnswerKind(
+    "transmission_error.peak_to_peak",
+    "transmission error, peak to peak",
+    "arcsec",
+    error="error_arcsec",
+)
+
+
 @evaluation
 class TransmissionError(AnswerGroup):
     """Transmission error over whole turns with deviations, or over the sampled period of the ideal
@@ -97,12 +105,7 @@ class TransmissionError(AnswerGroup):
 
     turns: float
     angles: int
-    peak_to_peak: float = answer(
-        "transmission_error.peak_to_peak",
-        "transmission error, peak to peak",
-        "arcsec",
-        error="error_arcsec",
-    )
+    peak_to_peak: float = part_answers(PEAK_TO_PEAK)
     amplitude: float = answer(
         "transmission_error.amplitude",
         "transmission error, half of peak to peak",

@@ -115,6 +115,18 @@ STRESSES = {"s1": "tension s1", "s3": "compression |s3|", "vm": "von Mises stres
 BODIES = {"fs": "flexible spline", "rg": "ring gear", "ds": "dynamic spline"}
 
 
+def stress_kind(body: str, stress: str, ending: str = "", words: str = "") -> AnswerKind:
+    """The largest stress of a body. ending, words : `APART` or `OFF_CORNERS`, and what it says"""
+    text = f"{BODIES[body]}, {STRESSES[stress]}{words}"
+    return AnswerKind(f"largest.{body}_{stress}{ending}", text, "MPa")
+
+
+def region_kind(body: str, stress: str, region: str) -> AnswerKind:
+    """The largest stress of a body in a region of it."""
+    one = stress_kind(body, stress, f"{OF_REGION}{region}", f" in {region}")
+    return replace(one, detail=True)
+
+
 @evaluation
 class LargestStresses(AnswerGroup):
     """Largest stresses under load, by windows where they resolve them, else nodal averages.
@@ -124,11 +136,7 @@ class LargestStresses(AnswerGroup):
 
     places: Mapping[str, Place] = part_answers(
         *(
-            AnswerKind(
-                f"largest.{body}_{stress}{ending}",
-                f"{BODIES[body]}, {STRESSES[stress]}{words}",
-                "MPa",
-            )
+            stress_kind(body, stress, ending, words)
             for body in ("fs", "rg")
             for stress in STRESSES
             for ending, words in (
@@ -143,14 +151,7 @@ class LargestStresses(AnswerGroup):
 
     TITLE = "largest stresses under load"
     OF_REGIONS = tuple(
-        AnswerKind(
-            f"largest.{body}_{stress}{OF_REGION}",
-            f"{BODIES[body]}, {STRESSES[stress]} in ",
-            "MPa",
-            detail=True,
-        )
-        for body in ("fs", "rg")
-        for stress in STRESSES
+        region_kind(body, stress, "") for body in ("fs", "rg") for stress in STRESSES
     )
 
     @classmethod

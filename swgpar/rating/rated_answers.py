@@ -9,8 +9,9 @@ from dataclasses import replace
 
 from swgpar.answers.answer import Answer, with_error, with_no_limit
 from swgpar.drive_results.summary import DriveSummary
-from swgpar.evaluation.safety_and_life import CRITERIA, RegionSafety
-from swgpar.largest_stress.places import OF_REGION
+from swgpar.evaluation.bearing_loads import BALL_LOAD, BALL_PRESSURE
+from swgpar.evaluation.safety_and_life import CRITERIA, LIFE_HOURS, RegionSafety
+from swgpar.largest_stress.places import OF_REGION, region_kind
 from swgpar.model.regions import (
     ATTACHED,
     BACK,
@@ -43,7 +44,7 @@ def largest_mises(
 ) -> Answer | None:
     """Largest von Mises stress of a gear in these regions: "fs" the flexible spline, "rg" the ring
     gear."""
-    every = (summary.get(f"largest.{gear}_vm{OF_REGION}{region}") for region in regions)
+    every = (summary.find(region_kind(gear, "vm", region)) for region in regions)
     found = [one for one in every if one is not None and one.value is not None]
     return max(found, key=lambda one: one.value or 0.0, default=None)
 
@@ -89,10 +90,10 @@ def spline_life(summary: DriveSummary) -> Answer | None:
         return None
     hours = summary.fatigue.life.life_hours
     answer = Answer(
-        name="fatigue.life_hours",
+        name=LIFE_HOURS.name,
         value=math.inf if hours is None else hours,
-        unit="h",
-        text="life by Basquin",
+        unit=LIFE_HOURS.unit,
+        text=LIFE_HOURS.text,
         place=summary.fatigue.least["goodman"].place,
     )
     return with_error(answer, None)
@@ -101,12 +102,12 @@ def spline_life(summary: DriveSummary) -> Answer | None:
 def static_safety(summary: DriveSummary) -> Answer | None:
     """Static safety of the bearing by its largest pressure: loads of a point contact are as the
     third power of it [ISO 76]."""
-    pressure = summary.get("bearing.pressure")
+    pressure = summary.find(BALL_PRESSURE)
     if pressure is None or not pressure.value:
         return None
     safety = (STATIC_PRESSURE / pressure.value) ** 3
     error = None if pressure.error is None else 3.0 * safety * pressure.error / pressure.value
-    load = summary.get("bearing.largest_load")
+    load = summary.find(BALL_LOAD)
     remark = "" if load is None or load.value is None else f"largest ball load {load.value:.4g} N"
     answer = Answer(
         name="bearing.static_safety",

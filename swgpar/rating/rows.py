@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
-from swgpar.answers.answer import Answer
+from swgpar.answers.answer import Answer, AnswerKind
 from swgpar.answers.verdict import Limit, Sense, Verdict
 from swgpar.checks.clearance import clearances
 from swgpar.design.drive_design import DriveDesign
@@ -14,6 +15,15 @@ from swgpar.design.rating_section import RatingSection
 from swgpar.drive_results.report_checks import RESOLUTION
 from swgpar.drive_results.strength_checks import FIRST_YIELD
 from swgpar.drive_results.summary import DriveSummary
+from swgpar.evaluation import bearing_loads
+from swgpar.evaluation.bolt_loads import GAPING, SLIDING
+from swgpar.evaluation.frequencies import LOWEST
+from swgpar.evaluation.largest_contact import FLANK_PRESSURE
+from swgpar.evaluation.losses import EFFICIENCY, NO_LOAD_TORQUE
+from swgpar.evaluation.ratcheting import PEAK_TORQUE
+from swgpar.evaluation.rigid_clearance import CLEARANCES
+from swgpar.evaluation.stiffness import CHORDS, HYSTERESIS, LOST_MOTION
+from swgpar.evaluation.transmission_error import PEAK_TO_PEAK
 from swgpar.materials.pitting import PITTING_LIMITS, SOURCE
 from swgpar.rating.planned_runs import (
     NO_BEARING,
@@ -88,8 +98,11 @@ class RatingRow:
         )
 
 
-def _named(name: str) -> AnswerSource:
-    return lambda summary: summary.get(name)
+def _row(
+    name: str, case: LoadCase, kind: AnswerKind, limit: Limit | None, missing: str = "", **more: Any
+) -> RatingRow:
+    """The row of an answer that the run gives as it is."""
+    return RatingRow(name, case, lambda run: run.find(kind), limit, missing, unit=kind.unit, **more)
 
 
 def _required(value: float | None, sense: Sense, key: str, factor: float = 1.0) -> Limit | None:
@@ -154,29 +167,27 @@ def _strength(
         lower_bound=lambda _: ALWAYS_AT_PEAK if often else "",
         unit="h",
     )
-    pressure, most = _named("contact.pressure"), _flank_pressure(section)
-    yield RatingRow(
+    most = _flank_pressure(section)
+    yield _row(
         "pressure of the flanks",
         LoadCase.RATED,
-        pressure,
+        FLANK_PRESSURE,
         most,
         "" if most else NO_FLANK_PRESSURE,
         of_strength=most is not None,
-        unit="MPa",
     )
     first = None
     if strengths is not None:
         source = f"{FIRST_YIELD:g} times fatigue.yield_strength over rating.yield_safety [Johnson]"
         value = FIRST_YIELD * strengths.yield_strength / safety
         first = Limit(value, Sense.AT_MOST, source)
-    yield RatingRow(
+    yield _row(
         "yield below the flanks",
         LoadCase.LARGEST,
-        pressure,
+        FLANK_PRESSURE,
         first,
         "" if first else NO_STRENGTHS,
         of_strength=True,
-        unit="MPa",
     )
 
 
@@ -225,8 +236,7 @@ def _bearing(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]
         "static safety of the bearing", LoadCase.LARGEST, static_safety, limit, of_strength=True
     )
     life = _required(section.life, Sense.AT_LEAST, "life")
-    answer = _named("bearing.life_hours")
-    yield RatingRow("life of the bearing", LoadCase.AVERAGE, answer, life, unit="h")
+    yield _row("life of the bearing", LoadCase.AVERAGE, bearing_loads.LIFE_HOURS, life)
 
 
 def _bolts(design: DriveDesign) -> Iterator[RatingRow]:
@@ -235,10 +245,8 @@ def _bolts(design: DriveDesign) -> Iterator[RatingRow]:
     preloaded = design.cup.bolt_preload is not None
     limit = Limit(1.0, Sense.AT_LEAST, "VDI 2230") if preloaded else None
     lacks = "" if preloaded else NO_PRELOAD
-    for name in ("sliding", "gaping"):
-        answer = _named(f"bolts.{name}_safety")
-        case = LoadCase.LARGEST
-        yield RatingRow(f"{name} of bolts", case, answer, limit, lacks, of_strength=True)
+    for name, kind in (("sliding", SLIDING), ("gaping", GAPING)):
+        yield _row(f"{name} of bolts", LoadCase.LARGEST, kind, limit, lacks, of_strength=True)
 
 
 def _without_peak(summary: DriveSummary) -> str:
@@ -254,73 +262,60 @@ def _ratcheting(loads: RatingLoads) -> RatingRow:
     if loads.ratcheting is not None:
         source = "rating.momentary_torque times rating.ratcheting_safety"
         limit = Limit(loads.ratcheting, Sense.AT_LEAST, source)
-    return RatingRow(
+    return _row(
         "ratcheting",
         LoadCase.RATCHETING,
-        _named("ratcheting.peak_torque_Nm"),
+        PEAK_TORQUE,
         limit,
         lower_bound=_without_peak,
         of_strength=limit is not None,
-        unit="N·m",
     )
 
 
 def _stiffness(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
-    for name in ("K1", "K2", "K3"):
+    for name, kind in CHORDS.items():
         limit = _required(getattr(section, name), Sense.AT_LEAST, name)
-        answer = _named(f"stiffness.{name}")
-        yield RatingRow(f"stiffness {name}", LoadCase.STIFFNESS, answer, limit, unit="N·m/rad")
+        yield _row(f"stiffness {name}", LoadCase.STIFFNESS, kind, limit)
     without_friction = design.contact.friction == 0.0
-    yield RatingRow(
+    yield _row(
         "hysteresis",
         LoadCase.STIFFNESS,
-        _named("stiffness.hysteresis"),
+        HYSTERESIS,
         _required(section.hysteresis, Sense.AT_MOST, "hysteresis"),
         lower_bound=lambda _: NO_FRICTION if without_friction else "",
-        unit="arc minutes",
     )
     limit = _required(section.lost_motion, Sense.AT_MOST, "lost_motion")
-    answer = _named("stiffness.lost_motion")
-    yield RatingRow("lost motion", LoadCase.STIFFNESS, answer, limit, unit="arc minutes")
+    yield _row("lost motion", LoadCase.STIFFNESS, LOST_MOTION, limit)
 
 
 def _motion(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
     ideal = design.deviations is None
-    yield RatingRow(
+    yield _row(
         "transmission error",
         LoadCase.RATED,
-        _named("transmission_error.peak_to_peak"),
+        PEAK_TO_PEAK,
         _required(section.transmission_error, Sense.AT_MOST, "transmission_error"),
         lower_bound=lambda _: IDEAL if ideal else "",
-        unit="arcsec",
     )
     limit = _required(section.efficiency, Sense.AT_LEAST, "efficiency")
     losses = "" if design.losses else NO_LOSSES
-    answer = _named("losses.efficiency")
-    yield RatingRow("efficiency", LoadCase.RATED, answer, limit, losses)
+    yield _row("efficiency", LoadCase.RATED, EFFICIENCY, limit, losses)
     limit = _required(section.no_load_torque, Sense.AT_MOST, "no_load_torque", 1000.0)
-    answer = _named("losses.no_load_torque")
-    yield RatingRow("no-load torque", LoadCase.NO_LOAD, answer, limit, losses, unit="N·mm")
+    yield _row("no-load torque", LoadCase.NO_LOAD, NO_LOAD_TORQUE, limit, losses)
     speed, limit = section.largest_speed, None
     if speed is not None:
         lobes = design.wave_generator.lobes
         source = f"{lobes} lobes times rating.largest_speed"
         limit = Limit(lobes * speed / 60.0, Sense.AT_LEAST, source)
-    answer = _named("frequency.1")
-    yield RatingRow("lowest natural frequency", LoadCase.MODES, answer, limit, unit="Hz")
+    yield _row("lowest natural frequency", LoadCase.MODES, LOWEST, limit)
 
 
 def _computation(design: DriveDesign, accuracy: float) -> Iterator[RatingRow]:
     for clearance in clearances(design.rigid_pairs):
         limit = Limit(clearance.allowed, Sense.AT_LEAST, "an overlap that loaded teeth take up")
         where = "" if clearance.ring == "ring_gear" else f" in the {clearance.ring}"
-        yield RatingRow(
-            f"clearance of the rigid teeth{where.replace('_', ' ')}",
-            LoadCase.RATED,
-            _named(f"clearance.{clearance.ring}"),
-            limit,
-            unit="mm",
-        )
+        name = f"clearance of the rigid teeth{where.replace('_', ' ')}"
+        yield _row(name, LoadCase.RATED, CLEARANCES[clearance.ring], limit)
     limit = Limit(accuracy, Sense.AT_MOST, "largest error of the stress at the teeth")
     answer = "the error of the largest tension at the teeth has no estimate"
     yield RatingRow("resolution", LoadCase.LARGEST, resolution, limit, answer)

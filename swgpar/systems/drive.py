@@ -30,9 +30,6 @@ if TYPE_CHECKING:
     from swgpar.analysis.model_sources import ModelSource
     from swgpar.presentation.drive_result import DriveResult
 
-MAIN = ("mean.fs_s1", "mean.fs_s3", "mean.fs_vm", "mean.rg_vm", "mean.wg_torque_Nmm")
-"""Quantities that tables and figures show of a drive whose output rotates."""
-
 
 class Drives(System[DriveDesign, "DriveResult"]):
     """The drive's adapter to the names that all systems share.
@@ -95,8 +92,11 @@ class Drives(System[DriveDesign, "DriveResult"]):
         }
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
-        if MAIN[0] in known:
-            return MAIN
+        from swgpar.evaluation.rotation import MAIN_MEANS
+
+        means = tuple(kind.name for kind in MAIN_MEANS)
+        if means[0] in known:
+            return means
         of_program = tuple(name for name in known if name.startswith(("stiffness.", "ratcheting.")))
         return of_program or tuple(
             name for name in known if name.endswith((".torque_Nm", ".rotation_arcmin"))

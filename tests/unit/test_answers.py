@@ -3,7 +3,10 @@ numbers."""
 
 from __future__ import annotations
 
+import ast
 import json
+import re
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,8 +15,9 @@ from rich.console import Console
 
 import swgpar
 from support.paths import DATA
-from swgpar.answers.answer import NO_ESTIMATE, joined_error, known_quotient
+from swgpar.answers.answer import NO_ESTIMATE, declared_answers, joined_error, known_quotient
 from swgpar.drive_results.report_checks import checks
+from swgpar.drive_results.summary import ANSWER_GROUPS
 from swgpar.drive_results.summary_file import summary_from, summary_to_json
 from swgpar.presentation import terminal
 from swgpar.presentation.answer_text import error_text, value_text
@@ -118,3 +122,54 @@ def test_quotients_of_round_off_have_no_value() -> None:
     (answer,) = (one for one in rotation.answers() if one.name == "rotation.torque_ripple")
     assert answer.value is None and value_text(answer.value) == "—"
     assert answer.remark.startswith("the mean input torque") and not error_text(answer)
+
+
+DECLARING = ("evaluation", "largest_stress")
+"""Rooms whose evaluations declare answers."""
+
+
+def answer_name() -> re.Pattern[str]:
+    """Matches the names of all answers; upper-case words stand for parts."""
+    kinds = [kind for group in ANSWER_GROUPS.values() for kind in declared_answers(group)]
+    return re.compile("|".join(re.sub("[A-Z]{3,}", ".+", re.escape(kind.name)) for kind in kinds))
+
+
+def indexed_by_text(tree: ast.AST) -> Iterator[str]:
+    """Where a summary is indexed, or asked for a text."""
+    for node in ast.walk(tree):
+        table = node.value if isinstance(node, ast.Subscript) else None
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            table = node.func.value if node.func.attr == "get" else None
+        if table is not None:
+            owner = ast.unparse(table).removesuffix(".quantities")
+            if owner.rpartition(".")[2] == "summary":
+                yield ast.unparse(node)
+
+
+def named_answers(tree: ast.AST, name: re.Pattern[str]) -> Iterator[str]:
+    """Names of answers that stand in a source as a text."""
+    constants = (node.value for node in ast.walk(tree) if isinstance(node, ast.Constant))
+    return (one for one in constants if isinstance(one, str) and name.fullmatch(one))
+
+
+def test_answers_are_reached_by_their_kinds() -> None:
+    """The name of an answer is written where it is declared. Others import its `AnswerKind`."""
+    package, name, found = Path(swgpar.__file__).parent, answer_name(), []
+    for path in package.rglob("*.py"):
+        room, text = path.relative_to(package).parts[0], path.read_text(encoding="utf-8")
+        if "summary" not in text and not name.search(text):
+            continue
+        tree = ast.parse(text)
+        if room != "drive_results":
+            found += [(path.name, one) for one in indexed_by_text(tree)]
+        if room not in ("drive_results", *DECLARING):
+            found += [(path.name, one) for one in named_answers(tree, name)]
+    assert not found
+
+
+def test_a_text_is_seen() -> None:
+    """What the test above forbids."""
+    texts = 'summary.get("a"), result.summary["a"], summary.quantities["a"]'
+    tree = ast.parse(f'{texts}, x["root.s1"], y.get(1)')
+    assert len(list(indexed_by_text(tree))) == 3
+    assert list(named_answers(tree, answer_name())) == ["root.s1"]

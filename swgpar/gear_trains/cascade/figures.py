@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
+from swgpar.gear_trains.cascade.dynamics import natural_frequencies
 from swgpar.gear_trains.drawing import axes
 from swgpar.gear_trains.published import number_label
 from swgpar.gear_trains.result import TrainResult
@@ -146,7 +147,7 @@ def _spectrum(result: TrainResult[CascadeDesign]) -> Figure:
     axis.loglog(table["frequency_Hz"], table["pinion_force_1_kN"], lw=0.7, label="pinion 1")
     axis.loglog(table["frequency_Hz"], table["rack_force_kN"], lw=0.7, label="rack")
     highest = table["frequency_Hz"][-1]
-    known = np.atleast_1d(result.summary.quantities["natural_frequencies"])[1:]
+    known = natural_frequencies(result.summary.design)[1:]
     for k, frequency in enumerate(known[known < highest]):
         label = None if k else "natural frequencies"
         axis.axvline(frequency, color="k", ls=":", lw=0.7, label=label)
