@@ -9,8 +9,9 @@ from swgpar.app.state import AppState
 from swgpar.app.tables import heading, live_label, say, table
 from swgpar.app.verdict_panel import VerdictPanel
 from swgpar.checks.derived_geometry import derived_geometry
-from swgpar.input.differences import Difference, differences
+from swgpar.input.differences import differences
 from swgpar.input.quantities import show, unit_of_key
+from swgpar.results.quantity import with_unit
 
 
 class AnswersPanel:
@@ -61,7 +62,7 @@ class AnswersPanel:
         first, second = (variant.design for variant in self.state.shown)
         heading("keys that differ")
         rows = [
-            [f"{one.key} {_unit(unit_of_key(first, one.key))}", *map(_value, _pair(one))]
+            [with_unit(one.key, unit_of_key(first, one.key)), _value(one.first), _value(one.second)]
             for one in differences(first, second)
         ]
         names = [variant.name for variant in self.state.shown]
@@ -100,13 +101,5 @@ def _texts(state: PlaneState | None) -> dict[str, str]:
     }
 
 
-def _pair(one: Difference) -> tuple[object, object]:
-    return one.first, one.second
-
-
 def _value(value: object) -> str:
     return "—" if value is None else show(value)
-
-
-def _unit(unit: str) -> str:
-    return f"({unit})" if unit else ""

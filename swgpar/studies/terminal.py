@@ -96,9 +96,9 @@ def _cell(outcome: Outcome, value: float | None) -> str:
     return number(value) if outcome.status == "finished" else "failed"
 
 
-def folded_table(*texts: str, title: str | None = None) -> Table:
+def folded_table(*texts: str) -> Table:
     """A table whose first columns are texts."""
-    table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
     for text in texts:
         table.add_column(text, overflow="fold")
     return table

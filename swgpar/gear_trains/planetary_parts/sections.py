@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -112,9 +113,9 @@ class PlanetaryParts(TrainDesign):
     damping: TrainDamping
 
     @property
+    @abstractmethod
     def mesh_cycle(self) -> MeshCycle:
-        """Every planetary train says how stiff its meshes are."""
-        raise NotImplementedError
+        """How stiff the meshes are."""
 
     @property
     def shaft_ends(self) -> ShaftEnds:

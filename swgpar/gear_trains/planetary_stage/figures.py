@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from swgpar.gear_trains.drawing import axes
 from swgpar.gear_trains.planetary_parts.campbell import campbell
@@ -11,6 +11,7 @@ from swgpar.gear_trains.result import TrainResult
 from swgpar.results.figure_set import Drawings, plot_line
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 BINS = 40
@@ -33,27 +34,31 @@ def drawings(result: TrainResult) -> Drawings:
     return figures
 
 
-def _planets(result: TrainResult) -> range:
-    return range(1, result.summary.design.planet.count + 1)
+def _draw_planets(
+    result: TrainResult, axis: Axes, name: str, column: str, factor: float = 1.0, **style: Any
+) -> None:
+    """A curve for each planet over the first column of the table of this name.
+
+    column : with {} for the number of the planet;  factor : on it;  style : of the lines
+    """
+    table = result.tables[name]
+    x = next(iter(table.values()))
+    for k in range(1, result.summary.design.planet.count + 1):
+        plot_line(axis, x, factor * table[column.format(k)], label=f"planet {k}", **style)
 
 
 def _planet_loads(result: TrainResult) -> Figure:
-    table, count = result.tables["planets"], len(_planets(result))
     figure, (axis,) = axes("load of each planet over the mean of all", "carrier (deg)", "")
-    for k in _planets(result):
-        plot_line(axis, table["carrier_deg"], count * table[f"share_{k}"], label=f"planet {k}")
+    _draw_planets(result, axis, "planets", "share_{}", result.summary.design.planet.count)
     axis.legend(fontsize=8)
     return figure
 
 
 def _mesh_forces(result: TrainResult) -> Figure:
-    table = result.tables["planets"]
     labels = "sun and planet (kN)", "ring and planet (kN)"
     figure, panels = axes("mesh forces", "carrier (deg)", *labels)
     for axis, gear in zip(panels, ("sun", "ring"), strict=True):
-        for k in _planets(result):
-            values = 1e-3 * table[f"{gear}_force_{k}_N"]
-            plot_line(axis, table["carrier_deg"], values, lw=0.7, label=f"planet {k}")
+        _draw_planets(result, axis, "planets", f"{gear}_force_{{}}_N", 1e-3, lw=0.7)
     panels[0].legend(fontsize=8)
     return figure
 
@@ -77,13 +82,11 @@ def _spectrum(result: TrainResult) -> Figure:
 
 
 def _response(result: TrainResult) -> Figure:
-    table = result.tables["response"]
     labels = "by torque (N/(N·m))", "by transmission error (N/µm)"
     figure, panels = axes("amplitudes of the forces of sun meshes", "frequency (Hz)", *labels)
     for axis, unit in zip(panels, ("Nm", "um"), strict=True):
-        for k in _planets(result):
-            values, label = table[f"sun_{k}_N_by_{unit}"], f"planet {k}"
-            axis.loglog(table["frequency_Hz"], values, lw=0.8, label=label)
+        axis.set(xscale="log", yscale="log")
+        _draw_planets(result, axis, "response", f"sun_{{}}_N_by_{unit}", lw=0.8)
         axis.margins(x=0.0)
     panels[0].legend(fontsize=8)
     return figure
