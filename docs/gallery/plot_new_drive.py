@@ -3,7 +3,7 @@ A drive from catalogue numbers
 ==============================
 
 Ratio, diameter and torque are what a catalogue gives. ``swgpar.new``, on the command line
-``swgpar new mine.toml --ratio 100 --diameter 50 --torque 50``, makes a checked design from them.
+``swgpar new mine.toml --ratio 100 --diameter 50 --torque 12``, makes a checked design from them.
 """
 
 import tempfile
@@ -15,7 +15,7 @@ import numpy as np
 import swgpar
 
 path = Path(tempfile.mkdtemp()) / "mine.toml"
-design = swgpar.new(path, ratio=100, diameter=50.0, torque=50.0)
+design = swgpar.new(path, ratio=100, diameter=50.0, torque=12.0)
 
 # %%
 # The file has every key with its meaning. Its head and the first section:

@@ -43,6 +43,9 @@ LAST_FILES = {
 
 RESTART = "--restart"
 
+LINES = 3
+"""Of what a job prints that are shown while it runs."""
+
 
 class JobState(StrEnum):
     """Where a job is."""
@@ -72,6 +75,7 @@ class AppJob:
     out : folder of its results, relative to the workspace
     process : of the leader of its group, 0 before it runs;  reason : last line of a failed one
     variant : whose design it takes, empty of a file of the user
+    begun : when it began to run, s since 1970
     """
 
     number: int
@@ -82,6 +86,7 @@ class AppJob:
     process: int = 0
     reason: str = ""
     variant: str = ""
+    begun: float = 0.0
 
     @property
     def command(self) -> str:
@@ -173,12 +178,15 @@ class JobQueue:
             self._write()
         return changed
 
-    def last_lines(self, job: AppJob, count: int = 12) -> str:
-        """The end of what a job has printed."""
-        with contextlib.suppress(OSError):
-            text = self._log(job).read_text(encoding="utf-8", errors="replace")
-            return "\n".join(text.splitlines()[-count:])
-        return ""
+    def progress(self, job: AppJob) -> str:
+        """How long a job runs, the end of what it has printed, and where its last run is."""
+        lines = _lines(self._log(job))[-LINES:]
+        runs = sorted((self.folder / job.out).glob(f"*/**/{results.LOG}"), key=_changed)
+        if runs and (logged := _lines(runs[-1])):
+            # a line of run.log begins with its time and its level
+            lines.append(f"{runs[-1].parent.name}: {logged[-1].split('  ', 2)[-1].strip()}")
+        minutes = int((time.time() - job.begun) / 60.0) if job.begun else 0
+        return "\n".join([*([f"for {minutes} min"] if minutes else []), *lines])
 
     def _start(self, job: AppJob) -> None:
         command = [sys.executable, "-m", "swgpar.cli", *job.arguments]
@@ -196,7 +204,7 @@ class JobQueue:
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
             )
-        job.process, job.state = self._running.pid, JobState.RUNS
+        job.process, job.state, job.begun = self._running.pid, JobState.RUNS, time.time()
 
     def _ended(self, job: AppJob) -> int | None:
         """Exit code of a job that has ended; of one that an earlier server has started 0 where its
@@ -209,7 +217,7 @@ class JobQueue:
         return 0 if job.last_file and (self.folder / job.last_file).exists() else 1
 
     def _last_line(self, job: AppJob) -> str:
-        lines = self.last_lines(job).splitlines()
+        lines = _lines(self._log(job))
         return lines[-1] if lines else "it has printed nothing"
 
     def _log(self, job: AppJob) -> Path:
@@ -218,3 +226,19 @@ class JobQueue:
     def _write(self) -> None:
         record = {"written": time.time(), "jobs": [asdict(job) for job in self.jobs]}
         write_file(self.folder / RECORD, to_json(record))
+
+
+def _lines(path: Path) -> list[str]:
+    """Lines of a file; none where it cannot be read."""
+    try:
+        return path.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return []
+
+
+def _changed(path: Path) -> float:
+    """When a file has last changed, 0 where it is gone."""
+    try:
+        return path.stat().st_mtime
+    except OSError:
+        return 0.0

@@ -13,7 +13,10 @@ from swgpar.app.tables import heading, live_label, say
 from swgpar.errors import SwgparError
 from swgpar.results.folder import FIELD_INDEX
 
-MESHES = ("coarse", "forces", "medium", "full", "plane_coarse", "plane")
+USUAL = "usual"
+"""The mesh of a command without `--mesh`."""
+
+MESHES = (USUAL, "coarse", "forces", "medium", "full", "plane_coarse", "plane")
 """Recipes of the package that are offered; those of the folder come after them."""
 
 LAST = 8
@@ -34,7 +37,7 @@ class JobsPanel:
         self._logs: list[tuple[AppJob, ui.label, bool]] = []
         with ui.row().classes("items-center"):
             ui.button("run", on_click=self._run)
-            ui.button("rate", on_click=lambda: self._design("rate"))
+            ui.button("rate", on_click=self._rate)
             with ui.dropdown_button("export", auto_close=True).classes("swgpar-export"):
                 for name in FORMATS:
                     item = ui.item(name.upper() if name != "teeth" else "points of the teeth")
@@ -76,7 +79,7 @@ class JobsPanel:
         if any(had_page != self._has_page(job) for job, _, had_page in self._logs):
             self.jobs.refresh()
         for job, log, _ in self._logs:
-            log.text = self.state.queue.last_lines(job, 3)
+            log.text = self.state.queue.progress(job)
 
     def _has_page(self, job: AppJob) -> bool:
         return job.page is not None and (self.state.queue.folder / job.page).is_file()
@@ -88,7 +91,7 @@ class JobsPanel:
         if job.reason:
             ui.label(job.reason).classes("text-negative text-caption")
         if job.state == JobState.RUNS:
-            log = ui.label(queue.last_lines(job, 3)).classes("swgpar-log")
+            log = ui.label(queue.progress(job)).classes("swgpar-log")
             self._logs.append((job, log, self._has_page(job)))
         with ui.row().classes("items-center"):
             if self._has_page(job):
@@ -120,7 +123,13 @@ class JobsPanel:
             show_search(self.state, job)
 
     def _run(self) -> None:
-        self._design("run", "--mesh", self.mesh.value)
+        self._design("run", *self._mesh())
+
+    def _rate(self) -> None:
+        self._design("rate", *self._mesh())
+
+    def _mesh(self) -> list[str]:
+        return [] if self.mesh.value == USUAL else ["--mesh", self.mesh.value]
 
     def _ranks(self) -> int:
         return int(min(max(self.ranks.value or 1, 1), most_ranks()))

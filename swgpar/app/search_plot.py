@@ -136,7 +136,7 @@ def _text(tried: TriedDesigns, number: int) -> str:
     """What the pointer shows."""
     each = tried.evaluations[number]
     found = [*each.values.items(), *((k, float(f"{v:.5g}")) for k, v in each.quantities.items())]
-    lines = [f"{name} = {show(value)} {tried.units.get(name, '')}" for name, value in found]
+    lines = [f"{name} = {show(value)} {tried.units.get(name, '')}".strip() for name, value in found]
     return "<br>".join([f"evaluation {number}: {words(tried, number)}", *lines])
 
 

@@ -14,6 +14,7 @@ from swgpar.app.jobs import JobQueue
 from swgpar.app.page import Page
 from swgpar.app.plane_state import PlaneWorker
 from swgpar.app.state import AppState
+from swgpar.app.style import PRIMARY, STYLE
 from swgpar.app.workspace import Workspace
 from swgpar.errors import InputError
 
@@ -23,29 +24,6 @@ RESULTS = "results"
 RECONNECT = 60.0
 """s for which a window that has lost its connection can come back: while a job runs, this process
 has little of the machine."""
-
-STYLE = """
-.swgpar-columns { flex-wrap: nowrap }
-.swgpar-form { width: 330px; max-height: calc(100vh - 80px); overflow-y: auto; flex: none }
-.swgpar-section { flex: 1 1 400px; min-width: 0 }
-.swgpar-plot { height: calc(100vh - 190px); min-height: 320px }
-.swgpar-half { height: calc(50vh - 115px); min-height: 240px }
-.body--dark .text-negative { color: #ff8a80 !important }
-.swgpar-answers { width: 340px; flex: none }
-.swgpar-slider { width: 100%; accent-color: var(--q-primary) }
-.swgpar-angle { width: 3em; text-align: right }
-.swgpar-view { border: 0 }
-.swgpar-search { width: min(90vw, 900px); max-width: none }
-.swgpar-text { max-height: 60vh; overflow: auto; user-select: all }
-.swgpar-log { white-space: pre-wrap; font-family: monospace; font-size: 11px }
-@media (max-width: 1000px) {
-  .swgpar-columns { flex-wrap: wrap }
-  .swgpar-form, .swgpar-answers, .swgpar-section { width: 100%; max-height: none; flex: 1 1 100% }
-  .swgpar-plot { height: 60vh }
-  .swgpar-half { height: 40vh }
-  .swgpar-section { order: -1 }
-}
-"""
 
 
 def free_port() -> int:
@@ -109,6 +87,7 @@ def serve(source: Path, port: int | None = None, *, show: bool = True) -> None:
 
     def root() -> None:
         ui.add_css(STYLE)
+        ui.colors(primary=PRIMARY)
         Page(state)
 
     address = f"http://127.0.0.1:{port}/?token={token}"

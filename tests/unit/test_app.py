@@ -18,10 +18,11 @@ import pytest
 
 import swgpar
 from support.paths import DESIGN, DRIVERS, RECIPE
+from swgpar.answers.verdict import Judgement
 from swgpar.app.access import COOKIE, TokenGate
 from swgpar.app.fields import FormField, form_fields, is_optional, missing_sections
 from swgpar.app.flank_gaps import NEAR, flank_gaps
-from swgpar.app.jobs import JobQueue, JobState
+from swgpar.app.jobs import AppJob, JobQueue, JobState
 from swgpar.app.plane_state import plane_table, solve_plane
 from swgpar.app.search_plot import EVALUATION, pair_figure, parallel_figure
 from swgpar.app.section_plot import section_figure
@@ -33,7 +34,8 @@ from swgpar.errors import InputError, OutputError
 from swgpar.input.differences import differences
 from swgpar.optimisation.tried_designs import read_tried
 from swgpar.presentation.body_curves import body_curves
-from swgpar.rating.stored_sheet import StoredRow, read_sheet
+from swgpar.rating.sheet_differences import sheet_differences
+from swgpar.rating.stored_sheet import StoredRow, StoredSheet, read_sheet
 
 ADDENDUM = "drive.addendum_coef"
 DESIGNS = ["cup_45deg.toml", "three_lobes.toml", "rating.toml"]
@@ -315,6 +317,37 @@ def test_share_of_a_limit(
     (tmp_path / "rating.json").write_text("{}", encoding="utf-8")
     with pytest.raises(OutputError, match="cannot be read"):
         read_sheet(tmp_path)
+
+
+def stored(row: str, value: float | None, error: float | None, verdict: str) -> StoredRow:
+    rest = dict.fromkeys((field.name for field in dataclasses.fields(StoredRow)), "")
+    known = {"row": row, "value": value, "unit": "MPa", "error": error, "verdict": verdict}
+    return StoredRow(**{**rest, "limit": None, **known})
+
+
+def test_what_differs_between_two_ratings() -> None:
+    """Rows with the same value and verdict are left out; an error needs both."""
+    first = (stored("yield", 500.0, 5.0, "passes"), stored("life", 9.0, None, "passes"))
+    second = (stored("yield", 530.0, 6.0, "fails"), stored("life", 9.0, None, "passes"))
+    sheets = [StoredSheet("one", Judgement.FAILS, rows) for rows in (first, second)]
+    (found,) = sheet_differences(*sheets)
+    assert (found.name, found.unit, found.change, found.error) == ("yield", "MPa", 30.0, 11.0)
+    assert sheet_differences(sheets[0], sheets[0]) == []
+    other = StoredSheet("other", Judgement.FAILS, (stored("life", 8.0, 1.0, "passes"),))
+    gone, life = sorted(sheet_differences(sheets[0], other), key=lambda one: one.name == "life")
+    assert gone.name == "yield" and gone.change is None
+    assert life.change == -1.0 and life.error is None
+
+
+def test_a_rating_that_runs_says_where_it_is(tmp_path: Path) -> None:
+    """Its own lines, and the last one of the log of its run."""
+    queue, (logs, run) = JobQueue(tmp_path), (tmp_path / "logs", tmp_path / "results/1/runs/rated")
+    for folder in (logs, run):
+        folder.mkdir(parents=True)
+    (logs / "1.log").write_text("one\ntwo\n", encoding="utf-8")
+    (run / "run.log").write_text("2026-01-01 10:00:00,000  INFO     2/4  load\n", encoding="utf-8")
+    job = AppJob(1, ["rate", "one.toml"], 1, "results/1", begun=time.time() - 125.0)
+    assert queue.progress(job).splitlines() == ["for 2 min", "one", "two", "rated: 2/4  load"]
 
 
 def test_tried_designs_of_a_search(tmp_path: Path) -> None:
