@@ -17,6 +17,7 @@ from swgpar.evaluation.bolt_loads import evaluate_bolts
 from swgpar.evaluation.fatigue import FatigueResult, evaluate_fatigue
 from swgpar.evaluation.frequencies import NaturalFrequencies
 from swgpar.evaluation.housing_values import HousingStresses
+from swgpar.evaluation.input_coupling import coupling_at_output
 from swgpar.evaluation.largest_contact import largest_contact
 from swgpar.evaluation.load_sharing import LoadSharing, load_sharing
 from swgpar.evaluation.losses import DriveLosses, evaluate_losses
@@ -117,6 +118,9 @@ def evaluate_run(
         ),
         stiffness=torsional_stiffness(stiffness_program(design), program, stiffness_error)
         if design.stiffness
+        else None,
+        input_coupling=coupling_at_output(design.input_coupling, sequence.kinematics.ratio)
+        if design.input_coupling
         else None,
         ratcheting=(
             evaluate_ratcheting(

@@ -204,7 +204,9 @@ class Recorder(ABC):
 
     def program_rows(self) -> list[PointRow]:
         """Rows of program.csv."""
-        return point_rows(self.sequence.points, self.sequence.kinematics, self.record.rows)
+        sequence, design = self.sequence, self.model.design
+        coupling = design.input_coupling if design.stiffness else None
+        return point_rows(sequence.points, sequence.kinematics, self.record.rows, coupling)
 
     @abstractmethod
     def begin(self) -> None:

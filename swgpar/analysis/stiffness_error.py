@@ -101,5 +101,6 @@ def _stiffness_on(drive: MeshedDrive, recipe: MeshRecipe) -> StiffnessValues:
             rows.append(stepper.row())
     finally:
         drive.models.give_back(model)
-    points = point_rows(sequence.points, sequence.kinematics, rows)
+    coupling = drive.design.input_coupling
+    points = point_rows(sequence.points, sequence.kinematics, rows, coupling)
     return by_position(stiffness_program(drive.design), points)[0.0]

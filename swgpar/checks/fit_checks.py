@@ -12,6 +12,7 @@ from swgpar.checks.deviation_checks import check_deviations
 from swgpar.checks.frequency_checks import check_frequencies
 from swgpar.checks.growth_checks import check_growth
 from swgpar.checks.inertia import check_inertia
+from swgpar.checks.input_coupling_checks import check_input_coupling
 from swgpar.checks.output_bearing_checks import check_output_bearing
 from swgpar.checks.program_checks import check_program
 from swgpar.checks.strain_checks import check_strains
@@ -66,6 +67,8 @@ def check_fit(design: DriveDesign) -> None:
     if design.bearing is not None:
         check_bearing(design)
     check_growth(design)
+    if design.input_coupling is not None:
+        check_input_coupling(design, design.input_coupling)
     if design.output_bearing is not None:
         check_output_bearing(design, design.output_bearing)
     if design.frequencies is not None:

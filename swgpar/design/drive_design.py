@@ -50,6 +50,7 @@ SOLVER_CHOICES = {
 OF_STATES = (
     "steps",
     "stiffness",
+    "input_coupling",
     "ratcheting",
     "output",
     "fatigue",

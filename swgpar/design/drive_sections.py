@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 from swgpar.design.cup_section import Cup
 from swgpar.design.deviations import Deviations
 from swgpar.design.frequency_section import Frequencies
+from swgpar.design.input_coupling import InputCoupling
 from swgpar.design.kinematics import Kinematics, make_kinematics
 from swgpar.design.output_bearing import OutputBearing
 from swgpar.design.program_sections import Ratcheting, Stiffness
@@ -62,6 +63,7 @@ class DriveSections(Design):
     deviations: Deviations | None = None
     frequencies: Frequencies | None = None
     output_bearing: OutputBearing | None = None
+    input_coupling: InputCoupling | None = None
     rating: RatingSection | None = None
 
     @property

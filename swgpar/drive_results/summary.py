@@ -13,6 +13,7 @@ from swgpar.evaluation.bearing_loads import BallLoads
 from swgpar.evaluation.bolt_loads import BoltLoads
 from swgpar.evaluation.frequencies import NaturalFrequencies
 from swgpar.evaluation.housing_values import HousingStresses
+from swgpar.evaluation.input_coupling import CouplingAtOutput
 from swgpar.evaluation.largest_contact import LargestContact
 from swgpar.evaluation.load_sharing import LoadSharing
 from swgpar.evaluation.losses import DriveLosses
@@ -88,6 +89,7 @@ class DriveSummary(AnswerTable):
     ratio: float
     design: DriveDesign
     stiffness: TorsionalStiffness | None = None
+    input_coupling: CouplingAtOutput | None = None
     ratcheting: RatchetingTorque | None = None
     program: ProgramStages | None = None
     root_stress: RootStress | None = None

@@ -16,6 +16,7 @@ from swgpar.answers.answer import (
     part_answers,
 )
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.input_coupling import InputCoupling
 from swgpar.design.kinematics import Kinematics
 from swgpar.load.load_program import ProgramPoint
 from swgpar.load.load_states import Stage
@@ -38,22 +39,32 @@ and the rotation of the output by it, beyond what the ratio makes of the wave ge
 
 
 def point_rows(
-    points: Sequence[ProgramPoint], kinematics: Kinematics, rows: Sequence[Row]
+    points: Sequence[ProgramPoint],
+    kinematics: Kinematics,
+    rows: Sequence[Row],
+    coupling: InputCoupling | None,
 ) -> list[PointRow]:
-    """Rows of program.csv from those of the history."""
+    """Rows of program.csv from those of the history.
+
+    coupling : between shaft and wave generator; with it the angles are those of a locked shaft
+    """
     direction, computed = kinematics.torque_direction, []
     for row in rows:
         index = int(row["step"]) - Stage.LOAD
         if not 0 <= index < len(points):
             continue
         rotation = wrapped(row["output_angle_deg"] - row["wg_angle_deg"] / kinematics.ratio)
+        torque = direction * row["output_torque_Nmm"] / 1000.0
+        arc_minutes = direction * 60.0 * float(rotation)
+        if coupling is not None:
+            arc_minutes += 60.0 * float(np.degrees(coupling.rotation(torque, kinematics.ratio)))
         computed.append(
             {
                 "step": int(row["step"]),
                 "stage": points[index].stage,
                 "wg_angle_deg": row["wg_angle_deg"],
-                "torque_Nm": direction * row["output_torque_Nmm"] / 1000.0,
-                "rotation_arcmin": direction * 60.0 * float(rotation),
+                "torque_Nm": torque,
+                "rotation_arcmin": arc_minutes,
                 "wg_torque_Nmm": row["wg_torque_Nmm"],
                 "pairs_in_contact": row["pairs_in_contact"],
             }
