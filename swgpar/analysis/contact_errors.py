@@ -38,6 +38,11 @@ the forces of some ten pairs move with the layers along the face width, by 1 to 
 LEAST_FORCE_WITH_EDGES = 0.03
 """The same in the plane where a contact lies on an edge, whose compliance no mesh resolves."""
 
+HERTZ = 0.5
+"""Error of a pressure that a force brings with it, as shares of both: a pressure goes with the root
+of its line load. Forces of pairs move together from mesh to mesh, and where a pressure changes
+little between two of them by chance that of the largest force tells more."""
+
 SLIGHT = 0.3
 """Force over the largest one below which a pair off edges has what those on edges leave."""
 
@@ -66,23 +71,26 @@ def contact_errors(
     least = LEAST_FORCE_WITH_EDGES if on_edge and model == "plane" else LEAST_FORCE[model]
     least_pressure = LEAST_PRESSURE_WITH_EDGES[model] if on_edge else LEAST_PRESSURE
 
+    def of_force(measure: Measure) -> float | None:
+        share = None if alone else _error_share(meshes, measure)
+        return None if share is None else max(share, least)
+
+    force = of_force(lambda pair: pair.force_N)
+    by_force = HERTZ * force if force is not None and model == "plane" else 0.0
+
     def of_pressure(measure: Measure) -> float | None:
         share = _error_share(meshes, measure)
         if share is None:
             return None
         # another mesh puts the cells elsewhere at a peak that is as narrow as they are
         shown = max(contacts, key=lambda pair: np.nan_to_num(measure(pair))).unresolved
-        return max(PRESSURE_SAFETY[model] * share, shown, least_pressure)
-
-    def of_force(measure: Measure) -> float | None:
-        share = None if alone else _error_share(meshes, measure)
-        return None if share is None else max(share, least)
+        return max(PRESSURE_SAFETY[model] * share, shown, by_force, least_pressure)
 
     off_edges = None if _is_slight(contacts) else of_pressure(_pressure_off_edges)
     return ContactErrorShares(
         pressure=of_pressure(lambda pair: pair.pressure_MPa),
         pressure_off_edges=off_edges,
-        force=of_force(lambda pair: pair.force_N),
+        force=force,
         force_share=of_force(lambda pair: pair.force_share),
         on_lines=model == "plane",
     )

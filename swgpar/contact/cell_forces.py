@@ -24,6 +24,10 @@ EDGE_ZONE, EDGE_SOFTNESS = 0.05, 0.02
 have at the very end, in facets: a flank that slides over an end loses its force there
 continuously, where half planes would lose it at once."""
 
+MAX_APPROACHES, SAME_FORCE = 12, 1e-9
+"""Steps of Newton's method to the approach at which a line carries a given force, and the relative
+difference of forces that are the same."""
+
 
 class CellForces:
     """What acts on cells of a pair of bodies.
@@ -120,6 +124,29 @@ class CellForces:
         )
         pressure = active.forces.force / active.width
         active.pressure = np.repeat(pressure[:, None], gap.shape[1], axis=1)
+
+    def carry(
+        self, cells: ActiveCells, gap: np.ndarray, share: float, present: ActiveCells
+    ) -> None:
+        """Let the bodies approach on every line until its cells carry the force of the present
+        ones; one line on a flank.
+
+        gap : (n, n_q) mm, at the points of the cells;  share : as for `press`
+        """
+        line, wanted = cells.placed.line, np.zeros(int(cells.placed.line.max(initial=-1)) + 1)
+        known = present.placed.line < len(wanted)
+        np.add.at(wanted, present.placed.line[known], present.forces.force[known])
+        deeper = np.zeros(len(wanted))
+        for _ in range(MAX_APPROACHES):
+            carried, stiffness = np.bincount(line, cells.forces.force, len(wanted)), 0.0 * wanted
+            for acts, of_cells in cells.forces.flanks:
+                stiffness[line[acts[0]]] = of_cells.sum()
+            moves = (wanted > 0.0) & (stiffness > 0.0)
+            lacks = np.where(moves, wanted - carried, 0.0)
+            if not (np.abs(lacks) > SAME_FORCE * wanted).any():
+                break
+            deeper[moves] += lacks[moves] / stiffness[moves]
+            self.press(cells, gap - deeper[line][:, None], share)
 
     def pressed_lines(self, active: ActiveCells) -> list[PressedLine]:
         """Pressures of the pairs whose flexible-spline tooth this rank owns, on widths along

@@ -74,8 +74,16 @@ class LineCells:
 
     def pressed_lines(self, u: np.ndarray, clearance: float) -> list[PressedLine]:
         """Pressures of the pairs whose flexible-spline tooth this rank owns at displacement u
-        (n_local, 3) mm, on finer cells than those of a solve."""
-        return self.law.pressed_lines(self._placed(u, clearance, RESOLVED))
+        (n_local, 3) mm, on finer cells than those of a solve.
+
+        In the plane they carry the forces of the present cells, which are in equilibrium: at the
+        same displacement other cells have up to some percent more or less.
+        """
+        fine = self._placed(u, clearance, RESOLVED)
+        if self.active is not None and self.law.n_line == 1:
+            gap, _ = self.kernel.gaps(fine.faces, u, SLIDING, clearance)
+            self.law.carry(fine, gap, self.share, self.active)
+        return self.law.pressed_lines(fine)
 
     def misses_lines(self, u: np.ndarray, clearance: float) -> bool:
         """Whether lines touch at u that have no frozen cells."""

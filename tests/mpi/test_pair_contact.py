@@ -95,6 +95,8 @@ def test_an_arc_on_a_straight_flank_has_the_pressure_of_hertz() -> None:
         np.sqrt(4.0 * load * 1.0 / (np.pi * modulus)), rel=0.025
     )
     assert not one.edge
+    # finer cells carry the force of those in equilibrium
+    assert one.line_load_Nmm * one.width_mm == pytest.approx(one.force_N, rel=1e-4)
 
 
 @pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])

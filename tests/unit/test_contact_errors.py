@@ -68,6 +68,13 @@ def test_changes_of_both_groups_are_added() -> None:
     assert found.force_share == LEAST_FORCE["plane"]  # no change at all is chance
 
 
+def test_a_pressure_has_half_of_the_error_of_forces() -> None:
+    """It goes with the root of the force, also where it is the same on all meshes by chance."""
+    found = errors([pair(1, 520.0, force=90.0)], [pair(1, 520.0)], [pair(1, 520.0, force=110.0)])
+    assert found.force == pytest.approx(FACTOR * (10.0 + 10.0) / 110.0)
+    assert found.pressure == pytest.approx(0.5 * found.force)
+
+
 def test_the_pair_with_the_largest_value_is_compared_as_well() -> None:
     """Where another pair has the largest one on a coarser mesh, the two largest can be equal."""
     found = errors(
