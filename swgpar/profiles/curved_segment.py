@@ -16,6 +16,9 @@ from swgpar.profiles.flank import FlankPoints, NearestPoints
 PANELS, ORDER = 64, 6
 """Panels of the arc length's table and Gauss points in each: round-off on a tooth's curves."""
 
+INVERSES = PANELS, 4 * PANELS
+"""Pieces of the inverse of an arc length that are tried, one after the other."""
+
 DEGREE = 7
 """Of the splines that replace an inverse or a costly curve."""
 
@@ -101,11 +104,15 @@ class CurvedSegment:
     @cached_property
     def _inverse(self) -> tuple[scipy.interpolate.PPoly, bool]:
         """Parameters by arc lengths (mm), and whether they are exact but for round-off."""
-        t, ends = np.linspace(0.0, 1.0, PANELS + 1), self._table[1]
-        inverse = by_pieces(scipy.interpolate.make_interp_spline(ends, t, DEGREE))
-        between = 0.5 * (ends[:-1] + ends[1:])
-        error = np.abs(self.arc_length(inverse(between)) - between).max()
-        return inverse, bool(error < ROUND_OFF * self.length)
+        for panels in INVERSES:
+            t = np.linspace(0.0, 1.0, panels + 1)
+            ends = self._table[1] if panels == PANELS else self.arc_length(t)
+            inverse = by_pieces(scipy.interpolate.make_interp_spline(ends, t, DEGREE))
+            between = 0.5 * (ends[:-1] + ends[1:])
+            error = np.abs(self.arc_length(inverse(between)) - between).max()
+            if exact := bool(error < ROUND_OFF * self.length):
+                break
+        return inverse, exact
 
     def parameter(self, s: Floats) -> Floats:
         """Parameters (n,) at the arc lengths `s` : (n,) mm, by Newton's method where the table is
