@@ -9,7 +9,7 @@ from nicegui import ui
 from swgpar.app.jobs import AppJob, JobState
 from swgpar.app.search_panel import show_search
 from swgpar.app.state import AppState, files_of, most_ranks, recipes_of
-from swgpar.app.tables import heading, live_label, say
+from swgpar.app.tables import live_label, say
 from swgpar.errors import SwgparError
 from swgpar.results.folder import FIELD_INDEX
 
@@ -47,9 +47,9 @@ class JobsPanel:
             self.ranks = ui.number("ranks", value=min(2, most_ranks()), min=1, max=most_ranks())
             self.ranks.props("dense").classes("w-16")
         self.files()
-        heading("jobs")
         self.said = live_label().classes("text-caption")
-        self.jobs()
+        with ui.column().classes("w-full swgpar-queue"):
+            self.jobs()
         self.dialogs = ui.element("div")  # the queue is drawn anew while they are open
 
     @ui.refreshable_method
@@ -69,7 +69,7 @@ class JobsPanel:
         self._logs.clear()
         last = self.state.queue.jobs[-LAST:]
         said = ", ".join(f"{job.number} {job.state}" for job in last[-SAID:])
-        say(self.said, f"the last ones: {said}" if said else "")
+        say(self.said, f"jobs: {said}" if said else "")
         for job in reversed(last):
             with ui.card().tight().classes("w-full q-pa-sm swgpar-job"):
                 self._job(job)

@@ -43,8 +43,8 @@ class Page:
             with _region("swgpar-section", "section of the teeth"):
                 self.section = SectionPanel(state)
             with _region("swgpar-answers", "answers and jobs"):
-                self.answers = AnswersPanel(state)
                 self.jobs = JobsPanel(state)
+                self.answers = AnswersPanel(state)
         ui.timer(LOOK, state.look_at_states)
         ui.timer(JOBS, state.look_at_jobs)
         ui.timer(PLAY, self.section.turn)

@@ -6,19 +6,22 @@ PRIMARY = "#3577bd"
 """Colour of the header and of buttons, on which white letters have a contrast of 4.6."""
 
 STYLE = """
+@layer theme {
+  .text-positive { color: #1a7f37 !important }
+  .text-warning, .text-orange-9 { color: #8a5a00 !important }
+  .text-grey { color: #6b6b6b !important }
+  .body--dark .text-primary { color: #7db4ea !important }
+  .body--dark .text-negative { color: #ff8a80 !important }
+  .body--dark .text-positive { color: #5fd38a !important }
+  .body--dark .text-warning, .body--dark .text-orange-9 { color: #ffb74d !important }
+  .body--dark .text-grey { color: #a8a8a8 !important }
+}
+.swgpar-queue { max-height: 34vh; overflow-y: auto; flex-wrap: nowrap }
 .swgpar-columns { flex-wrap: nowrap }
 .swgpar-form { width: 330px; max-height: calc(100vh - 80px); overflow-y: auto; flex: none }
 .swgpar-section { flex: 1 1 400px; min-width: 0 }
 .swgpar-plot { height: calc(100vh - 190px); min-height: 320px }
 .swgpar-half { height: calc(50vh - 115px); min-height: 240px }
-.text-positive { color: #1a7f37 !important }
-.text-warning, .text-orange-9 { color: #8a5a00 !important }
-.text-grey { color: #6b6b6b !important }
-.body--dark .text-primary { color: #7db4ea !important }
-.body--dark .text-negative { color: #ff8a80 !important }
-.body--dark .text-positive { color: #5fd38a !important }
-.body--dark .text-warning, .body--dark .text-orange-9 { color: #ffb74d !important }
-.body--dark .text-grey { color: #a8a8a8 !important }
 .swgpar-answers { width: 340px; flex: none }
 .swgpar-slider { width: 100%; height: 4px; border-radius: 2px; appearance: none;
   background: #8c8c8c80; margin: 8px 0; cursor: pointer }
@@ -41,4 +44,5 @@ STYLE = """
   .swgpar-section { order: -1 }
 }
 """
-"""Texts have a contrast of 4.5 and more, on white and on black."""
+"""Texts have a contrast of 4.5 and more, on white and on black. Of important rules
+those of the first layer count."""

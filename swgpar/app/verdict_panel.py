@@ -16,6 +16,7 @@ from swgpar.checks.remarks import remarks
 from swgpar.errors import SwgparError
 from swgpar.input.differences import Difference, differences
 from swgpar.input.toml_file import read_toml
+from swgpar.presentation.answer_text import plus_minus, value_text
 from swgpar.rating.sheet_differences import RowDifference, sheet_differences
 from swgpar.rating.stored_sheet import StoredRow, StoredSheet, read_sheet
 
@@ -60,10 +61,16 @@ class VerdictPanel:
             say(self.headline, "")
             ui.label(text).classes("text-caption")
             return
-        say(self.headline, f"{sheet.headline}: {sheet.title}")
+        say(self.headline, sheet.sentence or f"{sheet.headline}: {sheet.title}")
         self.headline.classes(replace=f"text-{COLOURS[sheet.headline]} text-bold")
+        ui.label("bars: share of the limit that is used").classes("text-caption")
+        others = [row for row in sheet.rows if row.limit is None]
         for row in sheet.rows:
-            _gauge(row)
+            if row.limit is not None:
+                _gauge(row)
+        with ui.expansion(f"{len(others)} rows without a limit").classes("w-full"):
+            for row in others:
+                _gauge(row)
         changed = self._changed_keys(job)
         if changed:
             keys = ", ".join(one.key for one in changed)
@@ -125,8 +132,9 @@ def _gauge(row: StoredRow) -> None:
     """A row of the sheet with the share of its limit."""
     judgement = Judgement(row.verdict)
     with ui.element("div").classes("w-full swgpar-gauge"):
-        limit = "" if row.limit is None else f", {row.sense} {row.limit:.4g}"
-        ui.label(f"{row.row}: {_value(row)} {row.unit}{limit}").classes("text-caption")
+        limit = "" if row.limit is None else f", {row.sense} {row.limit:.5g}"
+        amount = f"{row.row}: {_value(row)} {row.unit}".rstrip()
+        ui.label(f"{amount}{limit}").classes("text-caption")
         if row.used is not None:
             bar = ui.linear_progress(min(row.used, 1.0), show_value=False, size="8px")
             bar.props(f"color={COLOURS[judgement]}")
@@ -138,14 +146,17 @@ def _gauge(row: StoredRow) -> None:
 def _value(row: StoredRow | None) -> str:
     if row is None or row.value is None:
         return "—"
-    return f"{row.value:.4g}" + ("" if row.error is None else f" ± {row.error:.2g}")
+    error = "" if row.error is None else f" {plus_minus(row.error)}"
+    return f"{value_text(row.value, row.error)}{error}"
 
 
 def _difference(one: RowDifference) -> list[str]:
     """A row of the table of differences."""
     verdicts = [row.verdict for row in (one.first, one.second) if row is not None]
-    change = "—" if one.change is None else f"{one.change:+.3g}"
-    change += "" if one.change is None or one.error is None else f" ± {one.error:.2g}"
+    change = "—"
+    if one.change is not None:
+        change = f"{'+' if one.change > 0.0 else ''}{value_text(one.change, one.error)}"
+        change += "" if one.error is None else f" {plus_minus(one.error)}"
     if len(set(verdicts)) > 1:
         change += f"; {verdicts[0]}, now {verdicts[1]}"
     name = f"{one.name} ({one.unit})" if one.unit else one.name

@@ -49,6 +49,11 @@ def error_text(answer: Answer) -> str:
     error = answer.error
     if error is None:
         return answer.no_error.replace(" ", "\u00a0")
+    return plus_minus(error)
+
+
+def plus_minus(error: float) -> str:
+    """An error with two digits, without a power of ten and without a break of the line."""
     error = 0.0 if error < NOTHING else error
     return f"±\u00a0{_rounded(error, _decimals(error) if error > 0.0 else 0)}"
 

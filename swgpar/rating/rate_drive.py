@@ -19,6 +19,7 @@ from swgpar.rating.page import rating_page
 from swgpar.rating.planned_runs import LoadCase, PlannedRun, RatingPlan, plan_runs
 from swgpar.rating.rows import RatingRow, rating_rows
 from swgpar.rating.sheet import CSV, JSON, PAGE, RatedVerdict, RatingSheet, RunEntry
+from swgpar.rating.texts import headline_text
 from swgpar.results.atomic import on_all, to_json, write_from_root
 from swgpar.results.lock import releasing
 from swgpar.results.table import format_csv
@@ -219,6 +220,7 @@ def _claim(folder: Path, options: RunOptions) -> None:
 def _write(sheet: RatingSheet, folder: Path, comm: MPI.Comm) -> None:
     """Write the files of the sheet; collective."""
     page = rating_page(sheet) if comm.rank == 0 else b""
-    write_from_root(comm, folder / JSON, to_json(sheet.content))
+    content = sheet.content | {"sentence": headline_text(sheet)}
+    write_from_root(comm, folder / JSON, to_json(content))
     write_from_root(comm, folder / CSV, format_csv(sheet.rows))
     write_from_root(comm, folder / PAGE, page)

@@ -43,11 +43,14 @@ class StoredRow:
 
 @dataclass(frozen=True)
 class StoredSheet:
-    """title : of the drive;  headline : the worst judgement;  rows : in the order of the sheet"""
+    """title : of the drive;  headline : the worst judgement;  rows : in the order of the sheet
+    sentence : the headline in words, with the rows that it comes from
+    """
 
     title: str
     headline: Judgement
     rows: tuple[StoredRow, ...]
+    sentence: str = ""
 
 
 def read_sheet(folder: Path) -> StoredSheet:
@@ -59,6 +62,7 @@ def read_sheet(folder: Path) -> StoredSheet:
             raise ValueError(f"its format is {content['format']}: this program reads {FORMAT}")
         names = [field.name for field in fields(StoredRow)]
         rows = tuple(StoredRow(**{name: row[name] for name in names}) for row in content["rows"])
-        return StoredSheet(content["title"], Judgement(content["headline"]), rows)
+        said = content.get("sentence", "")  # sheets of older versions have none
+        return StoredSheet(content["title"], Judgement(content["headline"]), rows, said)
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise OutputError(f"{path} cannot be read: {reason_of(error)}") from None
