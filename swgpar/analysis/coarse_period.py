@@ -9,17 +9,14 @@ from swgpar.analysis.transfer import transfer
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.period_ranges import INPUT_TORQUE, CoarsePeriod, period_curves
 from swgpar.log import logger
-from swgpar.meshing import MeshRecipe
 from swgpar.model.drive_model import DriveModel
 
 
-def coarse_period(
-    model: DriveModel, coarse: MeshRecipe, run: LoadStepper, fine: MeshRecipe
-) -> CoarsePeriod | None:
-    """Take the loaded model on the mesh of `coarse` through the period that a run samples, and back
-    to its loaded state; collective. Its states guide the run.
+def coarse_period(model: DriveModel, run: LoadStepper) -> CoarsePeriod | None:
+    """Take the loaded model on a coarser mesh through the period that a run samples, and back to
+    its loaded state; collective. Its states guide the run.
 
-    run, fine : takes the run through its states, on the mesh of that recipe
+    run : takes the run through its states
 
     None without a sampled period or a torque; in a cup drive, where it would cost a third of the
     run; with friction, whose first period settles; and where an angle does not converge in one
@@ -27,7 +24,7 @@ def coarse_period(
     """
     stepper = LoadStepper(model)
     sequence = stepper.sequence
-    if coarse.model != "plane" or not (sequence.samples and sequence.torque):
+    if model.recipe.model != "plane" or not (sequence.samples and sequence.torque):
         return None
     if sequence.periods > 1 or sequence.kinematics.wave_generator_is_fixed:
         return None
@@ -45,7 +42,7 @@ def coarse_period(
     finally:
         loaded.copy(model.problem.x)
     run.guides = guides
-    factor = SAFETY / (smallest_ratio(coarse, fine) ** ORDER - 1.0)
+    factor = SAFETY / (smallest_ratio(model.recipe, run.model.recipe) ** ORDER - 1.0)
     return CoarsePeriod(period_curves(sequence.kinematics, rows, INPUT_TORQUE), factor)
 
 

@@ -66,7 +66,7 @@ class MeshedDrive:
         try:
             model = models.take(self.design, recipe, self.comm)
             stepper = LoadStepper(model)
-            taken_over = kept is not None and kept.restore(model, recipe)
+            taken_over = kept is not None and kept.restore(model)
             if taken_over or (known := _from_other_load(stepper, models)) is not None:
                 if coarse is not None:
                     models.give_back(coarse)
@@ -78,7 +78,7 @@ class MeshedDrive:
             else:
                 iterations = _reach_load(stepper)
             if kept is not None and not taken_over:
-                kept.save(model, recipe)
+                kept.save(model)
                 _settle(stepper)  # so that the forces are those of a run that takes this state over
         except SwgparError:
             for one in (coarse, model):
@@ -141,16 +141,15 @@ def _jump(stepper: LoadStepper) -> None:
 def start_at_load(
     stepper: LoadStepper,
     drive: MeshedDrive,
-    recipe: MeshRecipe,
-    on_coarse: Callable[[DriveModel, MeshRecipe], None],
+    on_coarse: Callable[[DriveModel], None],
     kept: StartStates,
 ) -> bool:
     """Reach the loaded state from that under another load, on coarser meshes or from the bent
     shape; False if that is not asked for, or fails.
 
-    recipe : of the stepper's mesh;  for the others see `start_loaded`
+    drive, on_coarse, kept : see `start_loaded`
     """
-    compares = drive.design.compares_meshes
+    recipe, compares = stepper.model.recipe, drive.design.compares_meshes
     coarser_ones = levels(drive.design.start_levels, recipe)
     ways: list[tuple[list[MeshRecipe], list[MeshRecipe]]] = []
     if coarser_ones:
@@ -179,7 +178,7 @@ def start_loaded(
     stepper: LoadStepper,
     drive: MeshedDrive,
     recipes: list[MeshRecipe],
-    on_coarse: Callable[[DriveModel, MeshRecipe], None] = lambda model, recipe: None,
+    on_coarse: Callable[[DriveModel], None] = lambda model: None,
     kept: StartStates | None = None,
     compared: int = 0,
 ) -> None:
@@ -187,8 +186,8 @@ def start_loaded(
     coarser meshes, the coarsest of `recipes` first, or bent at once.
 
     drive : that of the stepper, on any mesh
-    on_coarse : called with the model on each of the last `compared` ones of the coarser meshes, and
-        its recipe; it raises nothing
+    on_coarse : called with the model on each of the last `compared` ones of the coarser meshes; it
+        raises nothing
     kept : see `MeshedDrive.load`
 
     Raises ConvergenceError or InputError where a mesh does not allow it; `stepper` is then to be
@@ -199,7 +198,7 @@ def start_loaded(
         for left, recipe in zip(range(len(recipes), 0, -1), recipes):
             coarse = drive.load(recipe, coarse, kept)
             if left <= compared:
-                on_coarse(coarse, recipe)
+                on_coarse(coarse)
         if stepper.load_state.is_periodic:
             if coarse is not None:
                 models.give_back(coarse)

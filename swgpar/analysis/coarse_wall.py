@@ -12,12 +12,10 @@ from swgpar.meshing.recipe_counts import wall_ratio
 from swgpar.model.drive_model import DriveModel
 
 
-def coarse_wall(
-    model: DriveModel, state: LoadState, coarse: MeshRecipe, fine: MeshRecipe
-) -> CoarseWall | None:
-    """The largest stresses of the wall of the loaded model on the coarser of two meshes, None where
+def coarse_wall(model: DriveModel, state: LoadState, fine: MeshRecipe) -> CoarseWall | None:
+    """The largest stresses of the wall of the loaded model beside those on a finer mesh, None where
     they are not known; collective."""
-    ratio = wall_ratio(coarse, fine)
+    ratio = wall_ratio(model.recipe, fine)
     if not model.design.resolves_wall or ratio is None:
         return None
     try:

@@ -15,6 +15,7 @@ from itertools import pairwise
 
 from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.evaluation.bearing_loads import BallLoads
+from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares
 from swgpar.evaluation.loaded_bearing import loaded_bearing
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.flank_pressure.pair_contact import (
@@ -93,6 +94,7 @@ class MeshComparison:
 
     coarser : the coarsest first;  contacts : of all touching pairs on the mesh
     ring_teeth : modelled teeth of the ring gear;  before : see `drive_error`
+    contact_errors, bearing_errors : of the contacts of flanks, and see `bearing_errors`
     """
 
     recipe: MeshRecipe
@@ -100,6 +102,8 @@ class MeshComparison:
     contacts: Sequence[PairContact]
     ring_teeth: int
     before: RootStress | None = None
+    contact_errors: ContactErrorShares = UNKNOWN
+    bearing_errors: dict[str, float] = field(default_factory=dict)
 
     def with_errors(self, found: RootStress) -> RootStress:
         """Stresses by windows on the mesh, with their errors by the mesh of the drive. More windows
@@ -136,7 +140,7 @@ def with_finer_flanks(coarse: MeshRecipe, recipe: MeshRecipe) -> list[MeshRecipe
 
 
 def coarser_mesh(
-    model: DriveModel, recipe: MeshRecipe, state: LoadState, *, windows: bool, coarsest: bool
+    model: DriveModel, state: LoadState, *, windows: bool, coarsest: bool
 ) -> CoarserMesh:
     """What the loaded model on a coarser mesh gives in contacts and bearing, and in windows;
     collective.
@@ -149,9 +153,9 @@ def coarser_mesh(
     """
     contacts, bearing = pair_contacts(model, state), loaded_bearing(model, state)
     if not windows:
-        return CoarserMesh(recipe, {}, contacts, {}, bearing)
+        return CoarserMesh(model.recipe, {}, contacts, {}, bearing)
     found = resolve_root_stress(model, state, COMPARED_LEVELS, COMPARED_LEVELS - 1, ring=coarsest)
-    return CoarserMesh(recipe, found.by_part, contacts, found.regions, bearing)
+    return CoarserMesh(model.recipe, found.by_part, contacts, found.regions, bearing)
 
 
 def drive_error(

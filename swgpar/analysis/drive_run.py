@@ -7,11 +7,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from swgpar.analysis.bearing_errors import bearing_errors
 from swgpar.analysis.coarse_period import coarse_period
 from swgpar.analysis.coarse_start import MeshedDrive, start_at_load
 from swgpar.analysis.coarse_wall import coarse_wall
-from swgpar.analysis.contact_errors import contact_errors
+from swgpar.analysis.compare_meshes import compare_meshes
 from swgpar.analysis.drive_mesh_error import (
     CoarserMesh,
     MeshComparison,
@@ -26,16 +25,13 @@ from swgpar.analysis.step_control import StepControl
 from swgpar.analysis.stiffness_error import stiffness_error
 from swgpar.drive_results.drive_data import DriveData
 from swgpar.errors import ConvergenceError, InputError
-from swgpar.evaluation.loaded_bearing import loaded_bearing
 from swgpar.evaluation.period import continued
 from swgpar.evaluation.result_frame import history_rows
 from swgpar.evaluation.transmission_error import period_rows
-from swgpar.fem.body import RING_GEAR
 from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress, with_angle
 from swgpar.largest_stress.wall_stress import WallStress, resolve_wall
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import IncrementProgress, logger
-from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import body_ratio
 from swgpar.model.drive_model import DriveModel
 from swgpar.petsc import warn_of_unused_options
@@ -45,7 +41,7 @@ from swgpar.run_options import RunOptions
 class DriveRun:
     """One run on its mesh: start or restart, all increments, end.
 
-    drive : on this mesh and on others;  recipe : of the model's mesh
+    drive : on this mesh and on others
     kept : loaded states on the meshes of the start
     begin : time.perf_counter() at the run's start
     """
@@ -54,14 +50,12 @@ class DriveRun:
         self,
         recorder: Recorder,
         drive: MeshedDrive,
-        recipe: MeshRecipe,
         kept: StartStates,
         options: RunOptions,
         begin: float,
     ) -> None:
         self.recorder, self.stepper, self.model = recorder, recorder.stepper, recorder.model
-        self.drive, self.recipe, self.kept = drive, recipe, kept
-        self.options, self.begin = options, begin
+        self.drive, self.kept, self.options, self.begin = drive, kept, options, begin
         self.earlier_seconds, self.ended_early = 0.0, False
         self.coarser: list[CoarserMesh | None] = []
         self.comparison: MeshComparison | None = None
@@ -99,18 +93,17 @@ class DriveRun:
         if record.accuracy is not None:  # the model was loaded when its mesh was chosen
             self.stepper.resume_at(sequence.loaded)
             return sequence.from_loaded
-        record.starts_loaded = start_at_load(
-            self.stepper, self.drive, self.recipe, self._keep_coarse, self.kept
-        )
+        keys = self.stepper, self.drive, self._keep_coarse, self.kept
+        record.starts_loaded = start_at_load(*keys)
         return sequence.from_loaded if record.starts_loaded else sequence.states
 
-    def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
+    def _keep_coarse(self, model: DriveModel) -> None:
         """Keep what the meshes give that this one is compared with: the coarsest one, and that with
         the finer flanks."""
         loaded = self.stepper.sequence.loaded
-        ratio = body_ratio(recipe, self.recipe)
+        ratio = body_ratio(model.recipe, self.model.recipe)
         if not self.coarser:
-            wall = coarse_wall(model, loaded, recipe, self.recipe)
+            wall = coarse_wall(model, loaded, self.model.recipe)
             self.recorder.record.coarse_wall = wall
         found = None
         if model.design.compares_meshes:
@@ -118,7 +111,6 @@ class DriveRun:
             try:
                 found = coarser_mesh(
                     model,
-                    recipe,
                     loaded,
                     windows=model.design.resolves_root_stress,
                     coarsest=not self.coarser,
@@ -127,14 +119,13 @@ class DriveRun:
                 logger.info("the error by the mesh of the drive is not known: %s", error)
             self.model.take_over_windows(model)
         if not self.coarser and ratio is not None:
-            period = coarse_period(model, recipe, self.stepper, self.recipe)
-            self.recorder.record.coarse_period = period
+            self.recorder.record.coarse_period = coarse_period(model, self.stepper)
         self.coarser.append(found)
 
     def _load_coarser(self) -> None:
         """Load the drive on the coarser meshes in the steps of the run, where it did not start on
         them."""
-        for recipe in coarser_recipes(self.recipe):
+        for recipe in coarser_recipes(self.model.recipe):
             try:
                 model = self.drive.load(recipe)
             except (ConvergenceError, InputError) as error:
@@ -142,7 +133,7 @@ class DriveRun:
                 self.coarser.append(None)
                 return
             try:
-                self._keep_coarse(model, recipe)
+                self._keep_coarse(model)
             finally:
                 self.drive.models.give_back(model)
 
@@ -233,14 +224,9 @@ class DriveRun:
         known = [one for one in self.coarser if one is not None]
         if len(known) < len(self.coarser):
             return
-        contacts = self.recorder.contacts()
-        lobes = self.model.design.wave_generator.lobes
-        record.contact_errors = contact_errors(known, self.recipe, contacts, lobes)
-        bearing = loaded_bearing(self.model, state)
-        if bearing is not None:
-            record.bearing_errors = bearing_errors(known, self.recipe, bearing)
-        ring_teeth = self.model.partition.layouts[RING_GEAR].count
-        self.comparison = MeshComparison(self.recipe, known, contacts, ring_teeth)
+        found = compare_meshes(self.model, state, self.recorder.contacts(), known)
+        record.contact_errors, record.bearing_errors = found.contact_errors, found.bearing_errors
+        self.comparison = found
 
     def _resolve_loaded(self, state: LoadState) -> RootStress:
         found = resolve_root_stress(self.model, state)
@@ -265,7 +251,7 @@ class DriveRun:
         recorder, sequence, rows = self.recorder, self.stepper.sequence, self.recorder.record.rows
         of_stiffness = self._stiffness_error()
         if self.model.design.deviations is not None:
-            follow_turns(self.recipe, recorder)
+            follow_turns(recorder)
         else:
             recorder.keep_turns(period_rows(sequence, rows))
         if sequence.samples and rows:
@@ -292,7 +278,8 @@ class DriveRun:
         if section is None or not section.mesh_error:
             return None
         with self.model.phases("coarser mesh"):
-            return stiffness_error(self.drive, self.recipe, self.recorder.program_rows())
+            rows = self.recorder.program_rows()
+            return stiffness_error(self.drive, self.model.recipe, rows)
 
     def _log_penetration(self) -> None:
         """Say once how deep cam and pins have got into the flexible spline, where augmentations did

@@ -13,7 +13,6 @@ from swgpar.analysis.recorder import Recorder
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.transmission_error import TurnPoint, turn_row
 from swgpar.log import logger
-from swgpar.meshing import MeshRecipe
 from swgpar.results.history import Row
 
 ROUND = 10
@@ -26,20 +25,20 @@ REPORTS = 10
 """Lines of the log in all."""
 
 
-def follow_turns(recipe: MeshRecipe, recorder: Recorder) -> None:
+def follow_turns(recorder: Recorder) -> None:
     """Let the recorder keep the angles of the turns that it does not know; collective.
 
     The states do not depend on each other. In the plane, where every rank has room for the whole
     drive, the ranks share the states; they share the cup.
 
-    recipe : of the run's mesh. Raises ConvergenceError; the rows up to then are kept.
+    Raises ConvergenceError; the rows up to then are kept.
     """
     design = recorder.model.design
     step = design.kinematics.pitch_angle / design.deviations.angles_per_pitch
     known = {_index(row, step): row for row in recorder.known_turns()}
     comm, shared = recorder.comm, design.drive.model == "plane"
     with recorder.model.phases("turns"):
-        drive = DeviatingDrive(design, recipe, MPI.COMM_SELF if shared else comm)
+        drive = DeviatingDrive(design, recorder.model.recipe, MPI.COMM_SELF if shared else comm)
         total = drive.angles
         logger.info(
             "transmission error at %d angles of %d turns: %d unknowns%s",

@@ -11,10 +11,9 @@ import math
 from dataclasses import dataclass, replace
 
 from swgpar.analysis.accuracy import ROUGH
-from swgpar.analysis.bearing_errors import bearing_errors
 from swgpar.analysis.coarse_start import MeshedDrive
 from swgpar.analysis.coarse_wall import coarse_wall
-from swgpar.analysis.contact_errors import contact_errors
+from swgpar.analysis.compare_meshes import compare_meshes
 from swgpar.analysis.drive_mesh_error import (
     MeshComparison,
     coarser_mesh,
@@ -25,8 +24,6 @@ from swgpar.analysis.forecast import fits, forecast
 from swgpar.analysis.saved_state import StartStates
 from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.evaluation.contact_error_shares import ContactErrorShares
-from swgpar.evaluation.loaded_bearing import loaded_bearing
-from swgpar.fem.body import RING_GEAR
 from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress
 from swgpar.largest_stress.wall_stress import CoarseWall
@@ -51,7 +48,6 @@ class ChosenMesh:
     """
 
     model: DriveModel
-    recipe: MeshRecipe
     root_stress: RootStress
     error: float
     coarse_wall: CoarseWall | None
@@ -64,19 +60,12 @@ class Refined:
     """What a mesh gives in comparison with coarser ones.
 
     coarse_wall : stresses of the wall on the coarsest of these, where they are known
-    found : by windows, with both errors;  contact_errors : of the contacts of flanks
-    bearing_errors : see `bearing_errors`
+    found : by windows, with both errors
     """
 
     comparison: MeshComparison
     coarse_wall: CoarseWall | None
     found: RootStress
-    contact_errors: ContactErrorShares
-    bearing_errors: dict[str, float]
-
-    @property
-    def recipe(self) -> MeshRecipe:
-        return self.comparison.recipe
 
 
 class Refinement:
@@ -124,25 +113,18 @@ class Refinement:
 
         before : stress on the present mesh with its error, if it is known
         """
-        compared = coarse_wall(self.model, self.loaded, coarser[0], recipe)
-        meshes = [coarser_mesh(self.model, coarser[0], self.loaded, windows=True, coarsest=True)]
+        compared = coarse_wall(self.model, self.loaded, recipe)
+        meshes = [coarser_mesh(self.model, self.loaded, windows=True, coarsest=True)]
         for between in coarser[1:]:
             self._replace(between)
-            meshes.append(
-                coarser_mesh(self.model, between, self.loaded, windows=True, coarsest=False)
-            )
+            meshes.append(coarser_mesh(self.model, self.loaded, windows=True, coarsest=False))
         self._replace(recipe)
         found = resolve_root_stress(self.model, self.loaded, self.levels)
         contacts = pair_contacts(self.model, self.loaded)
-        ring_teeth = self.model.partition.layouts[RING_GEAR].count
-        comparison = MeshComparison(recipe, meshes, contacts, ring_teeth, before)
+        comparison = compare_meshes(self.model, self.loaded, contacts, meshes, before)
         found = comparison.with_errors(found)
         self._log(found)
-        lobes = self.design.wave_generator.lobes
-        errors = contact_errors(meshes, recipe, comparison.contacts, lobes)
-        bearing = loaded_bearing(self.model, self.loaded)
-        of_bearing = {} if bearing is None else bearing_errors(meshes, recipe, bearing)
-        return Refined(comparison, compared, found, errors, of_bearing)
+        return Refined(comparison, compared, found)
 
     def _log(self, found: RootStress) -> None:
         def share(error: float | None) -> str:
@@ -190,9 +172,9 @@ class Refinement:
 
     def refine_drive(self) -> bool:
         """Take a finer mesh of the drive; False where there is none, or where it is too large."""
-        limit = self.design.solver.memory_limit
+        recipe, limit = self.known.comparison.recipe, self.design.solver.memory_limit
         try:
-            finer = refined(self.known.recipe)
+            finer = refined(recipe)
             needs = forecast(self.design, finer)
             if needs.elements > self.largest or not fits(needs, limit, self.drive.comm):
                 return False
@@ -200,12 +182,12 @@ class Refinement:
         except InputError:
             return False
         try:
-            coarser = with_finer_flanks(self.known.recipe, finer)
+            coarser = with_finer_flanks(recipe, finer)
             self.known = self._refined(coarser, finer, self.known.found)
         except (ConvergenceError, InputError) as error:
             logger.warning("no finer mesh of the drive: %s", error)
             self.drive.models.give_back(self.model)
-            self.model = self._solved(self.known.recipe)
+            self.model = self._solved(recipe)
             return False
         return True
 
@@ -251,12 +233,11 @@ def choose_mesh(
     known = present.known
     return ChosenMesh(
         present.model,
-        known.recipe,
         known.found,
         relative_error(known.found),
         known.coarse_wall,
-        known.contact_errors,
-        known.bearing_errors,
+        known.comparison.contact_errors,
+        known.comparison.bearing_errors,
     )
 
 

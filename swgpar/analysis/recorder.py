@@ -259,7 +259,9 @@ class FolderRecorder(Recorder):
 
     def keep_choice(self, chosen: ChosenMesh, accuracy: float) -> None:
         super().keep_choice(chosen, accuracy)
-        write_from_root(self.comm, self.out / RECIPE, to_toml(chosen.recipe.model_dump()).encode())
+        write_from_root(
+            self.comm, self.out / RECIPE, to_toml(self.model.recipe.model_dump()).encode()
+        )
 
     def begin(self) -> None:
         write_from_root(self.comm, self.out / history.DESCRIPTION, history.format_description())

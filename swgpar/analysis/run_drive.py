@@ -97,7 +97,6 @@ def run_drive(
                 recipe = on_all(comm, lambda: load_recipe(folder / RECIPE))
             else:
                 chosen = choose_mesh(drive, recipe, options.accuracy, kept=kept)
-                recipe = chosen.recipe
         model = models.take(design, recipe, comm) if chosen is None else chosen.model
         stepper = LoadStepper(model)
         recorder = (
@@ -106,7 +105,7 @@ def run_drive(
         try:
             if chosen is not None:
                 recorder.keep_choice(chosen, options.accuracy)
-            run = DriveRun(recorder, drive, recipe, kept, options, begin)
+            run = DriveRun(recorder, drive, kept, options, begin)
             run.go_through(run.resume() if resumed else run.start())
             result = run.finish(recipe_name)
         except SwgparError as error:

@@ -15,7 +15,6 @@ from swgpar.errors import OutputError
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.log import logger
-from swgpar.meshing import MeshRecipe
 from swgpar.model.drive_model import DriveModel
 from swgpar.results import made_files, parallel_hdf5
 from swgpar.results.atomic import agreed, on_root
@@ -94,22 +93,22 @@ class StartStates:
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder
 
-    def _path(self, model: DriveModel, recipe: MeshRecipe) -> Path | None:
-        """File of the model's loaded state on the mesh of this recipe; None where none is kept."""
+    def _path(self, model: DriveModel) -> Path | None:
+        """File of the model's loaded state; None where none is kept."""
         # a state with friction depends on the path to it
         if self.folder is None or model.design.contact.friction:
             return None
-        what = identity(model.design.decisive_keys, recipe, None)
+        what = identity(model.design.decisive_keys, model.recipe, None)
         return self.folder / START_STATES.replace("*", what[:12])
 
-    def save(self, model: DriveModel, recipe: MeshRecipe) -> None:
+    def save(self, model: DriveModel) -> None:
         """Write the model's present state; collective. Raises OutputError."""
-        if (path := self._path(model, recipe)) is not None:
+        if (path := self._path(model)) is not None:
             write_checkpoint(path, model.comm, state_rows(model), SolvedState.of(model))
 
-    def restore(self, model: DriveModel, recipe: MeshRecipe) -> bool:
+    def restore(self, model: DriveModel) -> bool:
         """Set the model's x to the state on this mesh; False where there is none. Collective."""
-        path = self._path(model, recipe)
+        path = self._path(model)
         if path is None or not on_root(model.comm, path.exists):
             return False
         try:

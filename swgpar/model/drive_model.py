@@ -62,7 +62,7 @@ class DriveModel:
     """Everything that exists once per run; made by `build_drive_model`.
 
     design, comm : what is computed, and the communicator
-    geometry : sizes of the design from which the meshes were made
+    geometry, recipe : sizes and counts of elements from which the meshes were made
     meshes : one sector of each body by name
     partition, elements : ownership and elements
     problem, solver : discrete problem and its Newton solver
@@ -76,6 +76,7 @@ class DriveModel:
 
     design: DriveDesign
     geometry: DriveGeometry
+    recipe: MeshRecipe
     comm: MPI.Comm
     meshes: dict[str, SectorMesh]
     partition: Partition
@@ -243,6 +244,7 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
     return DriveModel(
         design=design,
         geometry=geometry,
+        recipe=recipe,
         comm=comm,
         meshes=meshes,
         partition=partition,

@@ -367,11 +367,11 @@ def test_a_mesh_is_chosen_alike_on_any_number_of_ranks() -> None:
     for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
         chosen = choose_mesh(MeshedDrive(design, comm), load_recipe(RECIPE), 0.2)
         # a coarser mesh than this one would not find the contacts: it is compared with a finer one
-        assert chosen.error <= 0.2 and chosen.recipe.flexible_spline.flank == 3
+        assert chosen.error <= 0.2 and chosen.model.recipe.flexible_spline.flank == 3
         found.append((chosen, chosen.model.stresses()[0]))
         chosen.model.destroy()
     (here, stress), (alone, other) = found
-    parallel_assert(here.recipe == alone.recipe)
+    parallel_assert(here.model.recipe == alone.model.recipe)
     parallel_assert(
         here.error == pytest.approx(alone.error, rel=1e-5), f"{here.error} and {alone.error}"
     )

@@ -257,7 +257,7 @@ def test_the_error_holds() -> None:
     found = chosen(0.2, times=2.0)
     error, s1, design = found.root_stress.total_error, found.root_stress.s1, found.model.design
     found.model.destroy()
-    finer = MeshedDrive(design, MPI.COMM_SELF).load(resized(found.recipe, 2.0))
+    finer = MeshedDrive(design, MPI.COMM_SELF).load(resized(found.model.recipe, 2.0))
     loaded = load_sequence(design).loaded
     reference = resolve_root_stress(finer, loaded, LEVELS["plane"] + 1).s1
     finer.destroy()
@@ -282,7 +282,7 @@ def test_with_friction_every_mesh_is_loaded_step_by_step() -> None:
     """The state is the one that a run has on this mesh, which depends on the path to it."""
     found = chosen(0.2, "contact.friction=0.1")
     design = found.model.design
-    alone = MeshedDrive(design, MPI.COMM_SELF).load(found.recipe)
+    alone = MeshedDrive(design, MPI.COMM_SELF).load(found.model.recipe)
     assert found.error <= 0.2
     assert found.model.stresses()[0] == pytest.approx(alone.stresses()[0], rel=1e-9)
     for model in (found.model, alone):
