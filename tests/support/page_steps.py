@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import filecmp
 import shutil
 from pathlib import Path
 
 from support.paths import ROOT
+
+COUNTS = {2: "two", 3: "three"}
 
 
 def copied_package(folder: Path) -> Path:
@@ -21,3 +24,19 @@ def patch(path: Path, difference: str) -> None:
     content = path.read_text(encoding="utf-8")
     assert content.count(before) == 1, f"{path.name}: {before}"
     path.write_text(content.replace(before, "".join(line[1:] for line in lines)), encoding="utf-8")
+
+
+def require_count(page: Path, package: Path) -> None:
+    """Files that differ from those of the checkout, or are new, are as many as the page says."""
+    changed = [
+        path.relative_to(package)
+        for path in package.rglob("*")
+        if path.is_file() and not is_as_before(path, ROOT / "swgpar" / path.relative_to(package))
+    ]
+    text = " ".join(page.read_text(encoding="utf-8").split())
+    assert f"It takes changes in {COUNTS[len(changed)]} files." in text, changed
+
+
+def is_as_before(path: Path, before: Path) -> bool:
+    """Whether a file is that of the checkout."""
+    return before.exists() and filecmp.cmp(path, before, shallow=False)

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -18,6 +17,7 @@ from support.element_problems import arc, solve
 from support.line_contact import line_contact
 from support.markdown import examples
 from support.own_law import check_patch
+from support.page_steps import copied_package, require_count
 from support.paths import DESIGN, ROOT
 from swgpar import load_design
 from swgpar.checks.remarks import remarks
@@ -197,8 +197,7 @@ def test_a_law_is_added_as_the_page_says(tmp_path: Path) -> None:
     """The file and the registry of the page, in a copy of the package: a patch test and a design
     with that law."""
     law, registry = examples(PAGE, "python")
-    package = tmp_path / "swgpar"
-    shutil.copytree(ROOT / "swgpar", package, ignore=shutil.ignore_patterns("__pycache__"))
+    package = copied_package(tmp_path)
     (package / "materials" / "bulk_and_shear.py").write_text(law, encoding="utf-8")
     added, chosen = registry.strip().split("\n\n")
     laws = (package / "materials" / "laws.py").read_text(encoding="utf-8")
@@ -206,6 +205,7 @@ def test_a_law_is_added_as_the_page_says(tmp_path: Path) -> None:
     laws, count = re.subn(r'^Law = (.+?)\n(?=""")', extended, laws, flags=re.MULTILINE | re.DOTALL)
     assert count == 1
     (package / "materials" / "laws.py").write_text(laws, encoding="utf-8")
+    require_count(PAGE, package)
     section = examples(PAGE, "toml")[-1]
     text = DESIGN.read_text(encoding="utf-8") + "\n" + section
     (tmp_path / "design.toml").write_text(text, encoding="utf-8")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import swgpar
 from support.markdown import examples
-from support.page_steps import copied_package, patch
+from support.page_steps import copied_package, patch, require_count
 from support.paths import DRIVERS, ROOT
 
 HOWTO = ROOT / "docs" / "howto"
@@ -71,7 +71,8 @@ def test_own_cam(tmp_path: Path) -> None:
     """Distances and normals are those to the nearest of many points, and a drive runs on the
     cam."""
     curve, keys, branch, *_ = examples(HOWTO / "own_cam_or_profile.md", "python")
-    cams = copied_package(tmp_path) / "geometry" / "cams"
+    package = copied_package(tmp_path)
+    cams = package / "geometry" / "cams"
     (cams / "superelliptical.py").write_text(curve, encoding="utf-8")
     insert(cams / "keys.py", "class FourRoller(", f"{keys}\n\n")
     insert(cams / "keys.py", "FourRoller,\n    Field(", "Superelliptical | ")
@@ -79,6 +80,7 @@ def test_own_cam(tmp_path: Path) -> None:
     insert(cams / "__init__.py", "    WaveGenerator,\n)\n", "    Superelliptical,\n")
     imported = "from swgpar.geometry.cams.superelliptical import SuperellipticalCam\n"
     insert(cams / "__init__.py", "\n\nclass Cam(Protocol):", imported)
+    require_count(HOWTO / "own_cam_or_profile.md", package)
     execute(
         tmp_path,
         """
@@ -104,7 +106,8 @@ assert np.isfinite(run({"wave_generator": keys}).history["fs_s1"]).all()
 def test_own_profile(tmp_path: Path) -> None:
     """Flanks are straight with tangent roots, refusals name the keys, and a drive runs on them."""
     *_, curve, keys, branch = examples(HOWTO / "own_cam_or_profile.md", "python")
-    profiles = copied_package(tmp_path) / "profiles"
+    package = copied_package(tmp_path)
+    profiles = package / "profiles"
     (profiles / "straight_sided.py").write_text(curve, encoding="utf-8")
     insert(profiles / "keys.py", "_EitherGear = ", f"{keys}\n\n")
     insert(profiles / "keys.py", "QuadrupleArc | DoubleArc | ", "StraightSided | ")
@@ -113,6 +116,7 @@ def test_own_profile(tmp_path: Path) -> None:
     insert(factory, "    Trapezoid,\n)\n", "    StraightSided,\n")
     imported = "from swgpar.profiles.straight_sided import straight_sided\n"
     insert(factory, "from swgpar.profiles.teeth ", imported)
+    require_count(HOWTO / "own_cam_or_profile.md", package)
     execute(
         tmp_path,
         """
@@ -157,6 +161,7 @@ def test_own_column(tmp_path: Path) -> None:
     package = copied_package(tmp_path)
     patch(package / "results" / "history.py", declaration)
     patch(package / "analysis" / "load_stepping.py", value)
+    require_count(HOWTO / "own_column.md", package)
     small_run(tmp_path / "old")
     execute(
         tmp_path,

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from support.commands import execute, run_command
 from support.markdown import examples
-from support.page_steps import copied_package, patch
+from support.page_steps import copied_package, patch, require_count
 from support.paths import ROOT
 from support.small_drive import PLANE
 
@@ -33,11 +33,12 @@ def test_a_preconditioner_in_python_needs_no_change(tmp_path: Path) -> None:
 
 
 def test_a_solver_is_added_as_the_page_says(tmp_path: Path) -> None:
-    """Class and entry of the registry: two files."""
+    """Class and entry of the registry."""
     package = copied_package(tmp_path)
     (package / "solve" / "block_jacobi.py").write_text(examples(PAGE, "python")[1], "utf-8")
     (entry,) = examples(PAGE, "diff")
     patch(package / "design" / "linear_solvers.py", entry)
+    require_count(PAGE, package)
     command = run_command(
         tmp_path / "run", overrides=(*PLANE, *SHORT, "solver.linear=block_jacobi")
     )
