@@ -204,9 +204,7 @@ class Recorder(ABC):
 
     def program_rows(self) -> list[PointRow]:
         """Rows of program.csv."""
-        sequence, design = self.sequence, self.model.design
-        coupling = design.input_coupling if design.stiffness else None
-        return point_rows(sequence.points, sequence.kinematics, self.record.rows, coupling)
+        return point_rows(self.sequence, self.record.rows)
 
     @abstractmethod
     def begin(self) -> None:

@@ -101,6 +101,4 @@ def _stiffness_on(drive: MeshedDrive, recipe: MeshRecipe) -> StiffnessValues:
             rows.append(stepper.row())
     finally:
         drive.models.give_back(model)
-    coupling = drive.design.input_coupling
-    points = point_rows(sequence.points, sequence.kinematics, rows, coupling)
-    return by_position(stiffness_program(drive.design), points)[0.0]
+    return by_position(stiffness_program(drive.design), point_rows(sequence, rows))[0.0]

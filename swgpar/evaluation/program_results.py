@@ -16,9 +16,7 @@ from swgpar.answers.answer import (
     part_answers,
 )
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.input_coupling import InputCoupling
-from swgpar.design.kinematics import Kinematics
-from swgpar.load.load_program import ProgramPoint
+from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import Stage
 from swgpar.results.history import Row, wrapped
 
@@ -38,16 +36,10 @@ COLUMNS = {
 and the rotation of the output by it, beyond what the ratio makes of the wave generator's angle."""
 
 
-def point_rows(
-    points: Sequence[ProgramPoint],
-    kinematics: Kinematics,
-    rows: Sequence[Row],
-    coupling: InputCoupling | None,
-) -> list[PointRow]:
-    """Rows of program.csv from those of the history.
-
-    coupling : between shaft and wave generator; with it the angles are those of a locked shaft
-    """
+def point_rows(sequence: LoadSequence, rows: Sequence[Row]) -> list[PointRow]:
+    """Rows of program.csv from those of the history. With a coupling between shaft and wave
+    generator the angles are those of a locked shaft."""
+    points, kinematics, coupling = sequence.points, sequence.kinematics, sequence.coupling
     direction, computed = kinematics.torque_direction, []
     for row in rows:
         index = int(row["step"]) - Stage.LOAD

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.input_coupling import InputCoupling
 from swgpar.design.kinematics import Kinematics
 from swgpar.design.sections import Steps
 from swgpar.geometry.cams import pin_travel
@@ -68,6 +69,7 @@ class LoadSequence:
     start : undeformed drive
     states : at the ends of all increments, in order
     points : of the load program; empty without one
+    coupling : at the input, of a design with [stiffness]; None without one
     torque : N·m, `load.torque`
     rotation, increment : deg, `steps.rotation` and `steps.increment`
     samples : angles of one period that are computed and continued by symmetry; 0 without
@@ -79,6 +81,7 @@ class LoadSequence:
     start: LoadState
     states: tuple[LoadState, ...]
     points: tuple[ProgramPoint, ...]
+    coupling: InputCoupling | None
     torque: float
     rotation: float
     increment: float
@@ -128,6 +131,7 @@ def load_sequence(design: DriveDesign) -> LoadSequence:
         start=start,
         states=tuple(states),
         points=points,
+        coupling=design.input_coupling if design.stiffness else None,
         torque=design.load.torque,
         rotation=steps.rotation,
         increment=steps.increment,

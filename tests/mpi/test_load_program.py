@@ -24,7 +24,7 @@ from swgpar.errors import InputError
 from swgpar.evaluation.program_results import PointRow, point_rows, work_by_torque
 from swgpar.evaluation.ratcheting import AT_TEETH, SUFFICIENT
 from swgpar.load.load_program import FIRST_LOADING, NO_TORQUE
-from swgpar.load.load_sequence import load_sequence, program_points
+from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
 from swgpar.presentation.drive_result import DriveResult
@@ -113,7 +113,7 @@ def test_the_loop_with_friction_is_the_work_of_friction() -> None:
         stepper.advance(state)
         rows.append(stepper.row())
         done.append(work.total if work else 0.0)
-    points = point_rows(program_points(design), design.kinematics, rows)
+    points = point_rows(stepper.sequence, rows)
     first = max(k for k, point in enumerate(points) if point["stage"] == FIRST_LOADING)
     dissipated = done[-1] - done[-len(points) + first]
     area = work_by_torque(points[first:])
@@ -172,7 +172,7 @@ def follow(design: DriveDesign) -> list[PointRow]:
     for state in load_sequence(design).states:
         stepper.advance(state)
         rows.append(stepper.row())
-    return point_rows(program_points(design), design.kinematics, rows)
+    return point_rows(stepper.sequence, rows)
 
 
 def test_a_program_changes_between_torque_and_rotation() -> None:

@@ -10,7 +10,7 @@ from swgpar.errors import InputError
 from swgpar.evaluation.input_coupling import coupling_at_output
 from swgpar.evaluation.program_results import point_rows
 from swgpar.evaluation.stiffness import StiffnessValues, by_position
-from swgpar.load.load_sequence import stiffness_program
+from swgpar.load.load_sequence import load_sequence, stiffness_program
 from swgpar.load.load_states import Stage
 from swgpar.rating.planned_runs import LoadCase, plan_runs
 
@@ -27,8 +27,7 @@ def values(layout: str, **coupling: float) -> tuple[StiffnessValues, float]:
     keys = {f"input_coupling.{key}": value for key, value in coupling.items()}
     program = {"stiffness.torque": TORQUE, "stiffness.positions": 1, "drive.layout": layout}
     design = small("plane").with_values(program | keys)
-    kinematics, stiffness = design.kinematics, stiffness_program(design)
-    points = stiffness.points()
+    kinematics, sequence = design.kinematics, load_sequence(design)
     direction = kinematics.torque_direction
     history = [
         {
@@ -39,10 +38,10 @@ def values(layout: str, **coupling: float) -> tuple[StiffnessValues, float]:
             "wg_torque_Nmm": 0.0,
             "pairs_in_contact": 1.0,
         }
-        for k, point in enumerate(points)
+        for k, point in enumerate(sequence.points)
     ]
-    rows = point_rows(points, kinematics, history, design.input_coupling)
-    return by_position(stiffness, rows)[0.0], kinematics.ratio
+    rows = point_rows(sequence, history)
+    return by_position(stiffness_program(design), rows)[0.0], kinematics.ratio
 
 
 @pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
