@@ -32,10 +32,14 @@ RIM = {2: 0.012, 3: 0.006}
 """By lobes: largest rim of the flexible spline over the pitch diameter. Three lobes bend the rim
 four times as much on the same module."""
 
-BENDING = 8e-4
-"""Strain by which the wave generator may bend the rim below S-shaped teeth, if it had no teeth."""
+BENDING = 7.2e-4
+"""Strain by which the wave generator bends the rim below S-shaped teeth of two lobes, if it had no
+teeth, where `BENT_TEETH` is the number of teeth. Fewer teeth have a strain in proportion to their
+number: bending of a rim that is thin against its teeth is concentrated between them."""
 
-LEAST_RIM, RIM_OF_HEIGHT = 0.45, 0.35
+BENT_TEETH = 100
+
+LEAST_RIM, RIM_OF_HEIGHT = 0.25, 0.35
 """Least rim below S-shaped teeth, in modules, and over their height: they are lower on a thin
 rim."""
 
@@ -59,7 +63,8 @@ CUTTER_TEETH = 2.0 / 3.0
 class ToothSizes:
     """Sizes of the flexible spline, modules.
 
-    scale : heights over those of thick rims;  tip_relief : of S-shaped teeth, before that scale
+    scale : heights over those of thick rims
+    tip_relief : of S-shaped teeth, whatever the scale: a load bends low teeth as much
     """
 
     rim: float
@@ -85,7 +90,8 @@ def tooth_sizes(profile: Profile, lobes: Literal[2, 3], teeth: int, *, coned: bo
     largest = RIM[lobes] * teeth
     if profile != "s_shaped":
         return ToothSizes(largest, ADDENDUM, DEDENDUM, 1.0)
-    bent = BENDING * teeth**2 / (lobes * (lobes**2 - 1))
+    strain = BENDING * min(1.0, teeth / BENT_TEETH)
+    bent = strain * teeth**2 / (lobes * (lobes**2 - 1))
     rim = min(largest, max(bent, LEAST_RIM))
     addendum, dedendum = (CONED_ADDENDUM, CONED_DEDENDUM) if coned else (ADDENDUM, DEDENDUM)
     lower = min(1.0, rim / (RIM_OF_HEIGHT * (addendum + dedendum)))
@@ -128,7 +134,7 @@ def _lengths(modules: dict[str, float], module: float) -> dict[str, float]:
 
 def _relief(sizes: ToothSizes, module: float) -> dict[str, float]:
     return {
-        "tip_relief": rounded(sizes.tip_relief * sizes.scale * module),
+        "tip_relief": rounded(sizes.tip_relief * module),
         "tip_relief_height": rounded(TIP_RELIEF_HEIGHT * sizes.scale),
     }
 

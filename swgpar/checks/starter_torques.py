@@ -11,22 +11,21 @@ import numpy as np
 from swgpar.checks.starter import Request, usual_profile
 from swgpar.design.drive_design import DriveDesign
 
-CARRIED = {50.0: 0.14, 80.0: 0.112, 100.0: 0.1}
+CARRIED = {30.0: 0.04, 50.0: 0.14, 80.0: 0.112, 100.0: 0.1}
 """Ratio -> torque over the third power of the pitch diameter, N/mm². Cups with the default teeth,
 cam and bearing, ring gear fixed; the strengths are those that their files have. Linear between
-ratios."""
+ratios, but for `UNKNOWN`."""
 
-BENT_TOO_MUCH = 30.0
-"""Ratio up to which no torque passes: the deflection alone breaks the flexible spline by fatigue. A
-smaller ratio has a larger deflection over the diameter."""
+UNKNOWN = 30.0, 50.0
+"""Ratios between which no torque is known: a start of ratio 40 has failed with a torque between
+theirs."""
 
 DIGITS = 3
 """Digits of torques and diameters in sentences."""
 
 
 def carried_torque(request: Request, design: DriveDesign) -> float | None:
-    """The torque (N·m) that the start of a request carries, 0 where none passes; None where it has
-    not been computed.
+    """The torque (N·m) that the start of a request carries; None where it has not been computed.
 
     design : of the request
     """
@@ -34,9 +33,9 @@ def carried_torque(request: Request, design: DriveDesign) -> float | None:
     kinds = ("profile", "cam", "layout", "model", "shape", "lobes")
     if any(getattr(request, kind) != getattr(usual, kind) for kind in kinds):
         return None
-    if request.ratio <= BENT_TOO_MUCH:
-        return 0.0
     if not min(CARRIED) <= request.ratio <= max(CARRIED):
+        return None
+    if UNKNOWN[0] < request.ratio < UNKNOWN[1]:
         return None
     share = float(np.interp(request.ratio, list(CARRIED), list(CARRIED.values())))
     return 1e-3 * share * pitch_diameter(design) ** 3
@@ -53,12 +52,6 @@ def overload(request: Request, design: DriveDesign) -> str:
     carried = carried_torque(request, design)
     if carried is None or request.torque <= carried:
         return ""
-    if carried == 0.0:
-        return (
-            f"ratio = {request.ratio:g}: the rating of this start passes with no torque, because "
-            "the deflection alone breaks the flexible spline by fatigue: known to carry one are "
-            f"starts with ratios of {min(CARRIED):g} to {max(CARRIED):g}"
-        )
     needed = pitch_diameter(design) * (request.torque / carried) ** (1.0 / 3.0)
     return (
         f"torque = {request.torque:g} N·m is more than this start carries: allowed by its rating "

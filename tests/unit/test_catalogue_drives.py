@@ -9,7 +9,8 @@ from typing import Any
 
 import pytest
 
-from support.paths import DRIVERS
+from support.paths import DRIVERS, ROOT
+from support.scripts import load_script
 from swgpar import load_design
 
 FILES = sorted((DRIVERS / "catalogue").glob("size_*.toml"))
@@ -41,6 +42,21 @@ def test_lengths_are_in_proportion_to_the_size(path: Path) -> None:
         scaled += is_length
         assert is_length or here[key] == pytest.approx(there[key], rel=ROUNDED), key
     assert scaled > 15
+
+
+@pytest.mark.parametrize("ratio", [30, 50, 100])
+def test_designs_are_those_of_the_script(ratio: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`scripts/bench/catalogue --what designs` writes the files as they are; other sizes follow
+    from the test above."""
+    monkeypatch.chdir(ROOT)
+    curves, designs, fit = (
+        load_script(ROOT / "scripts" / "bench" / f"catalogue_{name}.py")
+        for name in ("curves", "designs", "fit")
+    )
+    rated = curves.break_points(BASE)[1]
+    written = designs.catalogue_design(BASE, ratio, rated, fit.bent_alike(ratio))
+    path = DRIVERS / "catalogue" / f"size_{BASE}_ratio_{ratio}.toml"
+    assert tomllib.loads(path.read_text("utf-8")) == written
 
 
 def test_a_drive_is_a_valid_design() -> None:

@@ -16,9 +16,9 @@ GEARS = ("flexible_spline", "ring_gear")
 
 
 def low(profile: Profile, height: float, rim: float, edge: float) -> DriveDesign:
-    """A plane drive of ratio 30. height : of its teeth over that of a start;  rim : modules
+    """A plane drive of ratio 50. height : of its teeth over that of a start;  rim : modules
     edge : rounding of the tips over that of a start"""
-    start = swgpar.new(ratio=30, diameter=60.0, torque=1.0, profile=profile, model="plane")
+    start = swgpar.new(ratio=50, diameter=60.0, torque=1.0, profile=profile, model="plane")
     values = {"flexible_spline.rim": rim * start.drive.module}
     for key in ("addendum_coef", "dedendum_coef"):
         values[f"drive.{key}"] = height * getattr(start.drive, key)

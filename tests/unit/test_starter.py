@@ -18,8 +18,8 @@ from swgpar.checks.starter_cam import CamType
 from swgpar.checks.starter_file import as_toml
 from swgpar.checks.starter_teeth import PROFILE_KEYS, Profile
 from swgpar.checks.starter_torques import (
-    BENT_TOO_MUCH,
     CARRIED,
+    UNKNOWN,
     carried_torque,
     overload,
     torque_text,
@@ -40,8 +40,12 @@ def test_a_starter_design_clears_and_can_be_meshed(ratio: float, profile: Profil
     assert design.rigid_teeth().clearance() > 0.0 and design.backlash > 0.0
 
 
-@pytest.mark.parametrize("ratio", [30.0, 80.0, 100.0, 320.0])
-def test_a_cup_is_one_that_is_built(ratio: float) -> None:
+@pytest.mark.parametrize(
+    ("ratio", "least_share", "most_error"),
+    # the teeth of ratio 30 are lower than those of arcs by a half, and mesh over less of their path
+    [(30.0, 1.0, 0.5), (80.0, 1.5, 0.3), (100.0, 1.5, 0.3), (320.0, 1.5, 0.3)],
+)
+def test_a_cup_is_one_that_is_built(ratio: float, least_share: float, most_error: float) -> None:
     design = swgpar.new(ratio=ratio, diameter=50.8, torque=10.0)
     assert remarks(design) == []
     assert (design.flexible_spline.profile.type, design.ring_gear.profile.type) == (
@@ -59,7 +63,8 @@ def test_a_cup_is_one_that_is_built(ratio: float) -> None:
         "transmission error of rigid teeth (arcsec)",
         "share of rigid teeth within 1 µm of contact",
     )
-    assert found[error] < 0.3 * before[error] and found[share] > 1.5 * before[share]
+    assert found[error] < most_error * before[error]
+    assert found[share] > least_share * before[share]
 
 
 def test_drives_of_one_ratio_are_similar() -> None:
@@ -130,23 +135,11 @@ def test_a_torque_that_is_too_large_is_said_in_one_sentence(
     assert f"carries up to {named[1]} N·m" in (tmp_path / "d.toml").read_text(encoding="utf-8")
 
 
-def test_no_torque_is_named_where_the_deflection_alone_fails() -> None:
-    """The rating with the least torque of that ratio fails by fatigue."""
-    with RATED.open(newline="", encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if float(row["ratio"]) == BENT_TOO_MUCH]
-    least = min(rows, key=lambda row: float(row["torque"]) / float(row["diameter"]) ** 3)
-    assert float(least["torque"]) < 5e-6 * float(least["diameter"]) ** 3
-    assert "fatigue of teeth and rim fails" in least["strength"]
-    request = Request(BENT_TOO_MUCH, 1.0, diameter=50.0, profile="s_shaped")
-    design, _ = starter_design(request)
-    assert carried_torque(request, design) == 0.0
-    assert "passes with no torque" in torque_text(request, design)
-
-
 def test_the_torque_of_other_starts_is_not_named() -> None:
     below = Request(min(CARRIED) - 5.0, 200.0, diameter=50.0, profile="s_shaped")
     arcs = Request(min(CARRIED), 200.0, diameter=50.0)
-    for request in (below, arcs):
+    between = Request(0.5 * sum(UNKNOWN), 200.0, diameter=50.0, profile="s_shaped")
+    for request in (below, between, arcs):
         design, _ = starter_design(request)
         assert carried_torque(request, design) is None and overload(request, design) == ""
         assert "has not been computed" in torque_text(request, design)
