@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -13,6 +14,7 @@ from support.cup_shapes import bolted
 from support.paths import DESIGN, DRIVERS
 from support.small_drive import PLANE
 from swgpar.answers.answer import NO_LIMIT, Answer
+from swgpar.answers.table import AnswerTable
 from swgpar.answers.verdict import Judgement, Limit, Sense, Verdict, worst
 from swgpar.api.ratings import load_rated_design
 from swgpar.design.drive_design import DriveDesign
@@ -85,12 +87,14 @@ def row(name: str, design: DriveDesign) -> RatingRow:
     return found
 
 
-class _Summary(dict[str, Answer]):
+class _Summary(AnswerTable):
     """A summary with these answers; attributes are evaluations, None by default."""
 
     def __init__(self, answers: dict[str, Answer], **evaluations: Any) -> None:
-        super().__init__(answers)
-        self.evaluations = evaluations
+        self.given, self.evaluations = answers, evaluations
+
+    def answers(self) -> Iterator[Answer]:
+        return iter(self.given.values())
 
     def __getattr__(self, name: str) -> Any:
         return self.evaluations.get(name)
