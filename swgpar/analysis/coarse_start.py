@@ -107,12 +107,19 @@ def _from_other_load(stepper: LoadStepper, models: ModelSource) -> int | None:
     if not models.resume(stepper):
         return None
     try:
-        stepper.advance(stepper.sequence.loaded)
+        _advance(stepper)
     except ConvergenceError as error:
         logger.info("no start from the state under another load: %s", error)
         stepper.reset()
         return None
     return stepper.iterations
+
+
+def _advance(stepper: LoadStepper) -> None:
+    """To the loaded state from that under another load, or from that of a drive that is near, which
+    no step leads to it in halves."""
+    loaded = stepper.sequence.loaded
+    stepper.advance(loaded, cut_back=stepper.load_state != loaded)
 
 
 def _reach_load(stepper: LoadStepper) -> list[int]:
@@ -202,7 +209,7 @@ def start_loaded(
         if stepper.load_state.is_periodic:
             if coarse is not None:
                 models.give_back(coarse)
-            stepper.advance(stepper.sequence.loaded)
+            _advance(stepper)
         elif coarse is not None:
             take_over(coarse, stepper, models)
         else:

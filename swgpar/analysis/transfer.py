@@ -11,19 +11,35 @@ from swgpar.model.drive_model import DriveModel
 from swgpar.petsc import PETSc
 
 
-def transfer(coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec) -> None:
+def meshed_alike(first: DriveModel, second: DriveModel) -> bool:
+    """Whether the sectors of two models have the same nodes, at places of their own."""
+    layouts, others = first.partition.layouts, second.partition.layouts
+    return layouts.keys() == others.keys() and all(
+        len(layout.mesh.coords) == len(others[body].mesh.coords)
+        and layout.mesh.n_sectors == others[body].mesh.n_sectors
+        for body, layout in layouts.items()
+    )
+
+
+def transfer(
+    coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec, *, alike: bool = False
+) -> None:
     """Set y of the fine model to x of the coarse one, sector by sector; collective.
 
     One may model a part of the drive, and the other all of it: images of sectors are rotated.
+
+    alike : whether they are `meshed_alike`, so that values stay at their nodes
     """
     for body, layout in fine.partition.layouts.items():
         sectors = fine.partition.owned_indices(body)
         angle = layout.chain_angle(sectors)
         local = rotated(read_field(coarse.partition, body, sectors, x), -angle[:, None])
-        matrix = interpolation(coarse.partition.layouts[body].mesh, layout.mesh)
-        values = np.zeros((len(local), matrix.shape[0], 3))
-        for own, sector in enumerate(local):
-            values[own] = matrix @ sector
+        values = local
+        if not alike:
+            matrix = interpolation(coarse.partition.layouts[body].mesh, layout.mesh)
+            values = np.zeros((len(local), matrix.shape[0], 3))
+            for own, sector in enumerate(local):
+                values[own] = matrix @ sector
         write_field(fine.partition, body, rotated(values, angle[:, None]), y)
     if fine.comm.rank == fine.comm.size - 1:
         n = fine.partition.n_multipliers

@@ -36,6 +36,10 @@ class Session:
     models : int
         Models that are kept, those that were used last: a drive on one mesh each. A run with
         windows has two meshes of the drive, in the plane three.
+    starts_near : bool
+        Whether a drive whose numbers differ by up to 2 % from those of one that is kept begins with
+        its loaded state, without friction. Where more than one equilibrium exists, as with teeth
+        that may engage otherwise, it finds that next to the other drive's.
 
     Raises
     ------
@@ -50,10 +54,16 @@ class Session:
     ...         print(session.run(design).summary["root.s1"].value)
     """
 
-    def __init__(self, models: int = 6, comm: MPI.Comm = MPI.COMM_WORLD) -> None:
+    def __init__(
+        self,
+        models: int = 6,
+        comm: MPI.Comm = MPI.COMM_WORLD,
+        *,
+        starts_near: bool = False,
+    ) -> None:
         require_number("models", models)
         require(1 <= models <= MOST_MODELS, "models", models, f"1 to {MOST_MODELS}")
-        self.models, self.comm = int(models), comm
+        self.models, self.comm, self.starts_near = int(models), comm, starts_near
         self._drives: LoadedDrives | None = None
 
     def run(
@@ -72,7 +82,9 @@ class Session:
         from swgpar.systems.drive import Drives
 
         if self._drives is None:
-            self._drives = LoadedDrives(self.models, keeps_windows=True)
+            self._drives = LoadedDrives(
+                self.models, keeps_windows=True, starts_near=self.starts_near
+            )
         try:
             return run_sharing(
                 Drives(self._drives),

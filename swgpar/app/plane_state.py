@@ -119,7 +119,7 @@ def _shown() -> tuple[AnswerKind, ...]:
 def _session() -> Session:
     from swgpar.api.session import Session
 
-    return Session(models=MODELS)
+    return Session(models=MODELS, starts_near=True)
 
 
 def _make_pool() -> ProcessPoolExecutor:

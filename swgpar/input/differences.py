@@ -31,6 +31,22 @@ def differences(first: Design, second: Design) -> list[Difference]:
     ]
 
 
+def differ_little(first: Any, second: Any, share: float) -> bool:
+    """Whether contents of files have the same keys, and floating-point numbers that differ by up to
+    a share of the larger one; all else is the same."""
+    if isinstance(first, Mapping) and isinstance(second, Mapping):
+        return first.keys() == second.keys() and all(
+            differ_little(first[name], second[name], share) for name in first
+        )
+    if isinstance(first, list | tuple) and isinstance(second, list | tuple):
+        return len(first) == len(second) and all(
+            differ_little(one, other, share) for one, other in zip(first, second, strict=True)
+        )
+    if isinstance(first, float) and isinstance(second, float):
+        return abs(first - second) <= share * max(abs(first), abs(second))
+    return bool(first == second)
+
+
 def _flat(table: Mapping[str, Any], path: str) -> Iterator[tuple[str, Any]]:
     for name, value in table.items():
         if isinstance(value, Mapping):

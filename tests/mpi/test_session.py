@@ -10,6 +10,8 @@ import swgpar
 from support.paths import RECIPE
 from support.stepping import small
 from swgpar.analysis import model_sources
+from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.load.load_states import LoadState
 from swgpar.systems import Result
 
 WORLD = MPI.COMM_WORLD
@@ -56,6 +58,34 @@ def test_runs_of_a_session_find_what_each_finds_alone(built: list[None]) -> None
                 allowed = SOLVED[name] if loaded else REPEATED
                 near = shared[name] == pytest.approx(value, rel=allowed)
                 parallel_assert(near, f"{name}, {change}: {shared[name]} and {value}")
+
+
+def test_a_drive_that_is_near_begins_with_the_loaded_state(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of the other one: its answers are those of a run alone; one that is farther away
+    begins by itself."""
+    begun: list[bool] = []
+    advance = LoadStepper.advance
+
+    def noted(stepper: LoadStepper, target: LoadState, *, cut_back: bool = True) -> None:
+        begun.append(not cut_back)
+        advance(stepper, target, cut_back=cut_back)
+
+    monkeypatch.setattr(LoadStepper, "advance", noted)
+    one, near, far = (
+        small("plane", *ALONE, "output.root_stress=false", f"flexible_spline.rim={rim}")
+        for rim in (0.45, 0.446, 0.43)
+    )
+    with swgpar.Session(starts_near=True) as session:
+        session.run(one, RECIPE)
+        shared = values(session.run(near, RECIPE))
+        assert begun.count(True) == 1
+        session.run(far, RECIPE)
+    assert begun.count(True) == 1
+    alone = values(swgpar.run(near, RECIPE))
+    for name, value in alone.items():
+        assert shared[name] == pytest.approx(value, rel=SOLVED[name])
 
 
 def test_a_session_keeps_the_models_that_were_used_last(built: list[None]) -> None:
