@@ -36,6 +36,9 @@ class Page:
         self.controls: dict[str, KeyControl] = {}
         with ui.header().classes("items-center gap-4 q-px-md q-py-xs"):
             ui.label("swgpar").classes("text-h6")
+            self.variant = ui.select([], label="variant", on_change=self._choose)
+            self.beside = ui.select([], label="beside", on_change=self._choose)
+            self.new_drive = NewDrive(state)
             self.header()
         with ui.row().classes("w-full items-start no-wrap-md gap-4 swgpar-columns"):
             with _region("swgpar-form", "keys of the design"):
@@ -55,12 +58,9 @@ class Page:
 
     def header(self) -> None:
         """Variants, undo, redo, save, and what can be copied."""
-        self.variant = ui.select([], label="variant", on_change=self._choose)
-        self.beside = ui.select([], label="beside", on_change=self._choose)
         for choice in (self.variant, self.beside):
             choice.props("dense dark outlined").classes("min-w-24")
         self._draw_names()
-        self.new_drive = NewDrive(self.state)
         for name, step in (
             ("undo", lambda: self.state.change(lambda variant: variant.undo())),
             ("redo", lambda: self.state.change(lambda variant: variant.redo())),
