@@ -34,7 +34,7 @@ from swgpar.profiles.flank import ToothProfile
 TIP_NORMAL, ROOT_NORMAL = np.radians(60.0), np.radians(45.0)
 """Inclination of the flank's normal, above the tangent of the pitch circle, at K and at Q."""
 
-SHORTEST_EDGE = 0.02
+SHORTEST_EDGE = 0.045
 """Least length of a rounded tip edge over that of the flank: a shorter one has no element."""
 
 LOWEST_CAP = 0.5
