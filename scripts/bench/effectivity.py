@@ -5,7 +5,8 @@ times the elements in every direction, one window more and twice the angles of a
 cup drive is one level finer, or two with --cup-levels 2, in a table of its own. The drives are
 those of `support/sensible_drives.py`; nothing of the estimate was chosen with those of this seed.
 Finished runs are stored and not computed again: remove PART_usual.jsonl or PART_reference.jsonl to
-compute them anew. Tables of a model are written where drives of it are asked for.
+compute them anew. Tables of a model are written where drives of it are asked for; those of another
+seed are printed.
 """
 
 from __future__ import annotations
@@ -222,8 +223,14 @@ def why_left_out(runs: Sequence[dict[str, Any]]) -> str:
     return ""
 
 
-def write(drives: Sequence[SensibleDrive], model: str, out: Path, levels: int) -> None:
-    """Tables and pages of a model from what is finished. levels : of the references"""
+def write(
+    drives: Sequence[SensibleDrive], model: str, out: Path, levels: int, *, page: bool
+) -> None:
+    """Tables of a model from what is finished.
+
+    levels : of the references;  page : whether they are those of the documentation; else they are
+    printed
+    """
     rows: list[Row] = []
     without: list[str] = []
     for part in PARTS:
@@ -238,15 +245,18 @@ def write(drives: Sequence[SensibleDrive], model: str, out: Path, levels: int) -
                 rows += rows_of(drive, part, *runs)
     if not rows:
         return
+    if not page:
+        print(table(rows), *without, sep="\n")
+        return
     if levels != LEVELS[model]:
         write_results(f"effectivity_{model}_{levels}", COLUMNS, rows, table(rows), "effectivity")
         return
     text = f"{WORDS[model]}:\n\n{table(rows)}"
     write_results(f"effectivity_{model}", COLUMNS, rows, text, "effectivity")
-    page = Path("docs/verification/effectivity.md")
-    put(page, f"by drive, {model}", drive_table(rows))
-    put(page, f"left out, {model}", "".join(without) or "None of the drives that were run.\n")
-    put(page.with_name("trust.md"), f"effectivity_{model}", text)
+    path = Path("docs/verification/effectivity.md")
+    put(path, f"by drive, {model}", drive_table(rows))
+    put(path, f"left out, {model}", "".join(without) or "None of the drives that were run.\n")
+    put(path.with_name("trust.md"), f"effectivity_{model}", text)
 
 
 def main() -> None:
@@ -288,7 +298,7 @@ def main() -> None:
                         store.keep({"drive": drive.name, **one})
                 print(f"{drive.name} {part} {stage}", flush=True)
     for model, of_model in drives.items():
-        write(of_model, model, out, levels[model])
+        write(of_model, model, out, levels[model], page=arguments.seed == SEED)
 
 
 if __name__ == "__main__":

@@ -35,7 +35,9 @@ TIP_NORMAL, ROOT_NORMAL = np.radians(60.0), np.radians(45.0)
 """Inclination of the flank's normal, above the tangent of the pitch circle, at K and at Q."""
 
 SHORTEST_EDGE = 0.045
-"""Least length of a rounded tip edge over that of the flank: a shorter one has no element."""
+"""Least length of a rounded tip edge over that of the flank: a shorter one has no element. Those of
+starts have 0.048 and more. With an element on edges of 0.042, teeth that jump over stop at their
+tips: their ratcheting run finds no equilibrium behind its peak."""
 
 LOWEST_CAP = 0.5
 """Largest part of the height from J to K that the cap takes: the core needs the rest."""

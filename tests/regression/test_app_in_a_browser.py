@@ -81,9 +81,21 @@ def page() -> Iterator[sync_api.Page]:
         browser.close()
 
 
-def opened(page: sync_api.Page, source: Path) -> Served:
+@pytest.fixture
+def servers() -> Iterator[list[Served]]:
+    """The servers of a test; those that still run after it are killed."""
+    started: list[Served] = []
+    yield started
+    for served in started:
+        if served.process.poll() is None:
+            served.process.kill()
+            served.process.wait()
+
+
+def opened(page: sync_api.Page, source: Path, servers: list[Served]) -> Served:
     """A server whose page is shown."""
     served = Served(source)
+    servers.append(served)
     for _ in range(600):  # it listens a moment after it has said so
         with suppress(sync_api.Error):
             page.goto(served.address)
@@ -189,13 +201,15 @@ def look_at_jobs(page: sync_api.Page, folder: Path) -> None:
     assert list((folder / "results" / "one_2_3").glob("*.dxf"))
 
 
-def test_a_session_with_a_killed_server(page: sync_api.Page, folder: Path) -> None:
+def test_a_session_with_a_killed_server(
+    page: sync_api.Page, folder: Path, servers: list[Served]
+) -> None:
     """A run on two ranks goes on while its server is killed and another one takes over. No server
     leaves a process; a hostile name does nothing; the keyboard reaches every control."""
     alerts: list[str] = []
     page.on("dialog", lambda dialog: alerts.append(dialog.message))
     clearance = page.get_by_role("status").filter(has_text="tip of a lobe")
-    served = opened(page, folder / "one.toml")
+    served = opened(page, folder / "one.toml", servers)
     with pytest.raises(HTTPError, match="403"):
         urlopen(served.address.partition("?")[0])
     sync_api.expect(page.get_by_text(f"optimise {HOSTILE}.toml")).to_be_visible()
@@ -207,7 +221,7 @@ def test_a_session_with_a_killed_server(page: sync_api.Page, folder: Path) -> No
     change_keys(page, clearance)
     changed, children = clearance.inner_text(), served.children
     assert served.ended(signal.SIGKILL) == -signal.SIGKILL and children
-    served = opened(page, folder)
+    served = opened(page, folder, servers)
     sync_api.expect(clearance).to_have_text(changed)
     compare_variants(page, folder)
     look_at_jobs(page, folder)
