@@ -27,8 +27,8 @@ sync_api = pytest.importorskip("playwright.sync_api")
 pytest.importorskip("nicegui")
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs chromium")
 
-SOON = 60_000
-"""ms; a loaded machine is slow."""
+SOON, JOB = 60_000, 300_000
+"""ms, for the page and for a run on two ranks; a loaded machine is slow."""
 
 HOSTILE = "<img src=x onerror=alert(1)>"
 """A name that would be a script in a page, of a search and of a design."""
@@ -188,6 +188,7 @@ def compare_variants(page: sync_api.Page, folder: Path) -> None:
 def look_at_jobs(page: sync_api.Page, folder: Path) -> None:
     """The first one ends and its view opens; another one is cancelled; files are exported."""
     expect = sync_api.expect
+    expect(job(page, "1: finished")).to_be_visible(timeout=JOB)
     job(page, "1: finished").get_by_role("button", name="3D").click()
     scene = page.frame_locator("iframe.swgpar-view").locator("#scene canvas")
     expect(scene).to_be_visible()
