@@ -57,14 +57,17 @@ class JobState(StrEnum):
     CANCELLED = "cancelled"
 
 
-def _environment() -> dict[str, str]:
-    """That of a shell: without what the MPI of this process has set for itself."""
-    own = ("OMPI_MCA_ess_singleton_isolated", "OMPI_MCA_pml", "OMPI_MCA_sharedfp")
-    return {
-        name: value
-        for name, value in os.environ.items()
-        if name not in own and not name.startswith(("PMIX_", "PMI_", "OMPI_COMM_"))
-    }
+OF_MPI = (
+    *("OMPI_COMM_", "OMPI_MCA_ess", "OMPI_MCA_orte", "OMPI_MCA_pml", "OMPI_MCA_sharedfp"),
+    *("PMIX_", "PMI_", "HYDI_", "MPI_LOCAL"),
+)
+"""What the names begin with that a process sets for itself when it initialises MPI. It passes them
+on, and an mpirun that has them takes itself for a rank of its job and ends without a word."""
+
+
+def shell_environment() -> dict[str, str]:
+    """The environment of a shell, for commands outside of the MPI job of this process."""
+    return {name: value for name, value in os.environ.items() if not name.startswith(OF_MPI)}
 
 
 @dataclass
@@ -198,7 +201,7 @@ class JobQueue:
             self._running = subprocess.Popen(
                 command,
                 cwd=self.folder,
-                env=_environment(),
+                env=shell_environment(),
                 stdin=subprocess.DEVNULL,
                 stdout=file,
                 stderr=subprocess.STDOUT,

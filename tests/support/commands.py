@@ -14,11 +14,8 @@ import numpy as np
 
 from support.paths import DATA, DESIGN, RECIPE
 from support.small_drive import PLANE, SHORT
+from swgpar.app.jobs import shell_environment
 from swgpar.results import history
-
-# a process that has initialised MPI passes these on, and mpirun then takes itself for a rank of
-# that job
-INHERITED = ("OMPI_COMM_", "OMPI_MCA_ess", "OMPI_MCA_orte", "PMIX_", "PMI_", "HYDI_", "MPI_LOCAL")
 
 # Open MPI runs more ranks than there are cores, and does not comment on exit codes; MPICH has no
 # such settings
@@ -27,9 +24,7 @@ OPEN_MPI = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_orte_execute_qui
 
 def environment() -> dict[str, str]:
     """Of a command that is started outside of the job of this process."""
-    return {
-        name: value for name, value in os.environ.items() if not name.startswith(INHERITED)
-    } | OPEN_MPI
+    return shell_environment() | OPEN_MPI
 
 
 def on_ranks(ranks: int) -> list[str]:

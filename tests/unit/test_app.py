@@ -22,7 +22,7 @@ from swgpar.answers.verdict import Judgement
 from swgpar.app.access import COOKIE, TokenGate
 from swgpar.app.fields import FormField, form_fields, is_optional, missing_sections
 from swgpar.app.flank_gaps import NEAR, flank_gaps
-from swgpar.app.jobs import AppJob, JobQueue, JobState
+from swgpar.app.jobs import AppJob, JobQueue, JobState, shell_environment
 from swgpar.app.plane_state import plane_table, solve_plane
 from swgpar.app.search_plot import EVALUATION, pair_figure, parallel_figure
 from swgpar.app.section_plot import section_figure
@@ -407,3 +407,14 @@ def test_a_folder_shows_its_designs(tmp_path: Path) -> None:
     assert recipes_of(tmp_path) == [RECIPE.name]
     assert workspace.free_name("one") == "one_2"
     assert workspace.free_name("<b>") == "_b_"
+
+
+def test_jobs_have_nothing_of_the_mpi_of_their_server(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A server that is started by a process with MPI inherits all of it."""
+    names = {"PMIX_RANK", "OMPI_MCA_ess", "OMPI_MCA_orte_launch", "OMPI_COMM_WORLD_RANK"}
+    for name in names:
+        monkeypatch.setenv(name, "0")
+    monkeypatch.setenv("OMPI_ALLOW_RUN_AS_ROOT", "1")
+    found = shell_environment()
+    assert found["OMPI_ALLOW_RUN_AS_ROOT"] == "1"
+    assert not names & found.keys()
