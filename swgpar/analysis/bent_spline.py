@@ -175,11 +175,11 @@ class BentRace:
 def bent_bodies(design: DriveDesign) -> dict[str, BentSpline | BentRace]:
     """What is bent, by body: the flexible spline on the unturned cam, or on its bearing with the
     outer race."""
-    penetration, bearing = PENETRATION * design.drive.module, design.bearing
+    bearing = design.bearing
     if bearing is None:
-        return {FLEXIBLE_SPLINE: BentSpline(design, penetration)}
+        return {FLEXIBLE_SPLINE: BentSpline(design)}
     inset = bearing.clearance + BALL_APPROACH * bearing.ball_diameter
     return {
         OUTER_RACE: BentRace(design, inset),
-        FLEXIBLE_SPLINE: BentSpline(design, inset + penetration),
+        FLEXIBLE_SPLINE: BentSpline(design, inset + PENETRATION * design.drive.module),
     }

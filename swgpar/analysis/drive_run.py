@@ -93,8 +93,7 @@ class DriveRun:
         if record.accuracy is not None:  # the model was loaded when its mesh was chosen
             self.stepper.resume_at(sequence.loaded)
             return sequence.from_loaded
-        keys = self.stepper, self.drive, self._keep_coarse, self.kept
-        record.starts_loaded = start_at_load(*keys)
+        record.starts_loaded = start_at_load(self.stepper, self.drive, self._keep_coarse, self.kept)
         return sequence.from_loaded if record.starts_loaded else sequence.states
 
     def _keep_coarse(self, model: DriveModel) -> None:

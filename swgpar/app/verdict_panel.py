@@ -19,6 +19,7 @@ from swgpar.input.toml_file import read_toml
 from swgpar.presentation.answer_text import plus_minus, value_text
 from swgpar.rating.sheet_differences import RowDifference, sheet_differences
 from swgpar.rating.stored_sheet import StoredRow, StoredSheet, read_sheet
+from swgpar.results.quantity import with_unit
 
 COLOURS = {
     Judgement.PASSES: "positive",
@@ -159,5 +160,4 @@ def _difference(one: RowDifference) -> list[str]:
         change += "" if one.error is None else f" {plus_minus(one.error)}"
     if len(set(verdicts)) > 1:
         change += f"; {verdicts[0]}, now {verdicts[1]}"
-    name = f"{one.name} ({one.unit})" if one.unit else one.name
-    return [name, _value(one.first), _value(one.second), change]
+    return [with_unit(one.name, one.unit), _value(one.first), _value(one.second), change]

@@ -111,6 +111,10 @@ class CellForces:
         gap : (n, n_q) mm, at their points;  share : of the stiffness that acts
         """
         active.gap = np.where(active.has_foot, gap.mean(axis=1), np.inf)
+        self._load(active, share)
+
+    def _load(self, active: ActiveCells, share: float) -> None:
+        """Set forces and pressures of the cells by their gaps. share : as for `press`"""
         flank, line = np.divmod(active.placed.line, self.n_line)
         active.forces = contact_lines.forces(
             flank,
@@ -123,20 +127,16 @@ class CellForces:
             share,
         )
         pressure = active.forces.force / active.width
-        active.pressure = np.repeat(pressure[:, None], gap.shape[1], axis=1)
+        active.pressure = np.repeat(pressure[:, None], active.faces.weight.shape[1], axis=1)
 
-    def carry(
-        self, cells: ActiveCells, gap: np.ndarray, share: float, present: ActiveCells
-    ) -> None:
-        """Let the bodies approach on every line until its cells carry the force of the present
-        ones; one line on a flank.
-
-        gap : (n, n_q) mm, at the points of the cells;  share : as for `press`
+    def carry(self, cells: ActiveCells, share: float, present: ActiveCells) -> None:
+        """Let the bodies approach on every line until its cells, which are pressed, carry the force
+        of the present ones; one line on a flank. share : as for `press`
         """
         line, wanted = cells.placed.line, np.zeros(int(cells.placed.line.max(initial=-1)) + 1)
         known = present.placed.line < len(wanted)
         np.add.at(wanted, present.placed.line[known], present.forces.force[known])
-        deeper = np.zeros(len(wanted))
+        gap, deeper = cells.gap, np.zeros(len(wanted))
         for _ in range(MAX_APPROACHES):
             carried, stiffness = np.bincount(line, cells.forces.force, len(wanted)), 0.0 * wanted
             for acts, of_cells in cells.forces.flanks:
@@ -146,7 +146,8 @@ class CellForces:
             if not (np.abs(lacks) > SAME_FORCE * wanted).any():
                 break
             deeper[moves] += lacks[moves] / stiffness[moves]
-            self.press(cells, gap - deeper[line][:, None], share)
+            cells.gap = gap - deeper[line]
+            self._load(cells, share)
 
     def pressed_lines(self, active: ActiveCells) -> list[PressedLine]:
         """Pressures of the pairs whose flexible-spline tooth this rank owns, on widths along

@@ -81,8 +81,7 @@ class LineCells:
         """
         fine = self._placed(u, clearance, RESOLVED)
         if self.active is not None and self.law.n_line == 1:
-            gap, _ = self.kernel.gaps(fine.faces, u, SLIDING, clearance)
-            self.law.carry(fine, gap, self.share, self.active)
+            self.law.carry(fine, self.share, self.active)
         return self.law.pressed_lines(fine)
 
     def misses_lines(self, u: np.ndarray, clearance: float) -> bool:
