@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -51,9 +51,10 @@ def new(
     shape: Shape = "cup",
     lobes: Lobes = 2,
     overwrite: bool = False,
+    warn: Callable[[str], None] | None = None,
 ) -> DriveDesign:
     """A checked design to start from; collective when it is written. A torque that is more than
-    its rating allows is a warning of the log, which names the torque that it carries.
+    its rating allows is a warning, which names the torque that it carries.
 
     Parameters
     ----------
@@ -77,6 +78,8 @@ def new(
     lobes : 2 or 3, of the cam
     overwrite : bool
         Replace a file that exists.
+    warn : function
+        Called with the sentence of a warning, on all ranks. Without it rank 0 logs the warning.
 
     Raises
     ------
@@ -99,8 +102,8 @@ def new(
     if out is not None:
         path = given_path("out", out)
         _write_new(path, as_toml(request, design, table, path.name), overwrite)
-    if (too_much := overload(request, design)) and MPI.COMM_WORLD.rank == 0:
-        log.logger.warning("%s", too_much)
+    if too_much := overload(request, design):
+        (warn or _warn)(too_much)
     return design
 
 
@@ -151,6 +154,11 @@ def new_train(
     if out is not None:
         _write_new(given_path("out", out), text, overwrite)
     return design
+
+
+def _warn(sentence: str) -> None:
+    if MPI.COMM_WORLD.rank == 0:
+        log.logger.warning("%s", sentence)
 
 
 def _write_new(path: Path, text: str, overwrite: bool) -> None:

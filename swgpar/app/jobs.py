@@ -43,8 +43,8 @@ LAST_FILES = {
 
 RESTART = "--restart"
 
-LINES = 3
-"""Of what a job prints that are shown while it runs."""
+LINES, TAIL = 3, 4096
+"""Lines of what a job prints that are shown while it runs, and bytes that hold them."""
 
 
 class JobState(StrEnum):
@@ -183,11 +183,11 @@ class JobQueue:
 
     def progress(self, job: AppJob) -> str:
         """How long a job runs, the end of what it has printed, and where its last run is."""
-        lines = _lines(self._log(job))[-LINES:]
+        lines = _last_lines(self._log(job), LINES)
         runs = sorted((self.folder / job.out).glob(f"*/**/{results.LOG}"), key=_changed)
-        if runs and (logged := _lines(runs[-1])):
+        for logged in _last_lines(runs[-1], 1) if runs else []:
             # a line of run.log begins with its time and its level
-            lines.append(f"{runs[-1].parent.name}: {logged[-1].split('  ', 2)[-1].strip()}")
+            lines.append(f"{runs[-1].parent.name}: {logged.split('  ', 2)[-1].strip()}")
         minutes = int((time.time() - job.begun) / 60.0) if job.begun else 0
         return "\n".join([*([f"for {minutes} min"] if minutes else []), *lines])
 
@@ -220,8 +220,7 @@ class JobQueue:
         return 0 if job.last_file and (self.folder / job.last_file).exists() else 1
 
     def _last_line(self, job: AppJob) -> str:
-        lines = _lines(self._log(job))
-        return lines[-1] if lines else "it has printed nothing"
+        return "".join(_last_lines(self._log(job), 1)) or "it has printed nothing"
 
     def _log(self, job: AppJob) -> Path:
         return self.folder / "logs" / f"{job.number}.log"
@@ -231,10 +230,12 @@ class JobQueue:
         write_file(self.folder / RECORD, to_json(record))
 
 
-def _lines(path: Path) -> list[str]:
-    """Lines of a file; none where it cannot be read."""
+def _last_lines(path: Path, count: int) -> list[str]:
+    """The last lines of a file, of which its end is read; none where it cannot be."""
     try:
-        return path.read_text(encoding="utf-8", errors="replace").splitlines()
+        with path.open("rb") as file:
+            file.seek(max(file.seek(0, os.SEEK_END) - TAIL, 0))
+            return file.read().decode(errors="replace").splitlines()[-count:]
     except OSError:
         return []
 

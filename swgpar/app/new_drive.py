@@ -9,8 +9,7 @@ from nicegui import ui
 from swgpar.api.designs import new
 from swgpar.app.fields import number_of
 from swgpar.app.state import AppState
-from swgpar.checks.starter import Layout, Model, Request, Shape, usual_profile
-from swgpar.checks.starter_torques import overload
+from swgpar.checks.starter import Layout, Model, Shape
 from swgpar.errors import SwgparError
 
 NUMBERS = {"ratio": "50", "pitch diameter, mm": "50", "torque, N·m": "15"}
@@ -47,17 +46,17 @@ class NewDrive:
     async def _make(self) -> None:
         workspace = self.state.workspace
         chosen: dict[str, Any] = {name: choice.value for name, choice in self.choices.items()}
+        warnings: list[str] = []
         try:
             ratio, diameter, torque = (number_of(each.value or "") for each in self.numbers)
-            design = new(ratio=ratio, diameter=diameter, torque=torque, **chosen)
+            numbers = {"ratio": ratio, "diameter": diameter, "torque": torque}
+            design = new(**numbers, **chosen, warn=warnings.append)
         except SwgparError as error:
             self.refusal.text = str(error)
             return
         workspace.add(workspace.free_name("drive"), design)
         workspace.beside = ""
         self.dialog.close()
-        profile = usual_profile(chosen["model"], "elliptical", 2)
-        request = Request(ratio, torque, diameter, profile=profile, **chosen)
-        if too_much := overload(request, design):
-            ui.notify(too_much, type="warning", multi_line=True, timeout=0, close_button="close")
+        for warning in warnings:
+            ui.notify(warning, type="warning", multi_line=True, timeout=0, close_button="close")
         await self.state.draw()

@@ -10,8 +10,10 @@ import numpy as np
 from swgpar.app.flank_gaps import NEAR, flank_gaps
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.arrays import Floats
+from swgpar.geometry.rotation import rotated
 from swgpar.presentation.body_curves import body_curves
 from swgpar.presentation.loaded_outline import LoadedOutline
+from swgpar.presentation.overlap_areas import slot_overlap
 
 COLOURS = {
     "housing": "#b8b8b8",
@@ -29,8 +31,8 @@ OVERLAP, TOUCHING, APART = "#c0182b", "#e6c229", "#2f7fb8"
 def section_figure(
     design: DriveDesign, angle_deg: float = 0.0, loaded: LoadedOutline | None = None
 ) -> dict[str, Any]:
-    """Figure of both gears and the cam, true to scale, with the gaps of the flanks, or with
-    stresses and forces of a loaded state, which is one at the angle 0 of the cam.
+    """Figure of both gears and the cam, true to scale, with the gaps and overlaps of the flanks, or
+    with stresses and forces of a loaded state, which is one at the angle 0 of the cam.
 
     angle_deg : of the cam, counter-clockwise; the ring gear rests
 
@@ -39,12 +41,13 @@ def section_figure(
     angle = float(np.radians(angle_deg))
     bodies = body_curves(design.geometry, design.tooth_motion(), design.cam(), angle)
     traces = [_body(name, curves) for name, curves in bodies.items()]
+    marks = _loads(loaded) if loaded else [*_overlaps(design, angle), _gaps(design, angle_deg)]
     width = 7.0 * np.pi * design.drive.module
     top = design.major_semi_axis + design.flexible_spline.rim
     x, y = -top * np.sin(angle), top * np.cos(angle)
     lines = {"showgrid": False, "zeroline": False, "title": {"text": "mm"}}
     return {
-        "data": [*traces, *(_loads(loaded) if loaded else [_gaps(design, angle_deg)])],
+        "data": [*traces, *marks],
         "layout": {
             "uirevision": "kept",
             "dragmode": "pan",
@@ -86,6 +89,39 @@ def _body(name: str, curves: list[Floats]) -> dict[str, Any]:
     }
 
 
+def _overlaps(design: DriveDesign, angle: float) -> list[dict[str, Any]]:
+    """Areas that teeth cover on their whole path, in all slots, and those at the angle of the cam,
+    rad; none where teeth have clearance."""
+    profiles = design.profile("flexible_spline"), design.profile("ring_gear")
+    slot = slot_overlap(*profiles, design.tooth_motion(), design.drive.module)
+    if not slot.path:
+        return []
+    slots = slot.pitch * np.arange(design.drive.teeth_rg)
+    path = [rotated(curve, place) for place in slots for curve in slot.path]
+    return [
+        _shade(path, "overlap at some angle of the cam", "40"),
+        _shade(slot.covered(angle), "overlap at this angle", "d0"),
+    ]
+
+
+def _shade(curves: list[Floats], text: str, opacity: str) -> dict[str, Any]:
+    """Areas inside of closed curves (n, 2), mm. opacity : two hexadecimal digits"""
+    points = np.vstack([each for curve in curves for each in (curve, curve[:1], BREAK)] or [BREAK])
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "name": text,
+        "x": _packed(points[:, 0]),
+        "y": _packed(points[:, 1]),
+        "fill": "toself",
+        "fillcolor": f"{OVERLAP}{opacity}",
+        "line": {"color": f"{OVERLAP}{opacity}", "width": 1},
+        "hoveron": "fills",
+        "text": text,
+        "hoverinfo": "text",
+    }
+
+
 def _packed(values: Floats) -> dict[str, str]:
     """Numbers as Plotly reads them fastest: single precision, to 4 nm at 70 mm."""
     return {"dtype": "f4", "bdata": b64encode(values.astype("<f4").tobytes()).decode()}
@@ -113,7 +149,7 @@ def _gaps(design: DriveDesign, angle_deg: float) -> dict[str, Any]:
         "x": _rounded(found.place[:, 0]),
         "y": _rounded(found.place[:, 1]),
         "marker": {
-            "size": np.where(overlap, 11, 7).tolist(),
+            "size": np.where(overlap, 6, 7).tolist(),
             "symbol": np.where(overlap, "x", "circle").tolist(),
             "color": (1e3 * found.gap).tolist(),
             "cmin": 0.0,

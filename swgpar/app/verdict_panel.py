@@ -13,6 +13,7 @@ from swgpar.app.state import AppState
 from swgpar.app.tables import heading, live_label, say, table
 from swgpar.app.workspace import drive_of
 from swgpar.checks.remarks import remarks
+from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import SwgparError
 from swgpar.input.differences import Difference, differences
 from swgpar.input.toml_file import read_toml
@@ -34,6 +35,7 @@ class VerdictPanel:
 
     def __init__(self, state: AppState) -> None:
         self.state = state
+        self._remarks: tuple[DriveDesign, list[str]] | None = None
         self.remarks()
         heading("rating sheet")
         self.headline = live_label().classes("text-bold")
@@ -49,7 +51,10 @@ class VerdictPanel:
     @ui.refreshable_method
     def remarks(self) -> None:
         """What deserves a word."""
-        for remark in remarks(self.state.variant.design):
+        design = self.state.variant.design
+        if self._remarks is None or self._remarks[0] is not design:
+            self._remarks = design, remarks(design)
+        for remark in self._remarks[1]:
             ui.label(remark).classes("text-orange-9")
 
     @ui.refreshable_method
@@ -58,7 +63,8 @@ class VerdictPanel:
         job = self._last(self.state.variant.name)
         sheet = self._sheet(job)
         if job is None or sheet is None:
-            text = "not rated yet: press rate" if self._can_rate() else "add [rating], then rate"
+            can_rate = self.state.variant.design.rating is not None
+            text = "not rated yet: press rate" if can_rate else "add [rating], then rate"
             say(self.headline, "")
             ui.label(text).classes("text-caption")
             return
@@ -95,9 +101,6 @@ class VerdictPanel:
             return
         table(["answer", *names, "change"], rows, "answers that differ").classes("swgpar-since")
         ui.label("± is the sum of both errors").classes("text-caption")
-
-    def _can_rate(self) -> bool:
-        return self.state.variant.design.rating is not None
 
     def _last(self, variant: str, before: int = 0) -> AppJob | None:
         """The last rating of a variant that has ended, or one before it."""

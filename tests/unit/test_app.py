@@ -30,10 +30,13 @@ from swgpar.app.state import recipes_of
 from swgpar.app.workspace import Variant, Workspace, drive_of
 from swgpar.checks.clearance import clearances
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GEARS
 from swgpar.errors import InputError, OutputError
 from swgpar.input.differences import differences
 from swgpar.optimisation.tried_designs import read_tried
 from swgpar.presentation.body_curves import body_curves
+from swgpar.presentation.overlap_areas import slot_overlap
+from swgpar.profiles.mesh_gap import outline
 from swgpar.rating.sheet_differences import sheet_differences
 from swgpar.rating.stored_sheet import StoredRow, StoredSheet, read_sheet
 
@@ -122,6 +125,24 @@ def test_an_overlap_is_marked() -> None:
     marks = section_figure(tight)["data"][-1]
     assert "x" in marks["marker"]["symbol"]
     assert any("overlap" in text for text in marks["text"])
+
+
+@pytest.mark.parametrize("name", ["cup_45deg.toml", "three_lobes.toml"])
+def test_the_shade_of_an_overlap_is_as_deep_as_the_overlap(name: str) -> None:
+    """On the whole path to 1 %, beside the search of the check; at an angle of the cam at most;
+    none where teeth have clearance."""
+    design, depths = drive(DRIVERS / name).with_values({"ring_gear.c_P": 1.03}), []
+    ring, half_pitch = outline(design.profile("ring_gear")), np.pi / design.drive.teeth_rg
+    profiles = [design.profile(gear) for gear in GEARS]
+    slot = slot_overlap(*profiles, design.tooth_motion(), design.drive.module)
+    for curves in (slot.path, slot.covered(0.3)):
+        points = np.vstack(curves) @ (1.0, 1j) * np.exp(1j * half_pitch)
+        depths.append(ring.distance(ring.folded(points)[0]).distance.min())
+    known = clearances(design.rigid_pairs)[0].nearest.distance
+    assert known < 0.0 and depths[0] == pytest.approx(known, rel=0.01)
+    assert 1.001 * known < depths[1] < 0.9 * known
+    names = [one["name"] for one in section_figure(drive(DRIVERS / name))["data"]]
+    assert not any("overlap" in one for one in names)
 
 
 def test_changes_are_undone_and_redone() -> None:
