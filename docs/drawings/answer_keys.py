@@ -10,12 +10,13 @@ from _drafting import CAM, INK, NOTE, RING, SPLINE, dimension, label, leader, re
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from swgpar.design.losses_section import Losses
 from swgpar.design.program_sections import Ratcheting, Stiffness
-from swgpar.design.sections import Fatigue, Losses
+from swgpar.design.sections import Fatigue
 from swgpar.evaluation.fatigue_criteria import damage, fatigue_limits, goodman
 from swgpar.evaluation.ratcheting import TorquePoint, evaluate_ratcheting
 from swgpar.evaluation.stiffness import at_position
-from swgpar.exchange.loaded_losses import LoadedLosses
+from swgpar.exchange.loaded_losses import LoadedLosses, LoadLine
 from swgpar.load.load_program import StiffnessProgram
 from swgpar.vibration.curved_beam import BeamSection, Ring, free_frequencies
 
@@ -184,13 +185,14 @@ def losses() -> Figure:
     ratio, speed, rated = -60.0, 200.0, 20.0
     drag = Losses(input_drag=0.012, input_viscous_drag=6e-5, output_drag=0.4)
     drag = drag.model_copy(update={"output_viscous_drag": 0.15})
-    found = LoadedLosses(0.01 + drag.input_drag, 0.0016, drag, ratio, rated, speed)
-    flanks = replace(found, idle=0.01, drag=Losses())
+    friction, hysteresis = LoadLine(0.006, 0.0016), LoadLine(0.004, 0.0)
+    found = LoadedLosses(friction, hysteresis, drag, ratio, rated, speed)
+    flanks = replace(found, section=Losses())
     figure, (over_load, over_speed) = plt.subplots(1, 2, figsize=(11.0, 4.2), layout="constrained")
     torque = np.linspace(0.0, 1.5 * rated, 30)
     parts = [
         (np.full_like(torque, flanks.at_input(0.0, 0.0)), "loss_factor, and friction without load"),
-        (found.by_load * torque, "flank_friction, bearing_friction"),
+        (friction.by_load * torque, "flank_friction, bearing_friction"),
         (np.full_like(torque, drag.input_drag), "input_drag"),
         (np.full_like(torque, drag.output_drag / abs(ratio)), "output_drag / ratio"),
     ]

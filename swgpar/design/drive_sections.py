@@ -10,6 +10,7 @@ from swgpar.design.deviations import Deviations
 from swgpar.design.frequency_section import Frequencies
 from swgpar.design.input_coupling import InputCoupling
 from swgpar.design.kinematics import Kinematics, make_kinematics
+from swgpar.design.losses_section import Losses
 from swgpar.design.output_bearing import OutputBearing
 from swgpar.design.program_sections import Ratcheting, Stiffness
 from swgpar.design.rating_section import RatingSection
@@ -25,7 +26,6 @@ from swgpar.design.sections import (
     GearName,
     InternalGear,
     Load,
-    Losses,
     MicroGeometry,
     Output,
     Solver,

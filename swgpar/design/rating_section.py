@@ -84,3 +84,6 @@ class RatingSection(Section):
         "least efficiency under the rated torque", default=None, lt=1.0
     )
     no_load_torque: float | None = positive("largest input torque without a load", "N·m", None)
+    starting_torque: float | None = positive(
+        "largest input torque that starts the drive without a load", "N·m", None
+    )

@@ -56,13 +56,17 @@ class LossParts:
 
 EFFICIENCY = AnswerKind("losses.efficiency", "efficiency")
 NO_LOAD_TORQUE = AnswerKind("losses.no_load_torque", "input torque without a load", "N·mm")
+STARTING_TORQUE = AnswerKind(
+    "losses.starting_torque", "input torque that starts the drive without a load", "N·mm"
+)
 
 
 @evaluation
 class DriveLosses(AnswerGroup):
     """Losses over a turn of the wave generator.
 
-    efficiency : None without a torque;  no_load_torque_Nmm : None with one
+    efficiency : None without a torque
+    no_load_torque_Nmm, starting_torque_Nmm : None with one
     work_per_turn_J, power_W : at `load.input_speed`
     cam_force_N : pressure of the cam, integrated, or sum of the loads of all balls
     flank_friction_coefficient : between the flanks
@@ -72,6 +76,7 @@ class DriveLosses(AnswerGroup):
     parts_Nmm: LossParts
     efficiency: float | None = part_answers(EFFICIENCY)
     no_load_torque_Nmm: float | None = part_answers(NO_LOAD_TORQUE)
+    starting_torque_Nmm: float | None = part_answers(STARTING_TORQUE)
     work_per_turn_J: float = answer(
         "losses.work_per_turn", "work of all losses per turn", "J", detail=True
     )
@@ -110,22 +115,25 @@ def evaluate_losses(
     """
     model = cycle.model
     design, losses = model.design, model.design.losses
-    omega = design.load.input_rate
-    sliding = np.array(
+    omega, ratio = design.load.input_rate, design.kinematics.input_ratio
+    dry = losses.dry_friction(omega)
+    sliding = dry * np.array(
         [_flank_torque(design, pairs, increment, model.copies) for increment in increments]
     )
     forces = np.array([cam_forces[increment - 1] for increment in increments])
     arm = 0.5 * (losses.bearing_diameter or _bearing_diameter(design))
     # the outer race turns with the flexible spline
     relative = 1.0 - design.kinematics.spline_speed
-    bearing = losses.bearing_friction * forces * arm * relative
+    bearing = dry * losses.bearing_friction * forces * arm * relative
     hysteresis = losses.loss_factor * hysteresis_work(cycle) / (2.0 * np.pi)
+    friction = float(sliding.mean() + bearing.mean())
+    drag = bearing_drag(design)
     parts = LossParts(
         flank_friction=float(sliding.mean()),
         hysteresis=hysteresis,
         bearing=float(bearing.mean()),
-        lubricant=bearing_drag(design).torque(omega),
-        seals=1000.0 * losses.drag_at_input(omega, design.kinematics.input_ratio),
+        lubricant=drag.torque(omega),
+        seals=1000.0 * losses.drag_at_input(omega, ratio),
     )
     if (missing := force_without_sliding(pairs, increments)) > SMALL_SHARE:
         logger.warning(
@@ -133,10 +141,9 @@ def evaluate_losses(
             "pairs are not known",
             100.0 * missing,
         )
-    total, useful = (
-        sum(astuple(parts)),
-        1000.0 * design.load.torque / abs(design.kinematics.input_ratio),
-    )
+    total, useful = sum(astuple(parts)), 1000.0 * design.load.torque / abs(ratio)
+    at_rest = friction * losses.static_friction / dry + hysteresis
+    at_rest += drag.torque(0.0) + 1000.0 * losses.drag_at_input(0.0, ratio)
     found = DriveLosses(
         loss_torque_Nmm=total,
         parts_Nmm=parts,
@@ -144,6 +151,7 @@ def evaluate_losses(
         power_W=1e-3 * total * omega,
         efficiency=useful / (useful + total) if useful else None,
         no_load_torque_Nmm=None if useful else total,
+        starting_torque_Nmm=None if useful else at_rest,
         cam_force_N=float(forces.mean()),
         flank_friction_coefficient=flank_coefficient(design),
     )

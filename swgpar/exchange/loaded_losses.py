@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from swgpar.design.bearing_drag import BearingDrag
-from swgpar.design.sections import Losses
+from swgpar.design.losses_section import Losses
 from swgpar.errors import InputError
 from swgpar.evaluation.losses import bearing_drag
 
@@ -25,21 +26,34 @@ NO_DRAG = BearingDrag(factor=1.0, viscosity=0.0, diameter=0.0)
 
 
 @dataclass(frozen=True)
-class LoadedLosses:
-    """Loss torque at the input: idle + by_load |torque| + lubricant + viscous, and that of the
-    output's side.
+class LoadLine:
+    """A part of the loss torque at the input over the torque on the output.
 
-    idle : N·m, without a torque on the output, seals and grease of the input among it
-    by_load : N·m at the input by N·m on the output
-    drag : section [losses], of which the coefficients of seals and grease are taken
-    ratio : input over output
-    bearing : drag of the lubricant in the bearing of the wave generator
-    torque : N·m on the output under which `by_load` was found;  speed : rad/s of the input
+    idle : N·m, without a torque;  by_load : N·m at the input by N·m on the output
     """
 
     idle: float
     by_load: float
-    drag: Losses
+
+    def at(self, torque: float) -> float:
+        """N·m at the input. torque : N·m on the output, without its sign"""
+        return self.idle + self.by_load * torque
+
+
+@dataclass(frozen=True)
+class LoadedLosses:
+    """Loss torque at the input: friction and hysteresis over the load, lubricant, and seals.
+
+    friction : of flanks and bearing of a fast drive;  hysteresis : of the flexible spline
+    section : [losses], with the friction at low speeds, seals and grease
+    ratio : input over output
+    bearing : drag of the lubricant in the bearing of the wave generator
+    torque : N·m on the output under which the lines were found;  speed : rad/s of the input
+    """
+
+    friction: LoadLine
+    hysteresis: LoadLine
+    section: Losses
     ratio: float = 1.0
     torque: float = 0.0
     speed: float = 0.0
@@ -55,18 +69,14 @@ class LoadedLosses:
         if loaded is None or loaded.summary.losses is None:
             if idle is not None:
                 raise InputError("--idle is of no use without a run with [losses] under load")
-            return cls(0.0, 0.0, Losses())
-        under_load, by_load = _without_lubricants(loaded), 0.0
-        design, section = loaded.summary.design, loaded.summary.design.losses
-        without = under_load
+            return cls(LoadLine(0.0, 0.0), LoadLine(0.0, 0.0), Losses())
         if idle is not None:
             _check(loaded, idle)
-            without = _without_lubricants(idle)
-            by_load = (under_load - without) / design.load.torque
+        design = loaded.summary.design
         return cls(
-            without + section.input_drag,
-            by_load,
-            section,
+            _line(_friction, loaded, idle),
+            _line(_hysteresis, loaded, idle),
+            design.losses,
             ratio=loaded.summary.ratio,
             torque=design.load.torque,
             speed=design.load.input_rate,
@@ -78,8 +88,9 @@ class LoadedLosses:
 
         torque : N·m on the output, without its sign;  speed : rad/s of the input, without its sign
         """
-        side = self.drag.drag_at_input(speed, self.ratio) - self.drag.input_drag
-        return self.idle + self.by_load * torque + self.lubricant(speed) + side
+        dry = self.friction.at(torque) * self.section.dry_friction(speed)
+        seals = self.section.drag_at_input(speed, self.ratio)
+        return dry + self.hysteresis.at(torque) + self.lubricant(speed) + seals
 
     def lubricant(self, speed: float) -> float:
         """Drag (N·m) of the lubricant in the bearing. speed : rad/s of the input"""
@@ -88,7 +99,8 @@ class LoadedLosses:
     def backdriving_torque(self) -> float:
         """Torque (N·m) on the output from which it turns the input; infinite where none does."""
         ratio = abs(self.ratio)
-        left = 1.0 / ratio - self.by_load
+        by_load = self.friction.by_load * self.section.dry_friction(0.0) + self.hysteresis.by_load
+        left = 1.0 / ratio - by_load
         return self.at_input(0.0, 0.0) / left if left > 0.0 else np.inf
 
     def table(self) -> dict[str, np.ndarray]:
@@ -119,11 +131,27 @@ class LoadedLosses:
         return dict(zip(names, np.array(rows).T, strict=True))
 
 
-def _without_lubricants(result: DriveData) -> float:
-    """Loss torque (N·m) of a run but for the drag of lubricant and seals."""
-    losses = result.summary.losses
-    parts = losses.parts_Nmm
-    return (losses.loss_torque_Nmm - parts.seals - parts.lubricant) / 1000.0
+def _friction(result: DriveData) -> float:
+    """Torque (N·m) of the friction of flanks and bearing in a run, at high speeds."""
+    parts, design = result.summary.losses.parts_Nmm, result.summary.design
+    dry = design.losses.dry_friction(design.load.input_rate)
+    return (parts.flank_friction + parts.bearing) / dry / 1000.0
+
+
+def _hysteresis(result: DriveData) -> float:
+    """Torque (N·m) of the hysteresis of the flexible spline in a run."""
+    return result.summary.losses.parts_Nmm.hysteresis / 1000.0
+
+
+def _line(
+    part: Callable[[DriveData], float], loaded: DriveData, idle: DriveData | None
+) -> LoadLine:
+    """A part of the loss torque over the load; without `idle` it is the same under any load."""
+    under_load = part(loaded)
+    if idle is None:
+        return LoadLine(under_load, 0.0)
+    without = part(idle)
+    return LoadLine(without, (under_load - without) / loaded.summary.design.load.torque)
 
 
 def _check(loaded: DriveData, idle: DriveData) -> None:

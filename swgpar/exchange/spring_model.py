@@ -115,11 +115,14 @@ def spring_model(
         ripple=ripple,
         friction_torque=max(0.0, summary.stiffness.loop_work) / (2000.0 * reach),
         friction_speed=SHARE * reach,
-        loss_torque=losses.idle + losses.lubricant(losses.speed),
-        load_loss=losses.by_load,
-        viscous_loss=losses.drag.input_viscous_drag,
-        output_drag=losses.drag.output_drag,
-        output_viscous_drag=losses.drag.output_viscous_drag,
+        loss_torque=losses.friction.idle
+        + losses.hysteresis.idle
+        + losses.section.input_drag
+        + losses.lubricant(losses.speed),
+        load_loss=losses.friction.by_load + losses.hysteresis.by_load,
+        viscous_loss=losses.section.input_viscous_drag,
+        output_drag=losses.section.output_drag,
+        output_viscous_drag=losses.section.output_viscous_drag,
         loss_speed=SHARE * summary.design.load.input_rate,
     )
 

@@ -19,7 +19,7 @@ from swgpar.evaluation import bearing_loads
 from swgpar.evaluation.bolt_loads import GAPING, SLIDING
 from swgpar.evaluation.frequencies import LOWEST
 from swgpar.evaluation.largest_contact import FLANK_PRESSURE
-from swgpar.evaluation.losses import EFFICIENCY, NO_LOAD_TORQUE
+from swgpar.evaluation.losses import EFFICIENCY, NO_LOAD_TORQUE, STARTING_TORQUE
 from swgpar.evaluation.ratcheting import PEAK_TORQUE
 from swgpar.evaluation.rigid_clearance import CLEARANCES
 from swgpar.evaluation.stiffness import CHORDS, HYSTERESIS, LOST_MOTION
@@ -302,6 +302,8 @@ def _motion(design: DriveDesign, section: RatingSection) -> Iterator[RatingRow]:
     yield _row("efficiency", LoadCase.RATED, EFFICIENCY, limit, losses)
     limit = _required(section.no_load_torque, Sense.AT_MOST, "no_load_torque", 1000.0)
     yield _row("no-load torque", LoadCase.NO_LOAD, NO_LOAD_TORQUE, limit, losses)
+    limit = _required(section.starting_torque, Sense.AT_MOST, "starting_torque", 1000.0)
+    yield _row("starting torque", LoadCase.NO_LOAD, STARTING_TORQUE, limit, losses)
     speed, limit = section.largest_speed, None
     if speed is not None:
         lobes = design.wave_generator.lobes

@@ -212,7 +212,8 @@ def test_a_run_has_figures_and_quantities() -> None:
     assert found.root_factor is None and list(found.remarks())[-1].startswith(
         "the strengths in [fatigue]"
     )
-    absent = {"fatigue.root_factor", "losses.no_load_torque"}  # without windows, and with a load
+    # without windows, and with a load
+    absent = {"fatigue.root_factor", "losses.no_load_torque", "losses.starting_torque"}
     known = {kind.name for kind in (*SafetyAndLife.kinds(design), *declared_answers(DriveLosses))}
     assert known - absent <= set(DRIVE.measure(result).values) & set(DRIVE.quantities(design))
     assert {"haigh", "safety"} <= set(result.plot.names)

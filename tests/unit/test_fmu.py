@@ -81,8 +81,8 @@ def windup(torque: np.ndarray) -> np.ndarray:
 
 
 class SampledRun:
-    """A sampled period with losses of 50 N·mm; with drag 5 of them are by seals, or a part by the
-    lubricant."""
+    """A sampled period with losses of 50 N·mm; with DRAG 5 of them are by seals, with a viscosity a
+    part is by the lubricant."""
 
     program: dict[str, np.ndarray] = {}
 
@@ -102,12 +102,14 @@ class SampledRun:
         }
         design = small("plane", f"load.torque={torque}", "losses.loss_factor=3e-4", *drag)
         lubricant = bearing_drag(design).torque(design.load.input_rate)
+        seals = 5.0 if drag == DRAG else 0.0
+        friction = loss - 5.0 - lubricant - seals
         parts = LossParts(
-            flank_friction=20.0,
+            flank_friction=0.5 * friction,
             hysteresis=5.0,
-            bearing=20.0,
+            bearing=0.5 * friction,
             lubricant=lubricant,
-            seals=5.0 if drag and not lubricant else 0.0,
+            seals=seals,
         )
         self.summary = SimpleNamespace(
             ratio=ratio,
@@ -377,6 +379,20 @@ def test_the_drag_of_the_lubricant_follows_the_speed() -> None:
     assert double - 0.03 == pytest.approx(part * (2.0 ** (2.0 / 3.0) - 1.0))
 
 
+def test_friction_at_rest_is_in_the_table_and_in_the_torque_that_backdrives() -> None:
+    """Friction of flanks and bearing grows by the factor, hysteresis and lubricant do not."""
+    rest = ("losses.static_friction=1.5", "losses.stribeck_speed=100")
+    loaded, idle = SampledRun(torque=2.0, drag=rest), SampledRun(torque=0.0, loss=15.0, drag=rest)
+    losses = LoadedLosses.of(loaded, idle)
+    # 2000 per minute: nothing is left of the additional friction
+    assert losses.at_input(0.0, 209.4) == pytest.approx(0.015)
+    slow = 100.0 * np.pi / 30.0
+    assert losses.at_input(0.0, slow) == pytest.approx(0.005 + 0.01 * (1.0 + 0.5 / np.e))
+    assert losses.at_input(0.0, 0.0) == pytest.approx(0.005 + 0.01 * 1.5)
+    torque = losses.backdriving_torque()
+    assert torque / abs(RATIO) == pytest.approx(losses.at_input(torque, 0.0))
+
+
 def test_the_torque_that_backdrives_is_that_of_the_balance() -> None:
     idle = SampledRun(torque=0.0, loss=10.0)
     losses = LoadedLosses.of(SampledRun(torque=2.0), idle)
@@ -490,7 +506,8 @@ def test_the_drive_of_two_runs(layout: str, tmp_path: Path) -> None:
         for name, entry in (("stiffness", "stiffness"), ("period", "losses"))
     )
     with instance(path, tmp_path / "unit") as unit:
-        assert unit.get("friction_torque", "loss_torque") == [0.0, losses.loss_torque_Nmm / 1000.0]
+        expected = [0.0, losses.loss_torque_Nmm / 1000.0]
+        assert unit.get("friction_torque", "loss_torque") == pytest.approx(expected, rel=1e-12)
 
         def windup_under(torque: float) -> float:
             def left(angle: float) -> float:

@@ -13,8 +13,9 @@ from plain_ring import PlainRingDesign, RingCounts, RingModel
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.design.bearing_drag import BearingDrag
+from swgpar.design.losses_section import Losses
 from swgpar.errors import InputError
-from swgpar.evaluation.losses import energy_coordinates, force_without_sliding
+from swgpar.evaluation.losses import bearing_drag, energy_coordinates, force_without_sliding
 from swgpar.fem.masses import mass_matrices
 from swgpar.geometry.cams.simplified import simplified
 from swgpar.materials import Isotropic
@@ -73,6 +74,18 @@ def test_drag_of_the_lubricant_by_hand() -> None:
     assert faster.torque(omega) == pytest.approx(1.02 * drag.torque(1.02 * omega), rel=1e-12)
 
 
+def test_friction_at_rest_and_at_low_speeds() -> None:
+    """1.8 at rest, 1 + 0.8 / e at the given speed, 1 where it is high or without a speed."""
+    losses = Losses(static_friction=1.8, stribeck_speed=60.0, input_drag=0.01, output_drag=0.5)
+    omega = 2.0 * np.pi
+    assert losses.dry_friction(0.0) == 1.8
+    assert losses.dry_friction(omega) == pytest.approx(1.0 + 0.8 / np.e)
+    assert losses.dry_friction(100.0 * omega) == 1.0
+    assert losses.drag_at_input(0.0, -50.0) == pytest.approx(1.8 * 0.02)
+    without = Losses(static_friction=1.8)
+    assert (without.dry_friction(0.0), without.dry_friction(1e-9)) == (1.8, 1.0)
+
+
 def test_hysteresis_of_a_ring_between_two_forces() -> None:
     """A thin ring of radius R under two opposite forces P bends by P R / 2 (2 / pi - |sin|).
 
@@ -115,6 +128,12 @@ def test_losses_of_a_run() -> None:
         swgpar.load_design(DESIGN, [*sampled, "load.torque=0", *more]), RECIPE
     ).summary.losses
     assert free.efficiency is None and free.no_load_torque_Nmm == free.loss_torque_Nmm > 0.0
+    # seals have only the torque that does not depend on the speed
+    lubricant = bearing_drag(swgpar.load_design(DESIGN, [*sampled, *more])).torque(0.0)
+    parts = free.parts_Nmm
+    dry = parts.flank_friction + parts.bearing + parts.seals
+    assert free.starting_torque_Nmm == pytest.approx(dry + parts.hysteresis + lubricant)
+    assert one.starting_torque_Nmm is None
     with pytest.raises(InputError, match=r"\[losses\] is not available with steps.samples = 0"):
         swgpar.run(swgpar.load_design(DESIGN, [*PLANE, *more]), RECIPE, plain=True)
 

@@ -57,6 +57,7 @@ RATING = {
     "transmission_error": 60.0,
     "efficiency": 0.7,
     "no_load_torque": 0.05,
+    "starting_torque": 0.03,
 }
 BEARING = {"race_thickness": 1.0, "balls": 12, "ball_diameter": 2.5}
 SECTIONS: dict[str, Any] = {
@@ -189,6 +190,7 @@ CROSSED = {
     "transmission error": ("transmission_error.peak_to_peak", 60.0, False),
     "efficiency": ("losses.efficiency", 0.7, True),
     "no-load torque": ("losses.no_load_torque", 50.0, False),
+    "starting torque": ("losses.starting_torque", 30.0, False),
     "lowest natural frequency": ("frequency.1", 100.0, True),
     "pressure of the flanks": ("contact.pressure", 800.0, False),
     "yield below the flanks": ("contact.pressure", FIRST_YIELD * 800.0, False),
