@@ -24,6 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from support.bad_inputs import KINDS, SLOWEST, BadInput, attempt, draw_inputs
+from support.bad_sections import bad_sections
 from support.commands import environment
 
 BATCH = 500
@@ -36,14 +37,15 @@ OWN = 3
 """Exit code of a worker that fails by itself."""
 
 
-def run_batch(number: int, count: int, out: Path) -> list[dict[str, Any]]:
+def run_batch(number: int, count: int, out: Path, newer: bool) -> list[dict[str, Any]]:
     """Outcomes of the batch with this number; a worker that ends early is followed by another one
-    behind the input."""
+    behind the input. newer : inputs are those of the newer sections"""
     file = out / f"inputs_{number}.jsonl"
     file.unlink(missing_ok=True)
     outcomes: list[dict[str, Any]] = []
     while len(outcomes) < count:
         command = [sys.executable, __file__, str(file), str(number), str(count), str(len(outcomes))]
+        command += ["--newer"] if newer else []
         with (out / f"inputs_{number}.log").open("a") as log:
             code = subprocess.run(command, stdout=log, stderr=log, env=environment()).returncode
         lines = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
@@ -66,19 +68,23 @@ def run_batch(number: int, count: int, out: Path) -> list[dict[str, Any]]:
     return outcomes
 
 
-def run_inputs(count: int, number: int, out: Path, at_once: int) -> list[dict[str, Any]]:
-    """Outcomes of so many inputs. number : seed of the first batch"""
+def run_inputs(
+    count: int, number: int, out: Path, at_once: int, *, newer: bool = False
+) -> list[dict[str, Any]]:
+    """Outcomes of so many inputs. number : seed of the first batch;  newer : of newer sections"""
     out.mkdir(parents=True, exist_ok=True)
     sizes = [min(BATCH, count - first) for first in range(0, count, BATCH)]
     with ThreadPoolExecutor(at_once) as pool:
-        batches = pool.map(lambda k: run_batch(number + k, sizes[k], out), range(len(sizes)))
+        batches = pool.map(lambda k: run_batch(number + k, sizes[k], out, newer), range(len(sizes)))
     return [outcome for batch in batches for outcome in batch]
 
 
 def table(outcomes: list[dict[str, Any]]) -> list[list[str]]:
     """Counts by kind of file."""
     rows = [["file", "inputs", "refused", "accepted", "faults", "slowest, processor seconds"]]
-    for kind in (*KINDS, "all"):
+    names = sorted({outcome["kind"] for outcome in outcomes} - set(KINDS))
+    drawn = [kind for kind in KINDS if any(outcome["kind"] == kind for outcome in outcomes)]
+    for kind in (*drawn, *names, "all"):
         here = [outcome for outcome in outcomes if kind in (outcome["kind"], "all")]
         status = Counter(outcome["status"] for outcome in here)
         faults = sum(bool(outcome["fault"]) for outcome in here)
@@ -88,7 +94,7 @@ def table(outcomes: list[dict[str, Any]]) -> list[list[str]]:
     return rows
 
 
-def work(file: Path, number: int, count: int, skipped: int) -> None:
+def work(file: Path, number: int, count: int, skipped: int, newer: bool) -> None:
     """Go through a batch behind its first inputs."""
     warnings.simplefilter("ignore")
     drawn = 0
@@ -102,7 +108,8 @@ def work(file: Path, number: int, count: int, skipped: int) -> None:
             drawn += 1
             if drawn <= skipped or drawn > count:
                 return
-            lines.write(json.dumps({"kind": bad.kind, "what": bad.what}) + "\n")
+            kind = bad.section or bad.kind
+            lines.write(json.dumps({"kind": kind, "what": bad.what}) + "\n")
             lines.flush()
             faulthandler.dump_traceback_later(WAITING, exit=True)
             signal.setitimer(
@@ -115,7 +122,11 @@ def work(file: Path, number: int, count: int, skipped: int) -> None:
             lines.write(json.dumps(found if outcome.fault else {**found, "content": ""}) + "\n")
             lines.flush()
 
-        draw_inputs(count, number, right, visit)
+        if newer:
+            for bad in bad_sections(count, number):
+                visit(bad)
+        else:
+            draw_inputs(count, number, right, visit)
 
 
 def main() -> None:
@@ -123,9 +134,16 @@ def main() -> None:
     options.add_argument("file", type=Path)
     for name in ("number", "count", "skipped"):
         options.add_argument(name, type=int)
+    options.add_argument("--newer", action="store_true")
     arguments = options.parse_args()
     try:
-        work(arguments.file, arguments.number, arguments.count, arguments.skipped)
+        work(
+            arguments.file,
+            arguments.number,
+            arguments.count,
+            arguments.skipped,
+            arguments.newer,
+        )
     except Exception:
         traceback.print_exc()
         sys.exit(OWN)

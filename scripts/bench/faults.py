@@ -2,6 +2,7 @@
 
 - inputs: bad inputs of all kinds of files. Each is refused in one printable sentence, or accepted
 with finite numbers.
+- newer: the same of the newer sections of design files alone; trains that are accepted are run.
 - ranks: the sentence and the exit code of a sample on one rank and on two.
 - kills: commands that are killed at a random moment and continued, against those that were not.
 - memory: resident memory and open files of a study of many small drives.
@@ -29,7 +30,7 @@ from fault_memory import table as table_of_memory
 from fault_ranks import endings, fault, sample
 from page import DATA, markdown, put
 
-PARTS = ("inputs", "ranks", "kills", "memory")
+PARTS = ("inputs", "newer", "ranks", "kills", "memory")
 
 GROWTH = 1.0
 """Memory (MB) per 1000 cases and rank that counts as none: that of the lists of the cases
@@ -39,6 +40,12 @@ themselves."""
 def measure_inputs(arguments: argparse.Namespace, out: Path) -> tuple[list[list[str]], list[Any]]:
     """Table, and all faults."""
     outcomes = run_inputs(arguments.inputs, arguments.seed, out, arguments.at_once)
+    return table_of_inputs(outcomes), [outcome for outcome in outcomes if outcome["fault"]]
+
+
+def measure_newer(arguments: argparse.Namespace, out: Path) -> tuple[list[list[str]], list[Any]]:
+    """Table, and all faults."""
+    outcomes = run_inputs(arguments.inputs, arguments.seed, out, arguments.at_once, newer=True)
     return table_of_inputs(outcomes), [outcome for outcome in outcomes if outcome["fault"]]
 
 
@@ -124,6 +131,7 @@ def main() -> int:
     arguments = options.parse_args()
     work = {
         "inputs": measure_inputs,
+        "newer": measure_newer,
         "ranks": measure_ranks,
         "kills": measure_kills,
         "memory": measure_memory,

@@ -71,11 +71,12 @@ class Ratcheting(Section):
     falls."""
 
     wave_generator: float = not_negative("angle of the wave generator", "deg", 0.0, lt=360.0)
-    increment: float = positive(
-        "rotation of the output between two records, in pitches of the output; the steps "
-        "between follow the torque",
-        "pitches",
+    increment: float = quantity(
         0.02,
+        unit="pitches",
+        text="rotation of the output between two records, in pitches of the output; the steps "
+        "between follow the torque",
+        ge=1e-4,
         le=0.5,
     )
     limit: float = positive(

@@ -28,7 +28,7 @@ def run(name: str, out: Path, *, ranks: int = 1) -> list[str]:
     return on_ranks(ranks) + swgpar("run", design, "--out", out, "--set", *SMALL[name], figures)
 
 
-@pytest.mark.parametrize("name", SMALL)
+@pytest.mark.parametrize("name", FILES)
 def test_results_are_the_same_on_any_number_of_ranks(name: str, tmp_path: Path) -> None:
     one, two = tmp_path / "one", tmp_path / "two"
     done = succeed(run(name, one))

@@ -27,14 +27,15 @@ from mpi4py import MPI
 
 import swgpar
 from support.paths import DATA, DESIGN, DRIVERS, RECIPE, REFERENCE
+from support.right_files import Table, curve_file, pitch_file, right_files
 from support.small_drive import PLANE
+from support.small_trains import SMALL
 from swgpar.analysis.forecast import forecast
 from swgpar.analysis.run_record import RunRecord
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import LONGEST, SwgparError
 from swgpar.input.toml_file import apply_overrides, read_toml
 from swgpar.meshing import build_sector_meshes, load_recipe
-from swgpar.meshing.recipe import RECIPES, recipe_path
 from swgpar.optimisation.problem import make_problem
 from swgpar.optimisation.spec import load_specification
 from swgpar.results import checkpoint, parallel_hdf5
@@ -51,18 +52,18 @@ waiting."""
 MESHED = 2000
 """Elements of a sector up to which an accepted input is meshed."""
 
-Table = dict[str, Any]
 Path_ = tuple[str | int, ...]
 
 
 @dataclass(frozen=True)
 class BadInput:
     """kind : of the file;  files : name -> content, that of the file itself first;  what : how it
-    was changed"""
+    was changed;  section : the newer section in which it was, if so"""
 
     kind: str
     files: dict[str, bytes]
     what: str
+    section: str = ""
 
 
 @dataclass
@@ -77,173 +78,6 @@ class Outcome:
     seconds: float = 0.0
     what: str = ""
     content: str = field(default="", repr=False)
-
-
-# -- right files -----------------------------------------------------------------------------------
-
-
-def _drives() -> list[Table]:
-    cup, small, plane = (
-        read_toml(path) for path in (REFERENCE, DESIGN, DRIVERS / "plane_half_turn.toml")
-    )
-    flat = apply_overrides(small, PLANE)
-    arcs = {"type": "double_arc", "r_addendum": 0.6, "r_dedendum": 0.3}
-    involute = {"type": "involute", "cutter_radius": 0.1}
-    waves = [
-        {"type": "simplified", "C": 0.9},
-        {"type": "elliptical", "C": 0.95},
-        {"type": "arcs", "beta": 45.0},
-        {"type": "parabolic", "C": 1.0, "a_p": 0.0097, "C_p": 0.51, "r_c": 10.0},
-        {"type": "four_roller", "beta": 25.0, "r_4": 15.0},
-    ]
-    changed: list[Table] = [{"wave_generator": {**wave, "face_width": 10.0}} for wave in waves]
-    changed += [
-        {
-            "flexible_spline.profile": involute,
-            "ring_gear.profile": {**involute, "cutter_teeth": 60},
-        },
-        {"flexible_spline.profile": arcs, "ring_gear.profile": arcs},
-        {"fatigue": {}, "losses": {"bearing_diameter": 30.0}},
-        {"stiffness": {"torque": 20.0}},
-        {"ratcheting": {"limit": 0.5}},
-        {
-            "deviations": {
-                "turns": 2,
-                "seed": 3,
-                "ring_gear": {"pitch_grade": 5, "eccentricity": 0.01},
-            }
-        },
-        {"load.program": [{"name": "up", "torque": 5.0}, {"name": "back", "output_rotation": 0.1}]},
-        {"contact": {"friction": 0.1}, "steps": {"samples": 4}},
-    ]
-    newer = [apply_overrides(small, change) for change in _newer_sections()]
-    return [
-        *(cup, small, plane, flat),
-        *(apply_overrides(plane, change) for change in changed),
-        *newer,
-        read_toml(DRIVERS / "rating.toml"),
-        read_toml(DRIVERS / "pancake.toml"),
-    ]
-
-
-def _newer_sections() -> list[Table]:
-    """Changes of the small cup drive, each with a section or a kind of curve."""
-    steel = {"E": 205e3, "nu": 0.3, "density": 7850.0, "expansion": 1.2e-5}
-    bearing = {"balls": 20, "ball_diameter": 2.0, "race_thickness": 0.5, "race_interference": 0.01}
-    output = {
-        "radial_stiffness": 1e5,
-        "axial_stiffness": 1e5,
-        "tilting_stiffness": 1e4,
-        "radial_force": 10.0,
-        "tilting_moment": 0.1,
-    }
-    polar = {
-        "type": "polar",
-        "radius": "a - (a - b) * sin(theta)**2 * k",
-        "parameters": {"k": 1.0},
-        "face_width": 4.0,
-    }
-    cycloid = {"type": "cycloid", "r_epicycloid": 1.0, "r_hypocycloid": 1.0, "r_root": 0.3}
-    return [
-        {"wave_generator.bearing": bearing, "micro_geometry.wg_slope": 0.0},
-        {"ring_gear.housing": {"thickness": 4.0, "outside": "held"}},
-        {"output_bearing": output},
-        {"material": steel, "frequencies": {"number": 4}},
-        {"material": steel, "flexible_spline.temperature": 60.0, "ring_gear.temperature": 40.0},
-        {"rating": {"rated_torque": 2.0, "momentary_torque": 4.0, "K1": 1.0, "efficiency": 0.7}},
-        {"wave_generator": polar},
-        {"flexible_spline.profile": cycloid, "ring_gear.profile": cycloid},
-        {"steps": {"samples": 4}, "losses": {"bearing_diameter": 15.0, "flank_friction": 0.05}},
-    ]
-
-
-def _trains() -> list[Table]:
-    names = (
-        "cascade",
-        "gear_pair",
-        "planetary",
-        "ring_modes",
-        "ring_moving_load",
-        "ring_supported",
-    )
-    return [{**read_toml(DRIVERS / f"{name}.toml"), "published": {}} for name in names]
-
-
-def _studies() -> list[Table]:
-    plane, pair = str(DRIVERS / "plane_half_turn.toml"), str(DRIVERS / "gear_pair.toml")
-    grid = {
-        "design": plane,
-        "meshes": ["plane_coarse"],
-        "vary": {"load.torque": [1.0, 2.0], "material.nu": [0.3]},
-    }
-    case = {
-        "name": "one",
-        "set": ["load.torque=1"],
-        "published": {"mean.fs_s1": 300.0},
-        "tolerance": {"mean.fs_s1": 5},
-    }
-    cases = {
-        "title": "cases",
-        "design": plane,
-        "meshes": [str(RECIPE)],
-        "quantities": ["mean.fs_vm"],
-        "case": [case],
-    }
-    trains = {
-        "design": pair,
-        "mode": "sweep",
-        "vary": {"mesh.half_backlash": [10.0, 20.0], "load.noise": [50.0, 60.0]},
-    }
-    return [{"study": study} for study in (grid, cases, trains)]
-
-
-def _searches() -> list[Table]:
-    variables = [
-        {"keys": ["mesh.stiffness"], "low": 1e9, "high": 1e11, "log": True},
-        {"keys": ["gear_1.mass", "gear_2.mass"], "choices": [50.0, 100.0]},
-    ]
-    search = {
-        "design": str(DRIVERS / "gear_pair.toml"),
-        "set": ["monte_carlo.samples=20"],
-        "evaluations": 12,
-        "sampler": "tpe",
-        "first": [{"mesh.stiffness": 2e9}],
-        "variable": variables,
-        "objective": [{"quantity": "natural frequency 2 (rad/s)", "goal": "maximise"}],
-        "constraint": [{"quantity": "damping ratio 1", "at_most": 0.5}],
-    }
-    of_case = {
-        "load_case": [
-            {"name": "loud", "set": ["load.noise=50.0"]},
-            {"name": "bare", "rate": False, "without": ["published"]},
-        ],
-        "objective": [{"case": "loud", **search["objective"][0]}],
-        "constraint": [{"case": "bare", **search["constraint"][0]}],
-    }
-    return [{"optimise": search}, {"optimise": {**search, **of_case}}]
-
-
-def _curve_file() -> bytes:
-    """Points of a cam for the small drive: an ellipse."""
-    angles = [2.0 * math.pi * k / 120 for k in range(120)]
-    rows = (f"{18.2 * math.cos(t):.6f}, {19.4 * math.sin(t):.6f}" for t in angles)
-    return "\n".join(["x, y", *rows]).encode()
-
-
-def _pitch_file() -> bytes:
-    return "\n".join(["tooth,pitch", *(f"{k},{math.sin(k):.3f}" for k in range(42))]).encode()
-
-
-@functools.cache
-def right_files() -> dict[str, list[Table]]:
-    """Tables of right files by kind."""
-    return {
-        "drive": _drives(),
-        "gear train": _trains(),
-        "mesh recipe": [*(read_toml(recipe_path(name)) for name in RECIPES), read_toml(RECIPE)],
-        "study": _studies(),
-        "optimisation": _searches(),
-    }
 
 
 # -- changes ---------------------------------------------------------------------------------------
@@ -310,7 +144,8 @@ def leaves(value: Any, above: Path_ = ()) -> Iterator[Path_]:
         yield from leaves(item, (*above, key))
 
 
-def _at(table: Any, path: Path_) -> Any:
+def value_at(table: Any, path: Path_) -> Any:
+    """The value at a path of keys."""
     for key in path:
         table = table[key]
     return table
@@ -326,7 +161,7 @@ def changed_tables(draw: st.DrawFn, kind: str) -> tuple[Table, str]:
         if not paths:
             break
         path = draw(st.sampled_from(paths))
-        parent, old = _at(table, path[:-1]), _at(table, path)
+        parent, old = value_at(table, path[:-1]), value_at(table, path)
         way = draw(st.sampled_from(("replace", "scale", "scale", "remove", "add", "swap")))
         if way == "scale" and isinstance(old, (int, float)) and not isinstance(old, bool):
             new = old * draw(FACTORS)
@@ -345,7 +180,7 @@ def changed_tables(draw: st.DrawFn, kind: str) -> tuple[Table, str]:
                 other[: len(path)] == path or path[: len(other)] == other
             ):  # one of them is in the other
                 continue
-            parent[path[-1]], _at(table, other[:-1])[other[-1]] = _at(table, other), old
+            parent[path[-1]], value_at(table, other[:-1])[other[-1]] = value_at(table, other), old
         else:
             parent[path[-1]] = draw(HOSTILE)
         done.append(f"{way} {'.'.join(map(str, path))}")
@@ -394,13 +229,13 @@ def bad_inputs(draw: st.DrawFn, folder: Path) -> BadInput:
         content, what = draw(damaged(right_checkpoint(folder)))
         return BadInput(kind, {CHECKPOINT: content}, what)
     if kind == "pitch file":
-        content, what = draw(damaged(_pitch_file()))
+        content, what = draw(damaged(pitch_file()))
         column = draw(st.sampled_from(("pitch", "pitch", "", "tooth", "none")))
         return BadInput(
             kind, {"pitch.csv": content, "column": column.encode()}, f"{what}, column {column}"
         )
     if kind == "curve file":
-        content, what = draw(damaged(_curve_file()))
+        content, what = draw(damaged(curve_file()))
         return BadInput(kind, {"cam.csv": content}, what)
     if kind == "result":
         run = draw(st.sampled_from(sorted(path.name for path in FINISHED.iterdir())))
@@ -444,9 +279,12 @@ def attempt(bad: BadInput, folder: Path) -> Outcome:
         (folder / name).write_bytes(content)
     begin = time.process_time()
     text = next(iter(bad.files.values())).decode(errors="backslashreplace")
-    outcome = Outcome(bad.kind, "accepted", what=bad.what, content=text)
+    kind = bad.section or bad.kind
+    outcome = Outcome(kind, "accepted", what=bad.what, content=text)
     try:
         outcome.fault = USES[bad.kind](folder)
+        if bad.section and bad.kind == "gear train" and not outcome.fault:
+            _run_train(folder)
     except SwgparError as error:
         outcome.status, outcome.sentence = "refused", str(error)
         outcome.fault = "" if is_sentence(str(error)) else "no printable sentence"
@@ -476,6 +314,16 @@ def _use_design(folder: Path) -> str:
     return fault or (
         _use_mesh(design, load_recipe(RECIPE)) if isinstance(design, DriveDesign) else ""
     )
+
+
+def _run_train(folder: Path) -> None:
+    """Run a train with few samples and steps: it is refused where a result is not finite."""
+    train = swgpar.load_design(folder / "input.toml")
+    table = read_toml(folder / "input.toml")
+    model = table["gear_train"]["model"]
+    small = SMALL.get({"ring": "ring_moving_load"}.get(model, model), ())
+    given = tuple(part for part in small if part.partition(".")[0] in table)
+    swgpar.run(swgpar.load_design(table, given) if given else train)
 
 
 def _use_recipe(folder: Path) -> str:

@@ -29,6 +29,7 @@ SMALL = {
         "time.linearised_steps=20",
         "time.rows=10",
     ),
+    "planetary_stage": ("load.positions=20", "tolerances.samples=31", "tolerances.positions=6"),
     "ring_moving_load": (
         "ring.elements=12",
         "moving_load.steps=36",

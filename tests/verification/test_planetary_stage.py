@@ -201,6 +201,21 @@ def test_clearance_alone_changes_no_share() -> None:
     np.testing.assert_allclose(tight, loose, atol=1e-9)
 
 
+def test_back_flanks_are_remarked() -> None:
+    """A pin that is far behind is pushed by the sun and holds back the ring, or the other way: its
+    planet runs on back flanks. Backlash that is larger than the error leaves it without a load."""
+    held = {"sun__bearing": 1e15, "sun__torsional": 1e14, "load__torque": 100.0}
+    behind = {"errors__pin_tangential": [-200.0, 0.0, 0.0, 0.0], "planet__count": 4}
+    found = shared(stage(**held, **behind, mesh__half_backlash=0.0))
+    (force,) = found.sun[0]
+    assert force[0] < 0.0 < force[1:].min()
+    sentence = found.remark_on_back_flanks()
+    assert "sun and planet 1 (100 %); ring and planet 1 (100 %)." in sentence
+    loose = shared(stage(**held, **behind, mesh__half_backlash=1000.0))
+    assert loose.sun[0, 0, 0] == pytest.approx(0.0, abs=1e-6)
+    assert loose.remark_on_back_flanks() == ""
+
+
 def test_random_pins() -> None:
     """Four planets around a floating sun: the part (1, -1, 1, -1)/4 of the pins is normal with half
     of their deviation, and the factor is 1 + kappa |x| / F: quantiles of a half-normal number."""

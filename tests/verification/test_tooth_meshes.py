@@ -14,6 +14,7 @@ from swgpar.gear_trains.planetary_stage.tooth_meshes.helical import (
 )
 from swgpar.gear_trains.planetary_stage.tooth_meshes.iso_6336 import C_M, single_stiffness
 from swgpar.gear_trains.planetary_stage.tooth_meshes.pairs import GearMesh, ToothedGear
+from swgpar.gear_trains.planetary_stage.tooth_meshes.plane_pair import TipRelief
 
 ANGLE = np.radians(20.0)
 STEEL = 206e3, 0.3
@@ -98,6 +99,24 @@ def test_stiffness_by_the_standard() -> None:
     assert half == pytest.approx(0.5 * whole) and light == pytest.approx(0.5 * whole)
 
 
+@pytest.mark.parametrize(
+    ("teeth", "shifts", "helix", "single"),
+    [
+        ((19.0, 17.0), (0.617, 0.802), 0.0, 14.686762),
+        ((18.0, 36.0), (0.389, 0.504), 0.0, 14.195069),
+        ((24.0, 95.0), (0.480, 0.669), 10.0, 15.402808),
+    ],
+)
+def test_the_standard_by_a_public_program(
+    teeth: tuple[float, float], shifts: tuple[float, float], helix: float, single: float
+) -> None:
+    """Drivetrain (gfsReboucas) has these for the stages of the 5 MW reference gearbox. For helical
+    teeth it takes the virtual numbers of teeth by the base helix angle: 4e-4."""
+    rack = {"dedendum": 1.25, "angle": ANGLE, "helix": np.radians(helix)}
+    ours = single_stiffness(teeth, shifts, **rack, modulus=206.0, load=300.0)
+    assert ours == pytest.approx(single, rel=5e-4 if helix else 1e-7)
+
+
 @pytest.mark.parametrize(("sun", "ring"), [(21, 99), (40, 120)])
 def test_plane_elements_beside_the_standard(sun: int, ring: int) -> None:
     """At 100 N/mm plane elements are between the standard and its theoretical stiffness, which is
@@ -124,6 +143,39 @@ def test_stiffness_of_a_stiffer_load_and_finer_elements(monkeypatch: pytest.Monk
     plane_pair.pair_stiffness.cache_clear()
     assert plane_pair.pair_stiffness(mesh, 100.0, *STEEL).single == pytest.approx(light, rel=5e-3)
     plane_pair.pair_stiffness.cache_clear()
+
+
+def test_relief_that_makes_the_approach_constant() -> None:
+    """Linear relief along all of the path with two pairs, as deep at the tips as the load presses a
+    pair together, takes as much from one pair as it gives to the other."""
+    mesh = teeth(21, 99).transverse.meshes[0]
+    (begin, end), load, stiff = mesh.path, 150.0, 14e3
+    place = np.linspace(begin, end, 9)
+    first = np.linspace(begin, begin + mesh.base_pitch, 50, endpoint=False)
+    relief = TipRelief(load / stiff, mesh.contact_ratio - 1.0)
+    found = plane_pair.approach(mesh, place, np.full(9, stiff), relief, load, first)
+    np.testing.assert_allclose(found, load / stiff, rtol=1e-12)
+
+
+def test_relief_lets_one_pair_carry_longer() -> None:
+    """A pair carries once the approach closes its gap: forces of both pairs are the load. Deep
+    relief softens the mesh and lowers its variation."""
+    mesh = teeth(21, 99).transverse.meshes[0]
+    found = [
+        plane_pair.pair_stiffness(mesh, 100.0, *STEEL, TipRelief(depth, 0.3))
+        for depth in (0.0, 1e-9, 5e-3, 20e-3)
+    ]
+    assert found[1].mean == pytest.approx(found[0].mean, rel=2e-3)
+    assert np.all(np.diff([one.mean for one in found[1:]]) < 0.0)
+    assert np.all(np.diff([one.variation for one in found[1:]]) < 0.0)
+    (begin, end), first = mesh.path, np.array([mesh.path[0] + 0.02 * mesh.base_pitch])
+    place, relief = np.linspace(begin, end, 99), TipRelief(3e-3, 0.3)
+    pairs = np.linspace(10e3, 14e3, 99)
+    (near,) = plane_pair.approach(mesh, place, pairs, relief, 100.0, first)
+    at = np.array([first[0], first[0] + mesh.base_pitch])
+    closed = np.maximum(near - relief.gap(mesh, at), 0.0)
+    assert (closed > 0.0).any()
+    assert np.interp(at, place, pairs) @ closed == pytest.approx(100.0)
 
 
 def test_helical_teeth_smooth_the_cycle() -> None:

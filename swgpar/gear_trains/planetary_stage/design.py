@@ -18,6 +18,7 @@ from swgpar.gear_trains.planetary_parts.sections import (
     check_parts,
 )
 from swgpar.gear_trains.planetary_stage.tooth_meshes.helical import HelicalTeeth, mesh_cycle
+from swgpar.gear_trains.planetary_stage.tooth_meshes.plane_pair import TipRelief
 from swgpar.input.quantities import Section, not_negative, positive, quantity
 from swgpar.input.require import require
 
@@ -74,6 +75,12 @@ class TeethSection(Section):
         text="profile shift of the sun; that of the planets is the opposite",
         ge=-1.0,
         le=1.0,
+    )
+    tip_relief: float = not_negative(
+        'relief of all tips along the line of action, with stiffness = "plane"', "µm", 0.0
+    )
+    relief_length: float = positive(
+        "length of the relief along the path of contact from its ends", "base pitches", 0.2, le=1.0
     )
 
 
@@ -176,6 +183,7 @@ class PlanetaryStageDesign(PlanetaryParts):
             (teeth.addendum, teeth.dedendum, teeth.sun_shift),
             ring.face_width,
             (1e3 * ring.E, ring.nu),
+            TipRelief(1e-3 * teeth.tip_relief, teeth.relief_length),
         )
 
     @property
@@ -212,6 +220,9 @@ def check_fit(design: PlanetaryStageDesign) -> None:
     allowed = "with errors.planet_eccentricity only"
     require(same, "errors.planet_phase", errors.planet_phase, allowed)
     largest = 1e3 * design.module
+    if design.teeth is not None:
+        relief, allowed = design.teeth.tip_relief, f"0 to {largest:g} µm (one module)"
+        require(relief <= largest, "teeth.tip_relief", relief, allowed)
     for section in (errors, design.tolerances):
         for name, field in type(section).model_fields.items() if section else ():
             if "µm" in str(field.description):
@@ -247,5 +258,8 @@ def _check_meshes(design: PlanetaryStageDesign) -> None:
             f"{mesh.contact_ratio:.4g}"
         )
         require(1.0 <= mesh.contact_ratio < 2.0, "teeth.addendum", teeth.addendum, allowed)
+    allowed = '0 with teeth.stiffness = "iso_6336", which has no relief; "plane" has'
+    relieved = teeth.stiffness == "plane" or teeth.tip_relief == 0.0
+    require(relieved, "teeth.tip_relief", teeth.tip_relief, allowed)
     deeper = teeth.dedendum > teeth.addendum
     require(deeper, "teeth.dedendum", teeth.dedendum, "above teeth.addendum: tips need clearance")

@@ -53,6 +53,7 @@ def quantities(design: PlanetaryStageDesign) -> dict[str, Quantity]:
             "static transmission error, peak to peak, at the radius of the planet centres", "m"
         ),
         "out_of_contact": Quantity("part of places and meshes without contact on the loaded flank"),
+        "back_flank": Quantity("part of places and meshes in contact on the back flank"),
         "natural_frequencies": Quantity(
             "lowest natural frequencies with all meshes in contact", "Hz", count=LISTED
         ),

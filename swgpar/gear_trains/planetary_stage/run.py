@@ -47,6 +47,8 @@ def compute(design: PlanetaryStageDesign, comm: MPI.Comm) -> Computed:
     }
     done, seconds = run_tasks(comm, groups)
     (found,) = done["revolution"]
+    if sentence := found.remark_on_back_flanks():
+        logger.warning(sentence)
     modes = mode_table(PlanetaryModel(design))
     tables = {"planets": _planets(found), "spectrum": _spectrum(found), "modes": modes}
     tables["response"] = _response(design)
@@ -81,6 +83,7 @@ def _values(design: PlanetaryStageDesign, found: Revolution) -> dict[str, float 
         "sun_orbit": float(np.linalg.norm(found.displacements[:, 0, :2], axis=1).max()),
         "transmission_error": float(np.ptp(turn)),
         "out_of_contact": float(np.mean(np.concatenate([sun, ring]) <= 0.0)),
+        "back_flank": float(np.mean(np.concatenate([sun, ring]) < 0.0)),
     }
 
 

@@ -14,7 +14,11 @@ from swgpar.gear_trains.planetary_stage.tooth_meshes.iso_6336 import (
     single_stiffness,
 )
 from swgpar.gear_trains.planetary_stage.tooth_meshes.pairs import ToothedGear, ToothedStage
-from swgpar.gear_trains.planetary_stage.tooth_meshes.plane_pair import PairStiffness, pair_stiffness
+from swgpar.gear_trains.planetary_stage.tooth_meshes.plane_pair import (
+    PairStiffness,
+    TipRelief,
+    pair_stiffness,
+)
 
 Method = Literal["iso_6336", "plane"]
 
@@ -25,6 +29,7 @@ class HelicalTeeth:
     angle : transverse pressure angle, rad;  helix : rad
     basic_rack : addendum, dedendum and profile shift of the sun, in normal modules
     face_width : mm;  material : modulus of elasticity in MPa, Poisson's ratio
+    relief : of the tips, which only plane elements know
     """
 
     teeth: tuple[int, int, int]
@@ -34,6 +39,7 @@ class HelicalTeeth:
     basic_rack: tuple[float, float, float]
     face_width: float
     material: tuple[float, float]
+    relief: TipRelief = TipRelief()
 
     @property
     def overlap(self) -> float:
@@ -67,7 +73,7 @@ def stiffnesses(
         strict=True,
     ):
         if method == "plane":
-            found.append(pair_stiffness(mesh, load, *teeth.material))
+            found.append(pair_stiffness(mesh, load, *teeth.material, teeth.relief))
             continue
         angle = float(np.arctan(np.tan(teeth.angle) * np.cos(teeth.helix)))
         rack = {"dedendum": dedendum, "angle": angle, "helix": teeth.helix}

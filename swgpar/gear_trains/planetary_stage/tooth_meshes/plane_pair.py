@@ -41,23 +41,67 @@ class PairStiffness:
     variation: float
 
 
+@dataclass(frozen=True)
+class TipRelief:
+    """Linear relief of the tips of both gears. depth : at the tip, mm along the line of action
+
+    length : of the path of contact from its end, in base pitches
+    """
+
+    depth: float = 0.0
+    length: float = 0.2
+
+    def gap(self, mesh: GearMesh, place: np.ndarray) -> np.ndarray:
+        """Between the unloaded flanks (mm) at places on the path of contact."""
+        (begin, end), length = mesh.path, self.length * mesh.base_pitch
+        into = np.maximum(place - (end - length), 0.0) + np.maximum(begin + length - place, 0.0)
+        return self.depth * into / length
+
+
 @lru_cache(maxsize=64)
-def pair_stiffness(mesh: GearMesh, load: float, E: float, nu: float) -> PairStiffness:
-    """Stiffness along the line of action under a load (N/mm) on a pair; E in MPa."""
+def pair_stiffness(
+    mesh: GearMesh, load: float, E: float, nu: float, relief: TipRelief = TipRelief()
+) -> PairStiffness:
+    """Stiffness along the line of action under a load (N/mm) on the mesh; E in MPa. With relief it
+    is the load over the approach of the gears."""
     begin, end = mesh.path
     place = np.linspace(begin, end, POSITIONS)
     flexibility = _contact_flexibility(mesh, place, load, E, nu)
     for gear, beyond in ((mesh.driving, place), (mesh.driven, -place)):
         flexibility += Tooth(gear, E, nu).flexibility(beyond)
     pairs, pitch = 1.0 / flexibility, mesh.base_pitch
-    # each pair goes along the whole path in its time of contact
-    mean = float(0.5 * (pairs[1:] + pairs[:-1]) @ np.diff(place)) / pitch
     first = np.linspace(begin, begin + pitch, 4 * POSITIONS, endpoint=False)
-    second = first + pitch
-    sums = np.interp(first, place, pairs, right=0.0) + np.interp(second, place, pairs, right=0.0)
-    both = second <= end
+    sums = load / approach(mesh, place, pairs, relief, load, first)
+    both = first + pitch <= end
+    if relief.depth:
+        mean = float(sums.mean())
+    else:  # each pair goes along the whole path in its time of contact
+        mean = float(0.5 * (pairs[1:] + pairs[:-1]) @ np.diff(place)) / pitch
     height = sums[both].mean() - sums[~both].mean() if both.any() and not both.all() else 0.0
     return PairStiffness(float(pairs.max()), mean, float(0.5 * height / mean))
+
+
+def approach(
+    mesh: GearMesh,
+    place: np.ndarray,
+    pairs: np.ndarray,
+    relief: TipRelief,
+    load: float,
+    first: np.ndarray,
+) -> np.ndarray:
+    """Approach (n,) in mm of the gears under a load, when the first pair is at places (n,) and the
+    second one a base pitch behind the first; a pair carries once the approach closes its gap.
+
+    pairs : stiffness of a pair at the places on the path
+    """
+    at = np.stack([first, first + mesh.base_pitch])
+    stiff = np.interp(at, place, pairs)
+    stiff[at > mesh.path[1]] = 0.0
+    gap = relief.gap(mesh, at)
+    alone = np.where(stiff > 0.0, gap + load / np.where(stiff > 0.0, stiff, 1.0), np.inf)
+    shared = (load + (stiff * gap).sum(axis=0)) / stiff.sum(axis=0)
+    carries = (shared > gap) & (stiff > 0.0)
+    return np.where(carries.all(axis=0), shared, alone.min(axis=0))
 
 
 def _depths(gear: ToothedGear, beyond: np.ndarray) -> np.ndarray:
