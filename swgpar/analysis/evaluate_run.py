@@ -129,6 +129,7 @@ def evaluate_run(
                 record.torque_points,
                 design.negligible_torque_Nm,
                 ended_early=ended_early,
+                rows=rows,
             )
             if design.ratcheting
             else None

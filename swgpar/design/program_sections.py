@@ -94,3 +94,8 @@ class Ratcheting(Section):
     sufficient_torque: float | None = positive(
         "torque of the output at which the run ends without a peak; default: none", "N·m", None
     )
+    yield_strength: float | None = positive(
+        "yield strength of both gears, for the torque at which they begin to yield; default: none",
+        "MPa",
+        None,
+    )

@@ -12,8 +12,10 @@ from mpi4py import MPI
 from swgpar.answers.answer import AnswerGroup, AnswerKind, answer, evaluation, part_answers
 from swgpar.design.kinematics import Kinematics
 from swgpar.design.program_sections import Ratcheting
+from swgpar.evaluation.first_yield import yield_torque
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.model.drive_model import DriveModel
+from swgpar.results.history import Row
 
 AT_TEETH, IN_SPLINE, NOTHING = "teeth jump over", "flexible spline buckles", "nothing"
 """What gives way: the teeth move on with the output; they stay, and the spline yields between them
@@ -41,6 +43,12 @@ class TorquePoint:
 PEAK_TORQUE = AnswerKind(
     "ratcheting.peak_torque_Nm", "largest torque of the output", "N·m", remark="peak_remark"
 )
+YIELD_TORQUE = AnswerKind(
+    "ratcheting.yield_torque_Nm",
+    "torque of the output at which the gears begin to yield",
+    "N·m",
+    remark="yield_remark",
+)
 
 
 @evaluation
@@ -56,6 +64,7 @@ class RatchetingTorque(AnswerGroup):
     is_peak : whether the torque has fallen from it;  gave_way : `AT_TEETH`, `IN_SPLINE` or
     `NOTHING`; ended : why
     states : computed, those between the points of the program among them
+    yield_torque_Nm : None where the gears do not yield, or without `yield_strength` of [ratcheting]
     """
 
     peak_torque_Nm: float = part_answers(PEAK_TORQUE)
@@ -73,6 +82,7 @@ class RatchetingTorque(AnswerGroup):
     gave_way: str
     ended: str
     states: int = 0
+    yield_torque_Nm: float | None = part_answers(YIELD_TORQUE, default=None)
 
     TITLE = "ratcheting torque"
     ASKED_BY = "[ratcheting]"
@@ -85,6 +95,11 @@ class RatchetingTorque(AnswerGroup):
             return "no peak: not fallen from"
         by_steps = "" if self.peak_error_Nm is None else f" ± {self.peak_error_Nm:.2g} N·m"
         return f"by the steps{by_steps}; the error by the mesh is not known"
+
+    @property
+    def yield_remark(self) -> str:
+        """How the torque of the first yield bounds that of a drive that yields."""
+        return "the ratcheting torque of elastic, perfectly plastic gears is not below it"
 
     def remarks(self) -> Iterator[str]:
         yield f"what gives way: {self.gave_way}; end of the run: {self.ended}"
@@ -174,11 +189,13 @@ def evaluate_ratcheting(
     least: float,
     *,
     ended_early: bool,
+    rows: Sequence[Row] = (),
 ) -> RatchetingTorque:
     """The largest torque from the states of a run with [ratcheting].
 
     least : N·m, up to which a torque is none
     ended_early : whether no equilibrium was found behind the last state
+    rows : of the history, for the torque at which the gears begin to yield
     """
     top = peak(points)
     largest = points[top].torque_Nm
@@ -200,4 +217,7 @@ def evaluate_ratcheting(
         if ended_early
         else why_ended(section, points, least) or "limit reached",
         states=len(points),
+        yield_torque_Nm=None
+        if section.yield_strength is None
+        else yield_torque(rows, kinematics.torque_direction, section.yield_strength),
     )

@@ -41,6 +41,8 @@ def torque_against_rotation(program: Mapping[str, np.ndarray], summary: DriveSum
     if ratcheting := summary.ratcheting:
         peak = 60.0 * ratcheting.peak_rotation_deg, ratcheting.peak_torque_Nm
         axes.plot(*peak, "k*", ms=12, label="largest torque")
+        if (yields := ratcheting.yield_torque_Nm) is not None:
+            axes.axhline(yields, color="0.4", ls=":", lw=0.8, label="gears begin to yield")
     axes.set_xlabel("rotation of the output by the torque (arc minutes)")
     axes.set_ylabel("torque on the output (N·m)")
     what = "ratcheting: torque" if summary.ratcheting else "torque"

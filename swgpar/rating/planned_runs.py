@@ -291,6 +291,8 @@ def _program(design: DriveDesign, loads: RatingLoads, case: LoadCase) -> Planned
         keys = {"torque": loads.rated, "rated_torque": loads.rated} | keys
     elif loads.ratcheting is not None:
         keys = {"sufficient_torque": SUFFICIENT * loads.ratcheting} | keys
+        if design.fatigue is not None:
+            keys = {"yield_strength": design.fatigue.yield_strength} | keys
     content = _content(design, loads, loads.rated, ()) | {name: keys}
     content["output"] = {**content["output"], "root_stress": False}
     try:

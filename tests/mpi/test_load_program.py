@@ -33,6 +33,9 @@ from swgpar.run_options import RunOptions
 TORQUE = 0.2
 """N·m"""
 
+YIELD_STRENGTH = 4000.0
+"""MPa, of a steel that does not exist: the cam alone gives 2,000."""
+
 LOW_TEETH = {
     "drive.addendum_coef": 0.1,
     **{
@@ -205,8 +208,9 @@ def test_the_wave_generator_turns_within_a_program() -> None:
 @pytest.fixture(scope="module")
 def ratcheting() -> list[DriveResult]:
     """With records at half pitches and at hundredths of a pitch."""
+    keys = {**LOW_TEETH, "ratcheting.yield_strength": YIELD_STRENGTH}
     return [
-        run(small("plane").with_values({**LOW_TEETH, "ratcheting.increment": increment}))
+        run(small("plane").with_values({**keys, "ratcheting.increment": increment}))
         for increment in (0.5, 0.01)
     ]
 
@@ -234,6 +238,18 @@ def test_ratcheting_ends_by_itself(ratcheting: list[DriveResult]) -> None:
     assert np.all(torque[:-1] >= 0.9 * np.maximum.accumulate(torque)[:-1])
     assert found.peak_step == found.last_step == result.program["step"][-1]
     assert 0.0 < found.peak_rotation_pitches < 0.2
+
+
+def test_gears_yield_where_their_stress_reaches_the_strength(
+    ratcheting: list[DriveResult],
+) -> None:
+    result = ratcheting[1]
+    stress = np.maximum(result.history["fs_vm"], result.history["rg_vm"])
+    torque = abs(result.history["output_torque_Nmm"]) / 1000.0
+    above = int(np.argmax(stress >= YIELD_STRENGTH))
+    found = result.summary.ratcheting.yield_torque_Nm
+    assert result.history["step"][above] > 3
+    assert torque[above - 1] <= found <= torque[above] < result.summary.ratcheting.peak_torque_Nm
 
 
 def test_the_peak_does_not_depend_on_the_records(ratcheting: list[DriveResult]) -> None:

@@ -14,6 +14,7 @@ from support.stepping import small
 from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.answers.answer import NO_ESTIMATE
 from swgpar.errors import InputError
+from swgpar.evaluation.first_yield import yield_torque
 from swgpar.evaluation.program_results import work_by_torque
 from swgpar.evaluation.ratcheting import (
     AT_TEETH,
@@ -316,6 +317,21 @@ def test_a_sufficient_torque_is_no_peak() -> None:
     assert why_ended(section, points, 1e-9) == SUFFICIENT
     found = evaluate_ratcheting(design.kinematics, section, points, 1e-9, ended_early=False)
     assert not found.is_peak and found.ended == SUFFICIENT and found.peak_torque_Nm == 2.5
+
+
+def test_the_torque_of_the_first_yield_lies_between_two_rows() -> None:
+    """Stress and torque are linear between rows; the stress without a torque is that of the cam."""
+
+    def row(step: int, torque: float, spline: float, ring: float) -> dict[str, float]:
+        return {"step": step, "output_torque_Nmm": -1e3 * torque, "fs_vm": spline, "rg_vm": ring}
+
+    rows = [row(1, 0.0, 300.0, 0.0), row(2, 0.0, 400.0, 5.0)]
+    rows += [row(3, 2.0, 500.0, 100.0), row(4, 4.0, 600.0, 900.0)]
+    assert yield_torque(rows, -1.0, 450.0) == pytest.approx(1.0)
+    # the ring gear
+    assert yield_torque(rows, -1.0, 800.0) == pytest.approx(2.0 + 2.0 * 300.0 / 400.0)
+    assert yield_torque(rows, -1.0, 350.0) == 0.0
+    assert yield_torque(rows, -1.0, 901.0) is None
 
 
 @pytest.mark.parametrize("turn", [0.35, 0.5, 0.62])

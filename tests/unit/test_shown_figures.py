@@ -144,11 +144,12 @@ def test_ratcheting_starts_at_its_origin() -> None:
         "rotation_arcmin": np.array([5.0, 10.0, 15.0]),
         "torque_Nm": np.array([1.0, 4.0, 3.0]),
     }
-    peak = SimpleNamespace(peak_rotation_deg=0.2, peak_torque_Nm=4.2)
+    peak = SimpleNamespace(peak_rotation_deg=0.2, peak_torque_Nm=4.2, yield_torque_Nm=2.5)
     figure = torque_against_rotation(program, SimpleNamespace(stiffness=None, ratcheting=peak))
     (line,) = _joined(figure)
     assert line.tolist() == [[0.0, 0.0], [5.0, 1.0], [10.0, 4.0], [15.0, 3.0]]
     assert figure.axes[0].get_title().startswith("ratcheting")
+    assert [2.5, 2.5] in [list(line.get_ydata()) for line in figure.axes[0].lines]
     pyplot.close("all")
 
 

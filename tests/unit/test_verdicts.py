@@ -525,6 +525,7 @@ def test_sections_that_exclude_each_other_may_stand_in_one_file() -> None:
     assert (loop.stiffness.positions, loop.stiffness.torque) == (2, RATING["rated_torque"])
     assert jump is not None and jump.ratcheting is not None and jump.ratcheting.increment == 0.05
     assert jump.ratcheting.sufficient_torque == 2.0 * 1.5 * RATING["momentary_torque"]
+    assert jump.ratcheting.yield_strength == SECTIONS["fatigue"]["yield_strength"]
     with pytest.raises(InputError, match="gear train has no rating"):
         load_rated_design(DRIVERS / "gear_pair.toml")
 
