@@ -76,7 +76,7 @@ class DriveLosses(AnswerGroup):
     parts_Nmm: LossParts
     efficiency: float | None = part_answers(EFFICIENCY)
     no_load_torque_Nmm: float | None = part_answers(NO_LOAD_TORQUE)
-    starting_torque_Nmm: float | None = part_answers(STARTING_TORQUE)
+    starting_torque_Nmm: float | None = part_answers(STARTING_TORQUE, default=None)
     work_per_turn_J: float = answer(
         "losses.work_per_turn", "work of all losses per turn", "J", detail=True
     )
