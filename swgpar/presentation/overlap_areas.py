@@ -94,7 +94,9 @@ class SlotOverlap:
         """What teeth cover while the cam turns by one lobe: closed curves (m, 2) mm in the slot on
         +y, the same in all slots."""
         psi = np.linspace(-np.pi, np.pi, PLACES) / self.motion.line.lobes
-        return self._areas_of([self.reach(psi, side).max(axis=0) for side in SIDES])
+        alike = self.motion == self.motion.mirror_image()
+        reaches = [self.reach(psi, side).max(axis=0) for side in SIDES[: 1 if alike else 2]]
+        return self._areas_of([reaches[0], reaches[-1]])
 
     def covered(self, cam_angle: float) -> list[Floats]:
         """What the teeth of the whole drive cover at an angle of the cam, rad; closed curves (m, 2)

@@ -66,11 +66,11 @@ def conjugate(
 def _whole_envelope(envelope: Envelope, tip: float) -> list[FlankSegment]:
     """The envelope from the circle of radius `tip` (mm) to the tip edge of the other flank; empty
     where an undercut ends it before."""
-    known, low = envelope.branch[0], envelope.given.tip_end
+    known, low = envelope.tipwards[0], envelope.given.tip_end
     # a rounded tip edge only touches at the major axis: the flank below it is what works
-    if not known.size or known[0] > low + envelope.given.length / (STATIONS - 1):
+    if not known.size or known[-1] > low + envelope.given.length / (STATIONS - 1):
         return []
-    low, high = max(low, float(known[0])), float(known[-1])
+    low, high = max(low, float(known[-1])), float(envelope.branch[0][-1])
 
     def beyond(s: float) -> float:
         return abs(envelope.point(s)[0]) - tip

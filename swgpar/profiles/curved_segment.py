@@ -22,8 +22,9 @@ INVERSES = PANELS, 4 * PANELS
 DEGREE = 7
 """Of the splines that replace an inverse or a costly curve."""
 
-ROUND_OFF = 1e-13
-"""Error of an arc length over the curve's, from which on its inverse is iterated."""
+SMALL = 1e-11
+"""Error of an arc length over the curve's, from which on its inverse is iterated; it moves a point
+along the curve."""
 
 
 @dataclass(frozen=True)
@@ -103,14 +104,14 @@ class CurvedSegment:
 
     @cached_property
     def _inverse(self) -> tuple[scipy.interpolate.PPoly, bool]:
-        """Parameters by arc lengths (mm), and whether they are exact but for round-off."""
+        """Parameters by arc lengths (mm), and whether they need no iteration."""
         for panels in INVERSES:
             t = np.linspace(0.0, 1.0, panels + 1)
             ends = self._table[1] if panels == PANELS else self.arc_length(t)
             inverse = by_pieces(scipy.interpolate.make_interp_spline(ends, t, DEGREE))
             between = 0.5 * (ends[:-1] + ends[1:])
             error = np.abs(self.arc_length(inverse(between)) - between).max()
-            if exact := bool(error < ROUND_OFF * self.length):
+            if exact := bool(error < SMALL * self.length):
                 break
         return inverse, exact
 

@@ -131,15 +131,22 @@ class Envelope:
         """Points x + i y (n,), mm, at the arc lengths s (n,) mm of the given flank, in the frame of
         the envelope's tooth, and their first two derivatives by psi.
 
-        pose : of n positions, of one, or of (m, 1) for all points (m, n) of m positions
+        pose : of n positions
         """
-        point = self.given.point(s) @ (1.0, 1j)
-        if not self.given.external:
-            point = self.motion.mirrored(point)
-        arm = np.exp(1j * pose.angle) * point
+        arm = np.exp(1j * pose.angle) * self._moving(s)
         first = pose.c1 + 1j * pose.angle1 * arm
         second = pose.c2 + (1j * pose.angle2 - pose.angle1**2) * arm
         return self._placed(pose.c + arm), self._placed(first), self._placed(second)
+
+    def places(self, s: Floats, pose: Pose) -> Complex:
+        """The same points at each of m positions, (m, n)."""
+        turn = np.exp(1j * pose.angle)[:, None]
+        return self._placed(pose.c[:, None] + turn * self._moving(s))
+
+    def _moving(self, s: Floats) -> Complex:
+        """Points x + i y (n,), mm, of the given flank in the moving frame."""
+        point = self.given.point(s) @ (1.0, 1j)
+        return point if self.given.external else self.motion.mirrored(point)
 
     def solved(self, segment: FlankSegment, s: Floats, psi: Floats) -> Contacts:
         """Contacts at `s` : (n,) mm of a segment, by Newton's method from psi (n,) rad."""
@@ -162,6 +169,29 @@ class Envelope:
             self.given.segments[index], np.array([s - self.given.breaks[index]]), np.array([psi])
         )
 
+    @property
+    def _stations(self) -> Floats:
+        """Arc lengths (STATIONS,) mm of the given flank."""
+        return np.linspace(0.0, self.given.length, STATIONS)
+
+    @cached_property
+    def _middle_angle(self) -> float:
+        """Angle (rad), next to the major axis, at which the middle of the given flank about
+        touches; NaN where it never does."""
+        s, middle = self._stations, STATIONS // 2
+        reach = REACH / self.motion.line.lobes
+        psi = np.linspace(-reach, reach, 1601)
+        index = int(self._segment_of(s[middle : middle + 1])[0])
+        local = np.full_like(psi, s[middle] - self.given.breaks[index])
+        value = self.contacts(self.given.segments[index], local, psi).value
+        changes = np.flatnonzero(np.sign(value[1:]) != np.sign(value[:-1]))
+        return float(psi[changes[np.argmin(np.abs(psi[changes]))]]) if changes.size else np.nan
+
+    @cached_property
+    def tipwards(self) -> tuple[Floats, Floats]:
+        """The part of `branch` from the middle of the given flank to its tip, that way."""
+        return self._known(self._stations[STATIONS // 2 :: -1])
+
     @cached_property
     def branch(self) -> tuple[Floats, Floats]:
         """Arc lengths (n,) mm of the given flank and the angles (n,) rad of their contacts, next to
@@ -170,21 +200,21 @@ class Envelope:
         They are followed from the middle of the flank as far as the envelope runs without a cusp.
         Empty where the middle never touches.
         """
-        s, middle = np.linspace(0.0, self.given.length, STATIONS), STATIONS // 2
-        reach = REACH / self.motion.line.lobes
-        psi = np.linspace(-reach, reach, 1601)
-        index = int(self._segment_of(s[middle : middle + 1])[0])
-        local = np.full_like(psi, s[middle] - self.given.breaks[index])
-        value = self.contacts(self.given.segments[index], local, psi).value
-        changes = np.flatnonzero(np.sign(value[1:]) != np.sign(value[:-1]))
-        if not changes.size:
+        rootwards = self._known(self._stations[STATIONS // 2 :])
+        s, psi = (
+            np.concatenate([tip[:0:-1], root])
+            for tip, root in zip(self.tipwards, rootwards, strict=True)
+        )
+        return s, psi
+
+    def _known(self, s: Floats) -> tuple[Floats, Floats]:
+        """The first of the arc lengths `s` (n,) mm that lead away from the middle of the given
+        flank, as far as the envelope has no cusp, and the angles of their contacts, rad."""
+        if not np.isfinite(self._middle_angle):
             return np.empty(0), np.empty(0)
-        start = psi[changes[np.argmin(np.abs(psi[changes]))]]
-        psi_of = np.full(STATIONS, np.nan)
-        for indices in (np.arange(middle, STATIONS), np.arange(middle, -1, -1)):
-            psi_of[indices] = self._followed(s[indices], start)
-        known = np.isfinite(psi_of)
-        return s[known], psi_of[known]
+        psi = self._followed(s, self._middle_angle)
+        known = np.isfinite(psi)
+        return s[known], psi[known]
 
     def _followed(self, s: Floats, start: float) -> Floats:
         """Angles (n,) rad of the contacts at arc lengths `s` (n,) mm, which lead away from one

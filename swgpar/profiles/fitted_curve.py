@@ -58,7 +58,7 @@ class _Spline:
 def fitted(curve: CurvedSegment) -> CurvedSegment:
     """The curve as a spline through some of its points; itself where a spline is not
     `CLOSE`, as beside a cusp."""
-    angle = float(curve.evaluate(np.array([0.5])).angle[0])
+    angle, before = float(curve.evaluate(np.array([0.5])).angle[0]), np.inf
     for count in INTERVALS:
         t = np.linspace(-BEYOND, 1.0 + BEYOND, count + 1)
         points = curve.evaluate(t).point
@@ -72,4 +72,7 @@ def fitted(curve: CurvedSegment) -> CurvedSegment:
         turned = np.abs(found.angle - exact.angle).max()
         if distance < CLOSE * length and turned < TURNED:
             return CurvedSegment(curve.name, known.evaluate)
+        if turned > before:  # round-off, which grows with their number
+            return curve
+        before = turned
     return curve

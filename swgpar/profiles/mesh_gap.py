@@ -219,10 +219,8 @@ class OutlinePair:
 
         facing : whether the flank of the ring gear that the spline's faces counts alone, else all
         """
-        end = len(self.spline.place) - 1
-        middle, last = np.minimum(first + stride // 2, end), np.minimum(first + stride, end)
-        place, turn = self.spline.place, np.exp(1j * pose.angle)
-        reach = np.maximum(place[middle] - place[first], place[last] - place[middle])
+        middle, last, reach = self._parts(first, stride)
+        turn = np.exp(1j * pose.angle)
         arm = turn * self.spline.point[middle]
         velocity, points = pose.c1 + 1j * pose.angle1 * arm, pose.c + arm
         to_tooth = np.exp(1j * np.pi / self.motion.teeth_rg)
@@ -241,6 +239,13 @@ class OutlinePair:
         return _Intervals(
             middle, feet, np.abs((back * velocity).real), np.abs(velocity), reach, np.max(along, 0)
         )
+
+    def _parts(self, first: Indices, stride: int) -> tuple[Indices, Indices, Floats]:
+        """Middles and last samples (n,) of intervals, and the reach (n,) mm from the middle to the
+        ends."""
+        place, end = self.spline.place, len(self.spline.place) - 1
+        middle, last = np.minimum(first + stride // 2, end), np.minimum(first + stride, end)
+        return middle, last, np.maximum(place[middle] - place[first], place[last] - place[middle])
 
     def _lowest(self, intervals: _Intervals, step: float) -> Floats:
         """Smallest distances (n,) mm that intervals may hold, with `step` rad of the pose's angle.
@@ -264,6 +269,8 @@ class OutlinePair:
                 indexing="ij",
             )
         )
+        kept = self._reaching(psi, first, stride, step)
+        psi, first = psi[kept], first[kept]
         nearest = NearestPlace(np.inf, 0.0, "", "")
         for _ in range(LEVELS):
             angles, index = np.unique(psi, return_inverse=True)
@@ -284,6 +291,20 @@ class OutlinePair:
             psi, first = self._divided(psi, first, stride)
             stride = max(stride // DIVISION, 1)
         return nearest
+
+    def _reaching(self, psi: Floats, first: Indices, stride: int, step: float) -> NDArray[np.bool_]:
+        """Intervals that may come as near to the circle of the ring gear's tips as the tooth at the
+        major axis comes to the ring gear."""
+        starts = np.arange(0, len(self.spline.place), stride)
+        middle, _, reach = self._parts(first, stride)
+        at_axis = self.motion.pose(np.zeros(1)).taken(np.zeros(len(starts), dtype=np.intp))
+        known = self._intervals(at_axis, starts, stride, facing=False).feet.distance.min()
+        angles, index = np.unique(psi, return_inverse=True)
+        pose = self.motion.pose(angles).taken(index)
+        arm = np.exp(1j * pose.angle) * self.spline.point[middle]
+        moved = 0.5 * step * SPEED_MARGIN * np.abs(pose.c1 + 1j * pose.angle1 * arm)
+        apart = np.abs(self.ring.point).min() - np.abs(pose.c + arm)
+        return apart - moved - reach < known
 
     def _divided(self, owner: Array, first: Indices, stride: int) -> tuple[Array, Indices]:
         """Parts of intervals of `stride` samples: what belongs to each, and their first samples."""

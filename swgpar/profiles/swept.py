@@ -42,6 +42,10 @@ ASTRAY = 3.0 * NEAR
 JUMP = np.radians(0.5)
 """Change of psi from one radius to the next, beyond what its rate gives, that is another piece."""
 
+BESIDE = 0.1
+"""Length over that of the moving flank by which a place of the grid may be beside a part that is on
+the boundary there."""
+
 KINK = 1e-6
 """Angle (rad) between segments from which the moving flank has an edge there."""
 
@@ -269,25 +273,29 @@ class SweptArea:
         along = np.abs(np.einsum("ij,ij->i", given.tangent(s), given.point(s)))
         s = s[along > STEEP * np.hypot(*given.point(s).T)]
         psi = np.linspace(-reach, reach, POSITIONS)
-        poses = self.envelope.pose(psi)
-        points = self.envelope.path(s, poses.taken(np.arange(POSITIONS)[:, None]))[0]
-        radius, angle = np.abs(points), clockwise_from_y(points)
         sign = 1.0 if self.envelope.external else -1.0
-        farthest = sign * (float((sign * radius).min()) + EDGE * self.module)
+        points = self.envelope.places(s, self.envelope.pose(psi))
+        nearest = (sign * np.abs(points)).min(axis=1)
+        farthest = sign * (float(nearest.min()) + EDGE * self.module)
         if sign * (self.tip - farthest) <= 0.0:
             raise InputError(
                 f"{self.name}: the other gear's teeth do not reach between these teeth: allowed "
                 "are higher teeth or a larger deflection"
             )
+        reaching = nearest < sign * self.tip
+        psi, points = psi[reaching], points[reaching]
+        radius, angle = np.abs(points), clockwise_from_y(points)
         radii = np.linspace(self.tip, farthest, RADII)
         order = slice(None) if radius[0, 0] < radius[0, -1] else slice(None, None, -1)
-        angles, places = np.empty((2, POSITIONS, RADII))
-        for k in range(POSITIONS):
-            known = radius[k, order]
-            angles[k] = np.interp(radii, known, angle[k, order], left=np.inf, right=np.inf)
-            places[k] = np.interp(radii, known, s[order])
+        angles, places = np.empty((len(psi), RADII)), np.empty(RADII)
+        for k in range(len(psi)):
+            beyond = {"left": np.inf, "right": np.inf}
+            angles[k] = np.interp(radii, radius[k, order], angle[k, order], **beyond)
         least = angles.argmin(axis=0)
-        return radii, places[least, np.arange(RADII)], psi[least]
+        for k in np.unique(least):
+            here = least == k
+            places[here] = np.interp(radii[here], radius[k, order], s[order])
+        return radii, places, psi[least]
 
     def _runs(self) -> list[_Run]:
         """What is on the boundary, from tip to root."""
@@ -296,7 +304,7 @@ class SweptArea:
             _SegmentEnvelope(self.envelope, k) for k in range(len(self.envelope.given.segments))
         ]
         parts += self._edges
-        found = [part.at_radius(radii, np.clip(s, *part.span), psi) for part in parts]
+        found = [self._found(part, radii, s, psi) for part in parts]
         angle = np.array(
             [np.where(np.abs(each.psi - psi) < NEAR, each.angle, np.inf) for each in found]
         )
@@ -323,6 +331,18 @@ class SweptArea:
             _Run(parts[best[k[0]]], radii[k], Places(*(each[k] for each in places)))
             for k in np.split(known, ends - known[0])
         ]
+
+    def _found(self, part: Passing, radii: Floats, s: Floats, psi: Floats) -> Places:
+        """Places of a part at radii (n,) mm where the boundary is about at s (n,) mm and psi (n,)
+        rad; NaN where it is off the part."""
+        (low, high), off = part.span, BESIDE * self.envelope.given.length
+        here = (s > low - off) & (s < high + off)
+        found = Places(*np.full((len(Places._fields), len(radii)), np.nan))
+        if here.any():
+            solved = part.at_radius(radii[here], np.clip(s[here], low, high), psi[here])
+            for each, values in zip(found, solved, strict=True):
+                each[here] = values
+        return found
 
     def _meeting(self, run: _Run, after: _Run) -> float:
         """Radius (mm) at which one run ends and the next begins."""

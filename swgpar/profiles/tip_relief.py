@@ -20,6 +20,7 @@ from swgpar.geometry.arrays import Floats
 from swgpar.geometry.bracketed_root import root_between
 from swgpar.input.require import require
 from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints
+from swgpar.profiles.ends import part_of
 from swgpar.profiles.fitted_curve import fitted
 from swgpar.profiles.flank import FlankSegment, ToothProfile, check_flank
 
@@ -91,11 +92,8 @@ def relieved(profile: ToothProfile, relief: float, height: float, gear: str) -> 
             part = _Part(segment, 0.0, inside, turn, base)
             segments.append(fitted(CurvedSegment(name, part.evaluate)))
         if segment.length - max(inside, 0.0) > 1e-9 * profile.length:
-            rest = _Part(segment, max(inside, 0.0), segment.length, 0.0, base)
             whole = inside <= 0.0
-            segments.append(
-                segment if whole else fitted(CurvedSegment(segment.name, rest.evaluate))
-            )
+            segments.append(segment if whole else part_of(segment, inside, segment.length))
     changed = replace(profile, segments=tuple(segments))
     try:
         check_flank(changed)
