@@ -59,20 +59,23 @@ class SlotOverlap:
         half, edge = self.spline.point, self.spline.flank.start
         land, flank = half[:edge:STRIDE], half[edge : self.spline.flank.stop + 1 : STRIDE]
         points = np.concatenate([land, flank])
-        pose = self.motion.pose(psi)
-        turned = np.exp(1j * pose.angle)[:, None] * (points if side > 0.0 else -np.conj(points))
-        placed = pose.c[:, None] + turned
+        points = points if side > 0.0 else -np.conj(points)
+        pose, end = self.motion.pose(psi), len(land)
+        turn = np.exp(1j * pose.angle)[:, None]
+        tips = np.abs(pose.c[:, None] + turn * points[: end + 1])
+        rows = np.flatnonzero(tips.max(axis=1) > self.radii[0])
+        placed = pose.c[rows, None] + turn[rows] * points
         radius, angle = np.abs(placed), side * clockwise_from_y(placed)
-        found = np.full((len(psi), len(self.radii)), -np.inf)
-        rows, end = np.flatnonzero(radius.max(axis=1) > self.radii[0]), len(land)
-        for k in rows:
+        reach = np.empty((len(rows), len(self.radii)))
+        for k in range(len(rows)):
             # from the root, below which there is the rim, to the edge of the tip
             known = radius[k, end:][::-1], angle[k, end:][::-1]
-            found[k] = np.interp(self.radii, *known, left=self.pitch, right=-np.inf)
-        below = radius[rows, : end + 1, None] >= self.radii
-        under_land = np.where(below, angle[rows, : end + 1, None], -np.inf).max(axis=1)
-        beyond = self.radii > radius[rows, end, None]
-        found[rows] = np.where(beyond, under_land, found[rows])
+            reach[k] = np.interp(self.radii, *known, left=self.pitch)
+        below = radius[:, : end + 1, None] >= self.radii
+        under_land = np.where(below, angle[:, : end + 1, None], -np.inf).max(axis=1)
+        beyond = self.radii > radius[:, end, None]
+        found = np.full((len(psi), len(self.radii)), -np.inf)
+        found[rows] = np.where(beyond, under_land, reach)
         return np.minimum(found, 0.5 * self.pitch)
 
     def areas(self, reach: Floats, side: float) -> list[Floats]:
@@ -128,9 +131,8 @@ def slot_overlap(
     """Of two profiles and the motion of the flexible spline's tooth. module : mm"""
     moving, resting = outline(spline), outline(ring)
     psi = np.linspace(-np.pi, np.pi, PLACES) / motion.line.lobes
-    farthest = max(
-        float(np.abs(motion.pose(psi).moved(point)).max()) for point in moving.point[: 2 * STRIDE]
-    )
+    pose, tips = motion.pose(psi), moving.point[: moving.flank.start + 1 : STRIDE]
+    farthest = float(np.abs(pose.c[:, None] + np.exp(1j * pose.angle)[:, None] * tips).max())
     radii = np.linspace(ring.r_tip_circle, max(farthest, ring.r_tip_circle), RADII)
     flank = resting.point[resting.flank]
     begins = np.interp(

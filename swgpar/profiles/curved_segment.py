@@ -16,6 +16,8 @@ from swgpar.profiles.flank import FlankPoints, NearestPoints
 PANELS, ORDER = 64, 6
 """Panels of the arc length's table and Gauss points in each: round-off on a tooth's curves."""
 
+GAUSS = np.polynomial.legendre.leggauss(ORDER)
+
 INVERSES = PANELS, 4 * PANELS
 """Pieces of the inverse of an arc length that are tried, one after the other."""
 
@@ -82,8 +84,7 @@ class CurvedSegment:
     @cached_property
     def _table(self) -> tuple[Floats, Floats]:
         """Gauss points and weights on (0, 1), arc lengths (PANELS + 1,) mm at ends of panels."""
-        point, weight = np.polynomial.legendre.leggauss(ORDER)
-        point, weight = 0.5 * (point + 1.0), 0.5 * weight
+        point, weight = 0.5 * (GAUSS[0] + 1.0), 0.5 * GAUSS[1]
         start = np.arange(PANELS)[:, None] / PANELS
         speed = self.evaluate((start + point / PANELS).ravel()).speed.reshape(PANELS, -1)
         lengths = np.concatenate(([0.0], np.cumsum(speed @ weight / PANELS)))

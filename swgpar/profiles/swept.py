@@ -25,7 +25,7 @@ from swgpar.profiles.envelope import REACH, Contacts, Envelope
 from swgpar.profiles.fitted_curve import fitted
 from swgpar.profiles.polyline import clockwise_from_y
 
-POSITIONS, PLACES, RADII = 1281, 65, 401
+POSITIONS, PLACES, RADII = 641, 33, 401
 """Positions of the moving tooth, places on each of its segments, and radii, between which the
 boundary is looked for."""
 
@@ -42,7 +42,7 @@ ASTRAY = 3.0 * NEAR
 JUMP = np.radians(0.5)
 """Change of psi from one radius to the next, beyond what its rate gives, that is another piece."""
 
-BESIDE = 0.1
+BESIDE = 0.03
 """Length over that of the moving flank by which a place of the grid may be beside a part that is on
 the boundary there."""
 
