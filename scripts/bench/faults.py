@@ -3,6 +3,7 @@
 - inputs: bad inputs of all kinds of files. Each is refused in one printable sentence, or accepted
 with finite numbers.
 - newer: the same of the newer sections of design files alone; trains that are accepted are run.
+- bounds: the bounds that refusals of numbers print, and the first value that is refused.
 - ranks: the sentence and the exit code of a sample on one rank and on two.
 - kills: commands that are killed at a random moment and continued, against those that were not.
 - memory: resident memory and open files of a study of many small drives.
@@ -21,6 +22,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from fault_bounds import all_bounds, sentences
+from fault_bounds import faults as wrong_bounds
+from fault_bounds import table as table_of_bounds
 from fault_inputs import run_inputs
 from fault_inputs import table as table_of_inputs
 from fault_kills import WAYS, Kill, commands, complete, kill
@@ -30,7 +34,7 @@ from fault_memory import table as table_of_memory
 from fault_ranks import endings, fault, sample
 from page import DATA, markdown, put
 
-PARTS = ("inputs", "newer", "ranks", "kills", "memory")
+PARTS = ("inputs", "newer", "bounds", "ranks", "kills", "memory")
 
 GROWTH = 1.0
 """Memory (MB) per 1000 cases and rank that counts as none: that of the lists of the cases
@@ -47,6 +51,13 @@ def measure_newer(arguments: argparse.Namespace, out: Path) -> tuple[list[list[s
     """Table, and all faults."""
     outcomes = run_inputs(arguments.inputs, arguments.seed, out, arguments.at_once, newer=True)
     return table_of_inputs(outcomes), [outcome for outcome in outcomes if outcome["fault"]]
+
+
+def measure_bounds(arguments: argparse.Namespace, out: Path) -> tuple[list[list[str]], list[Any]]:
+    """Table, and all bounds that are not the printed ones."""
+    found = all_bounds(arguments.only)
+    (out / "bounds.json").write_text(json.dumps(sentences(found), indent=2), encoding="utf-8")
+    return table_of_bounds(found), wrong_bounds(found)
 
 
 def measure_ranks(arguments: argparse.Namespace, out: Path) -> tuple[list[list[str]], list[Any]]:
@@ -109,7 +120,10 @@ def main() -> int:
     options.add_argument("--page", default="docs/verification/faults.md")
     options.add_argument("--parts", nargs="+", choices=PARTS, default=list(PARTS))
     options.add_argument(
-        "--only", nargs="+", default=None, help="words of the names of the commands to kill"
+        "--only",
+        nargs="+",
+        default=None,
+        help="words of the names of the commands to kill, or of designs whose bounds are sought",
     )
     options.add_argument("--inputs", type=int, default=5000, help="number of bad inputs")
     options.add_argument(
@@ -132,6 +146,7 @@ def main() -> int:
     work = {
         "inputs": measure_inputs,
         "newer": measure_newer,
+        "bounds": measure_bounds,
         "ranks": measure_ranks,
         "kills": measure_kills,
         "memory": measure_memory,

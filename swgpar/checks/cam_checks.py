@@ -70,12 +70,10 @@ def _check_deflection(design: DriveDesign) -> None:
             f"wave_generator.{given[0]} and wave_generator.{given[1]} are both given: allowed is "
             "one of them"
         )
-    require(
-        bore > design.drive.standard_deflection if not given else bore > 0.0,
-        "flexible_spline.rim",
-        design.flexible_spline.rim,
-        "a rim that leaves an inner radius above the deflection",
-    )
+    smallest, rim = 0.0 if given else design.drive.standard_deflection, design.flexible_spline.rim
+    allowed = f"below {rim + bore - smallest:.6g} mm, which leaves an inner radius"
+    allowed += "" if given else f" above the deflection, {smallest:g} mm"
+    require(bore > smallest, "flexible_spline.rim", rim, allowed)
     if given:
         value = getattr(wave, given[0])  # of the curve, with an offset
         per_key = 2.0 if given[0] == "major_axis" else 1.0
@@ -125,12 +123,12 @@ def _check_minor_axis(design: DriveDesign, wave: Reduced) -> None:
     share = NARROWEST if isinstance(wave, Simplified) else SMALLEST_MINOR_AXIS
     least = share * design.inner_radius
     if wave.minor_axis is None:
-        require(
-            design.minor_semi_axis >= least,
-            "wave_generator.C",
-            wave.C,
-            f"values whose minor semi-axis is at least {share:g} of the spline's inner radius",
+        smallest = wave.C * (least - wave.offset) / (design.minor_semi_axis - wave.offset)
+        allowed = (
+            f"{smallest:.6g} and more: a minor semi-axis of at least {share:g} of the spline's "
+            "inner radius"
         )
+        require(design.minor_semi_axis >= least, "wave_generator.C", wave.C, allowed)
         return
     if wave.C != 1.0:
         raise InputError(

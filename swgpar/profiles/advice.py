@@ -53,9 +53,12 @@ def advise(
 
     key = min(ranges, key=change)
     low, high, example = ranges[key]
+    change_to = f"make {name}.{key} {'larger' if example > lengths[key] else 'smaller'}:"
+    as_they_are = "with the other keys as they are"
+    if show(low) == show(high):
+        return f"{change_to} {show(example)} mm fits {as_they_are}"
     return (
-        f"make {name}.{key} {'larger' if example > lengths[key] else 'smaller'}: allowed "
-        f"{show(low)} to {show(high)} mm with the other keys as they are, for example "
+        f"{change_to} values from {show(low)} to {show(high)} mm fit {as_they_are}, for example "
         f"{show(example)}"
     )
 

@@ -269,7 +269,7 @@ REFUSED = [
         "is out of range: allowed 86.2093 deg or more from one to the next, or tips overlap",
     ),
     (STAGE, "planet.angles=[0.0,90.0]", "is out of range: allowed 4 ascending angles (planet.coun"),
-    (STAGE, "tolerances.pin=1e5", "tolerances.pin = 100000 is out of range: allowed up to 10266.7"),
+    (STAGE, "tolerances.pin=1e5", "tolerances.pin = 100000 is out of range: allowed 0 to 10266.7"),
     (STAGE, "errors.planet_phase=[1.0,1.0,1.0,1.0]", "allowed with errors.planet_eccentricity"),
     (STAGE, "mesh.helix=50", "mesh.helix = 50 is out of range: allowed 0 to 45 deg"),
     (

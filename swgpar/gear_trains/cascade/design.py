@@ -60,10 +60,10 @@ class CascadeMesh(Section):
         "backlash at the pitch line up to the flanks that carry load in direction B", "mm", 0.0
     )
     gaps_A: MeshGaps = quantity(
-        [], text="`gap_A` of each mesh of this kind in its place (mm), each 0 or above"
+        [], unit="mm", text="`gap_A` of each mesh of this kind in its place, each 0 or above"
     )
     gaps_B: MeshGaps = quantity(
-        [], text="`gap_B` of each mesh of this kind in its place (mm), each 0 or above"
+        [], unit="mm", text="`gap_B` of each mesh of this kind in its place, each 0 or above"
     )
 
     def gaps(self, direction: Direction, count: int) -> np.ndarray:
@@ -107,7 +107,7 @@ class CascadeDamping(Section):
 
 class CascadeLoad(Section):
     forces: Forces = quantity(
-        text="rack forces for which load shares are reported (kN), each above 0"
+        unit="kN", text="rack forces for which load shares are reported, each above 0"
     )
     peak: float = positive("largest rack force, of the period and the population_tasks", "kN")
     period: float = quantity(

@@ -49,10 +49,10 @@ class PairMesh(Section):
 
 class PairLoad(Section):
     input: PositiveTorques = quantity(
-        text="torques on the first gear, one for each case (N·m), each above 0"
+        unit="N·m", text="torques on the first gear, one for each case, each above 0"
     )
     output: PositiveTorques = quantity(
-        text="torques on the second gear, one for each case (N·m), each above 0"
+        unit="N·m", text="torques on the second gear, one for each case, each above 0"
     )
     noise: float = not_negative("amplitude of the white noise on the relative rotation", "N")
     spectral_density: float = positive(

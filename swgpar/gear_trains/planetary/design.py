@@ -28,7 +28,7 @@ class PlanetaryTrain(GearTrain):
 
 class ComparedRing(RingGear):
     rims: Thicknesses = quantity(
-        text="rim thicknesses that are compared by linearisation (mm), each above 0"
+        unit="mm", text="rim thicknesses that are compared by linearisation, each above 0"
     )
 
 

@@ -80,7 +80,11 @@ class TeethSection(Section):
         'relief of all tips along the line of action, with stiffness = "plane"', "µm", 0.0
     )
     relief_length: float = positive(
-        "length of the relief along the path of contact from its ends", "base pitches", 0.2, le=1.0
+        "length of the relief along the path of contact from its ends, in pitches of the base "
+        "circles",
+        "pitches",
+        0.2,
+        le=1.0,
     )
 
 
@@ -229,8 +233,9 @@ def check_fit(design: PlanetaryStageDesign) -> None:
                 value = getattr(section, name)
                 values = value if isinstance(value, list) else [value]
                 key = f"{'errors' if section is errors else 'tolerances'}.{name}"
+                signed = section is errors and ("pin" in name or "pitch" in name)
+                allowed = f"{-largest if signed else 0:g} to {largest:g} µm (one module)"
                 for one in values:
-                    allowed = f"up to {largest:g} µm (one module)"
                     require(abs(one) <= largest, key, one, allowed)
     allowed = f"0 to {largest:g} µm (one module)"
     require(planet.clearance <= largest, "planet.clearance", planet.clearance, allowed)
@@ -262,4 +267,5 @@ def _check_meshes(design: PlanetaryStageDesign) -> None:
     relieved = teeth.stiffness == "plane" or teeth.tip_relief == 0.0
     require(relieved, "teeth.tip_relief", teeth.tip_relief, allowed)
     deeper = teeth.dedendum > teeth.addendum
-    require(deeper, "teeth.dedendum", teeth.dedendum, "above teeth.addendum: tips need clearance")
+    allowed = f"above {teeth.addendum:g} modules (teeth.addendum): tips need clearance"
+    require(deeper, "teeth.dedendum", teeth.dedendum, allowed)

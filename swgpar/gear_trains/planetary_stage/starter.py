@@ -47,7 +47,8 @@ def _teeth(ratio: float) -> tuple[int, int]:
     error, sun, ring = min(fitting, key=lambda one: (one[0] > 0.25 * RATIO_ERROR, one[1], one[0]))
     if error > 0.25 * RATIO_ERROR:
         error, sun, ring = min(fitting)
-    require(error <= RATIO_ERROR, "ratio", ratio, "a ratio that numbers of teeth come near to")
+    nearest = f"{1.0 + ring / sun:.4g}, the nearest that numbers of teeth have"
+    require(error <= RATIO_ERROR, "ratio", ratio, nearest)
     return sun, ring
 
 

@@ -65,10 +65,10 @@ class MovingLoad(Section):
     damping_mass: float = not_negative("damping over mass", "1/s")
     damping_stiffness: float = not_negative("damping over stiffness", "s")
     speeds: Speeds = quantity(
-        text="speeds of the loads (rad/s), each above 0; the first is the reference"
+        unit="rad/s", text="speeds of the loads, each above 0; the first is the reference"
     )
     sweep: Speeds = quantity(
-        text="first and last speed of the curve of critical speeds (rad/s), each above 0"
+        unit="rad/s", text="first and last speed of the curve of critical speeds, each above 0"
     )
     sweep_speeds: int = quantity(120, text="speeds of that curve", ge=2, le=10_000)
     revolutions: int = quantity(
