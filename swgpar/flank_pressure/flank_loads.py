@@ -3,6 +3,7 @@ another mesh."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -136,6 +137,21 @@ def nodal_forces(load: LineLoad, grid: FlankGrid, half_width: float) -> np.ndarr
 
     Along the profile the load is a parabola over `half_width` (mm) on either side of its middle.
     """
+
+    def share(z: float) -> np.ndarray:
+        return parabola(grid.s, float(np.interp(z, load.z, load.s)), half_width)
+
+    return _spread(load, grid, share)
+
+
+def spread_forces(load: LineLoad, grid: FlankGrid, share: np.ndarray) -> np.ndarray:
+    """Nodal forces (n_s + 1, n_z + 1, 3) N of a line load on another flank grid of the same tooth.
+    share : (n_s + 1,) of the nodes along the profile"""
+    return _spread(load, grid, lambda _: share)
+
+
+def _spread(load: LineLoad, grid: FlankGrid, shares: Callable[[float], np.ndarray]) -> np.ndarray:
+    """Nodal forces (n_s + 1, n_z + 1, 3) N. shares : of the nodes along the profile, by z (mm)"""
     out = np.zeros((len(grid.s), len(grid.z), 3))
     point, weight = np.polynomial.legendre.leggauss(POINTS)
     for j in range(len(grid.z) - 1):
@@ -148,7 +164,7 @@ def nodal_forces(load: LineLoad, grid: FlankGrid, half_width: float) -> np.ndarr
             for k, value in enumerate(z):
                 force = np.array([np.interp(value, load.z, load.load[:, c]) for c in range(3)])
                 force = force * weight[k] * 0.5 * (high - low)
-                share = parabola(grid.s, float(np.interp(value, load.z, load.s)), half_width)
+                share = shares(float(value))
                 out[:, j] += (1.0 - t[k]) * share[:, None] * force
                 out[:, j + 1] += t[k] * share[:, None] * force
     return out
@@ -159,11 +175,16 @@ def parabola(s: np.ndarray, middle: float, half_width: float) -> np.ndarray:
     half_width)^2."""
     middle = float(np.clip(middle, s[0], s[-1]))
     x = np.linspace(-1.0, 1.0, 41)
-    density = 1.0 - x**2
-    place = np.clip(middle + half_width * x, s[0], s[-1])
+    return nodal_shares(s, middle + half_width * x, 1.0 - x**2)
+
+
+def nodal_shares(s: np.ndarray, place: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """Shares (n,) of the nodes at `s` (n,) mm in point forces (m,) at places (m,) mm on linear
+    elements. Forces beyond the ends act at them."""
+    place = np.clip(place, s[0], s[-1])
     k = np.clip(np.searchsorted(s, place) - 1, 0, len(s) - 2)
     t = (place - s[k]) / (s[k + 1] - s[k])
-    share = np.bincount(k, density * (1.0 - t), minlength=len(s)) + np.bincount(
-        k + 1, density * t, minlength=len(s)
+    share = np.bincount(k, force * (1.0 - t), minlength=len(s)) + np.bincount(
+        k + 1, force * t, minlength=len(s)
     )
     return share / share.sum()

@@ -23,10 +23,10 @@ from swgpar.errors import ConvergenceError
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR, STRESS_PREFIXES
 from swgpar.fem.stress import principal
 from swgpar.fem.vectors import read_field, write_field
-from swgpar.flank_pressure.flank_loads import flank_forces, line_loads, nodal_forces
 from swgpar.geometry.rotation import rotated
 from swgpar.largest_stress.places import OF_REGION
-from swgpar.largest_stress.window_regions import pressed, read_regions, tooth_nodes
+from swgpar.largest_stress.window_loads import WindowLoads
+from swgpar.largest_stress.window_regions import read_regions, tooth_nodes
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe
@@ -59,10 +59,6 @@ N stretch them by nanometres."""
 RTOL = {"plane": 1e-4, "cup": 1e-3}
 """Newton's tolerance: it changes the stress by up to 1e-5 and 5e-4, far less than a finer
 window."""
-
-HALF_WIDTH = 0.05
-"""Half width of the flanks' contact over the module, of the order of Hertz's; the root is far from
-it."""
 
 
 @dataclass(frozen=True)
@@ -156,16 +152,11 @@ class LocalProblem:
         count = sectors_of(gear)
         first = tooth - count // 2
         self._shared = shared = shared_mesh(model, recipe, gear)
-        layout = model.partition.layouts[gear]
         self.layout = shared.move(first)
-        mesh, self.partition, self.elements = shared.mesh, shared.partition, shared.elements
+        self.partition, self.elements = shared.partition, shared.elements
         self.body = self.elements.bodies[gear]
         teeth = first + np.arange(count)
-        self.loads = line_loads(
-            layout.mesh,
-            flank_forces(model, state, teeth, model.problem.flanks_of(RING_GEAR), gear),
-        )
-        self.pressing = np.zeros((count, len(mesh.coords)))
+        self._loads = WindowLoads.of(model, state, self.layout.mesh, teeth)
         self._of_drive = displacement = self._of_the_drive(teeth)
         self.scale = model.problem.supports.scale
         problem = DiscreteProblem(
@@ -274,13 +265,10 @@ class LocalProblem:
     def _dead_load(self) -> DeadLoad:
         """Contact forces of the flanks, on their nodes of the window."""
         forces = np.zeros((self.partition.n_own, 3))
-        module = self.model.geometry.module
         grids = {grid.side: grid for grid in self.layout.mesh.flanks}
-        for (sector, side), load in self.loads.items():
-            grid = grids[side]
-            nodal = nodal_forces(load.projected(), grid, HALF_WIDTH * module).reshape(-1, 3)
-            self.pressing[sector, grid.nodes.ravel()] = np.linalg.norm(nodal, axis=1)
-            index, own = self._numbers(np.array([sector]), grid.nodes.ravel().astype(np.int64))
+        for (sector, side), nodal in self._loads.nodal.items():
+            nodes = grids[side].nodes.ravel().astype(np.int64)
+            index, own = self._numbers(np.array([sector]), nodes)
             np.add.at(forces, index[0, own[0]], nodal[own[0]])
         if self.layout.mesh.plane and self.gear == FLEXIBLE_SPLINE:
             self._add_torque(forces)
@@ -365,7 +353,7 @@ class LocalProblem:
         length = CUP_LENGTH * geometry.wall_decay if "cut" in mesh.node_sets else 0.0
         regions = read_regions(geometry, mesh, length, self._shared.regions)
         stresses, sectors = self._stresses
-        near = pressed(geometry, mesh, self.pressing)[sectors]
+        near = self._loads.near(geometry.module)[sectors]
         found = {}
         for region in sorted(set(regions) - {""}):
             nodes = np.flatnonzero(regions == region)

@@ -8,7 +8,7 @@ loaded in another way: nodal averages stand for it, with what they may lose.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import zip_longest
@@ -159,32 +159,37 @@ class WindowReadings:
     ) -> RegionStress:
         known = {tooth: by[name] for tooth, by in self.levels.items() if name in by}
         main = max(known, key=lambda tooth: (len(known[tooth]), known[tooth][-1]))
-        shares = {
-            tooth: of[-1] / max(known[main][len(of) - 1], LEAST_STRESS)
-            for tooth, of in known.items()
-        }
+        shares = _over(known, main)
         other = max(shares, key=lambda tooth: shares[tooth])
-        spread = shares[other]
-        if spread > ALIKE:
-            main, spread = other, 1.0
+        if shares[other] > ALIKE:
+            main, shares = other, _over(known, other)
+        spread = max(shares[other], 1.0)
         tops = tuple(np.fmax.reduce(level) for level in zip_longest(*known.values(), fillvalue=0.0))
-        levels, tooth, read = known[main], self.last[other][name].tooth, 0.0
+        levels, tooth, lacks = known[main], self.last[other][name].tooth, 0.0
         region = name.partition(OF_REGION)[2]
         unrefined = gear == FLEXIBLE_SPLINE and region in UNREFINED[model.geometry.model]
         layout = model.partition.layouts[gear]
         place = partial(Place.at, layout, region, self.last[main][name].position)
-        if nodal is not None:
-            read, elsewhere = _read_and_elsewhere(nodal, main, known, gear)
-            beyond = float(nodal[elsewhere]) / read if read > 0.0 else 1.0
-            if nodal[elsewhere] > ALIKE * spread * read:
-                lost = 1.0 / (CLOSE_IN_ROOT if region in (*IN_TEETH, FLANK) else CLOSE) - 1.0
-                error = math.inf if unrefined else lost * float(nodal[elsewhere])
-                average = place(elsewhere, float(nodal[elsewhere]), error)
-                return RegionStress(tuple(levels), tops, 1.0, average, nodal=True)
-            if beyond > spread:
-                spread, tooth = beyond, elsewhere
         error = math.inf if unrefined else self._window_error(model, layout, name, main, ratio)
-        error = spread * error + (spread - 1.0) * abs(levels[-1] - read)
+        least = 0.0
+        if nodal is not None:
+            reads, elsewhere = _read_and_elsewhere(nodal, known, gear)
+            # nodal averages lose much beside a contact: the most alike is the one with most of them
+            alike = max(reads, key=lambda tooth: reads[tooth])
+            read, average = reads[alike], float(nodal[elsewhere])
+            lacks = abs(levels[-1] - reads[main])
+            if average > ALIKE * read:
+                lost = 1.0 / (CLOSE_IN_ROOT if region in (*IN_TEETH, FLANK) else CLOSE) - 1.0
+                if average > spread * levels[-1]:
+                    of_average = place(
+                        elsewhere, average, math.inf if unrefined else lost * average
+                    )
+                    return RegionStress(tuple(levels), tops, 1.0, of_average, nodal=True)
+                least = (1.0 + lost) * average - spread * levels[-1]
+            elif read > 0.0 and average / read * shares[alike] > spread:
+                spread, tooth = average / read * shares[alike], elsewhere
+                lacks = abs(shares[alike] * levels[-1] - read)
+        error = max(spread * error + (spread - 1.0) * lacks, least)
         value = place(tooth, spread * levels[-1], error)
         return RegionStress(tuple(levels), tops, spread, value)
 
@@ -205,6 +210,16 @@ class WindowReadings:
         return error_of(levels, ratio)
 
 
+def _over(known: Mapping[int, Sequence[float]], main: int) -> dict[int, float]:
+    """Stresses of windows around teeth over those of windows around one, on the finest mesh that
+    both have. known : MPa, coarse to fine"""
+    shares = {}
+    for tooth, levels in known.items():
+        last = min(len(levels), len(known[main])) - 1
+        shares[tooth] = levels[last] / max(known[main][last], LEAST_STRESS)
+    return shares
+
+
 def _to_root(layout: BodyLayout, position: np.ndarray) -> float:
     """Distance (mm) of a position (3,) from the end of the root on the profile of its tooth."""
     profile = layout.mesh.profile
@@ -213,16 +228,17 @@ def _to_root(layout: BodyLayout, position: np.ndarray) -> float:
 
 
 def _read_and_elsewhere(
-    nodal: np.ndarray, main: int, known: Iterable[int], gear: str
-) -> tuple[float, int]:
-    """Largest of nodal averages (n_modelled,) that windows around a tooth read, and the sector
-    with the largest that none of the windows reads."""
+    nodal: np.ndarray, known: Iterable[int], gear: str
+) -> tuple[dict[int, float], int]:
+    """Largest of nodal averages (n_modelled,) that the windows around each tooth read, and the
+    sector with the largest that none of them reads."""
     count = sectors_of(gear)
     beside = np.arange(MARGIN, count - MARGIN) - count // 2
     far = nodal.copy()
     for tooth in known:
         far[(tooth + beside) % len(nodal)] = -np.inf
-    return float(nodal[(main + beside) % len(nodal)].max()), int(far.argmax())
+    reads = {tooth: float(nodal[(tooth + beside) % len(nodal)].max()) for tooth in known}
+    return reads, int(far.argmax())
 
 
 def nodal_averages(model: DriveModel, gear: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from functools import partial
+from collections.abc import Iterator, Mapping
+
+import numpy as np
 
 from swgpar.fem.body import RING_GEAR
-from swgpar.largest_stress.candidate_teeth import first_of_largest
+from swgpar.largest_stress.candidate_teeth import ROUND_OFF, first_of_largest
 from swgpar.largest_stress.local_problem import WindowState, WindowStress
 from swgpar.largest_stress.places import OF_REGION
 from swgpar.largest_stress.region_stress import (
+    CLOSE_IN_ROOT,
     RegionStress,
     WindowReadings,
     nodal_averages,
@@ -21,23 +23,32 @@ from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
 from swgpar.model.regions import TOOTH_ROOT
 
+LOOKED_AT, MOST_PEAKS = CLOSE_IN_ROOT, 6
+"""Share of the largest nodal average in a root from which a tooth with more than those beside it is
+looked at, and most of these teeth."""
+
+FOLLOWED = (0.75, 0.92)
+"""Shares of the largest stress in a root with which a tooth is followed after the first window, and
+after later ones."""
+
 
 def ring_gear_stresses(
     model: DriveModel, state: LoadState, levels: int, skipped: int
 ) -> dict[str, RegionStress]:
     """Largest stresses of the ring gear by windows; collective.
 
-    A root lies between two teeth, and its middle has the same nodal average in both: of the tooth
-    with the largest tension there and those beside it the coarsest window tells the one that is
-    followed. In the plane so it is with the von Mises stress, where the tension may be larger:
-    nodal averages lose much beside a contact near the root.
+    A root lies between two teeth, and its middle has the same nodal average in both. Nodal averages
+    lose much beside a contact near the root, so that of two loaded roots the one with less may have
+    the larger stress. Hence all teeth with a peak of the tension in their root, and those beside
+    them, get the coarsest window; in the plane those with a peak of the von Mises stress as well.
+    These windows tell the teeth that are followed.
     """
     kind, averages = model.geometry.model, nodal_averages(model, RING_GEAR)
     nodal = nodal_by_sector(model, state, RING_GEAR, averages)
     stresses = ("s1", "vm") if kind == "plane" else ("s1",)
     roots = [f"rg_{stress}{OF_REGION}{TOOTH_ROOT}" for stress in stresses]
-    first, count = [first_of_largest(nodal[root]) for root in roots], len(nodal[roots[0]])
-    teeth = {(tooth + beside) % count for tooth in first for beside in (-1, 0, 1)}
+    peaks = [tooth for root in roots for tooth in _peaks(nodal[root], kind)]
+    teeth = {(tooth + beside) % len(nodal[roots[0]]) for tooth in peaks for beside in (-1, 0, 1)}
     readings, states = WindowReadings(skipped), dict[int, WindowState]()
     for level in range(min(levels, RING_LEVELS[kind])):
         found = {}
@@ -47,10 +58,30 @@ def ring_gear_stresses(
                 found[tooth] = window.by_region()
             if level >= skipped:
                 readings.add(tooth, found[tooth])
-        teeth = {max(found, key=partial(_in_region, found, root)) for root in roots}
+        share = FOLLOWED[min(level, 1)] if kind == "plane" else 1.0
+        teeth = {tooth for root in roots for tooth in _followed(found, root, share)}
     return readings.stresses(model, RING_GEAR, nodal, RATIO[kind])
 
 
-def _in_region(found: Mapping[int, Mapping[str, WindowStress]], name: str, tooth: int) -> float:
-    """Largest stress (MPa) of a name that the window around a tooth gives."""
-    return found[tooth][name].value if name in found[tooth] else 0.0
+def _peaks(nodal: np.ndarray, kind: str) -> list[int]:
+    """Teeth with the largest nodal averages (n,) MPa beside them, the largest first; in a cup
+    drive, where windows cost more, one. Equal ones differ by round-off."""
+    if kind == "cup":
+        return [first_of_largest(nodal)]
+    least = nodal * (1.0 + ROUND_OFF)
+    peak = (least >= np.roll(nodal, 1)) & (least >= np.roll(nodal, -1))
+    peaks = np.flatnonzero(peak & (nodal > LOOKED_AT * nodal.max()))
+    # of equal ones the first, on any number of ranks
+    order = np.argsort(-np.round(nodal[peaks] / nodal.max(), 6), kind="stable")
+    return [int(tooth) for tooth in peaks[order][:MOST_PEAKS]]
+
+
+def _followed(
+    found: Mapping[int, Mapping[str, WindowStress]], name: str, share: float
+) -> Iterator[int]:
+    """Teeth around which windows give this share of the largest stress of a name, or more."""
+    values = {tooth: of[name].value if name in of else 0.0 for tooth, of in found.items()}
+    largest = max(values, key=lambda tooth: values[tooth])
+    for tooth, value in values.items():
+        if tooth == largest or (share < 1.0 and value > share * values[largest]):
+            yield tooth

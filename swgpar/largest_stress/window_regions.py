@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.fem.body import RING_GEAR
-from swgpar.largest_stress.places import APART_DISTANCE, TOUCHED, inside_teeth, near_contact
+from swgpar.largest_stress.places import inside_teeth
 from swgpar.meshing.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.sector import SectorMesh
 from swgpar.model.regions import (
@@ -100,10 +100,3 @@ def tooth_nodes(mesh: SectorMesh, geometry: DriveGeometry, ends: bool) -> np.nda
     return np.flatnonzero(
         (z > END * face_width) & (z <= TOOTHED * face_width + geometry.cup.back_fillet)
     )
-
-
-def pressed(geometry: DriveGeometry, mesh: SectorMesh, forces: np.ndarray) -> np.ndarray:
-    """Nodes (n_sectors, n_node) bool near the contact of flanks. forces : (n_sectors, n_node) N, of
-    the flanks; smaller ones are what a load shares with the next node"""
-    touched = forces > TOUCHED * forces.max(initial=0.0)
-    return near_contact(mesh, touched, APART_DISTANCE * geometry.module)

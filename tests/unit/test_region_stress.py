@@ -112,6 +112,14 @@ def test_a_window_that_is_loaded_in_another_way_stands_for_itself() -> None:
     assert one.tops == (150.0, 160.0, 94.0)
 
 
+def test_a_nodal_average_below_the_stress_of_a_window_does_not_replace_it() -> None:
+    """Windows around one tooth have a small nodal average beside a contact; elsewhere it is 1.8
+    times that, and less than what the windows give."""
+    one = stress(readings({3: LEVELS}), nodal(t3=45.0, t9=81.0))
+    assert one.place.value == LEVELS[-1] and not one.nodal
+    assert one.place.error == pytest.approx(81.0 / CLOSE_IN_ROOT - LEVELS[-1])
+
+
 def test_the_tooth_with_the_largest_stress_is_one_of_the_finest_windows() -> None:
     found = readings({3: LEVELS[:2], 9: [150.0]})
     assert found.tooth_with_largest("fs_vm") == 3

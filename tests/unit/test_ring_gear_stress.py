@@ -31,9 +31,12 @@ class Layout:
         return 2.0 * np.pi / TEETH * tooth
 
 
-def windows(monkeypatch: pytest.MonkeyPatch, largest: dict[int, float]) -> list[tuple[int, int]]:
+def windows(
+    monkeypatch: pytest.MonkeyPatch, largest: dict[int, float], further: int | None = None
+) -> list[tuple[int, int]]:
     """Let windows give these stresses (MPa), 1 MPa elsewhere, and nodal averages be largest in the
-    root between the teeth 0 and 11; the teeth and levels of the windows, in their order."""
+    root between the teeth 0 and 11, with 80 % of that at a further tooth; the teeth and levels of
+    the windows, in their order."""
     solved: list[tuple[int, int]] = []
     levels = {window_recipe("plane", level): level for level in range(RING_LEVELS["plane"])}
 
@@ -46,6 +49,8 @@ def windows(monkeypatch: pytest.MonkeyPatch, largest: dict[int, float]) -> list[
 
     nodal = np.full(TEETH, 5.0)
     nodal[[0, TEETH - 1]] = 9.0
+    if further is not None:
+        nodal[further] = 0.8 * 9.0
     monkeypatch.setattr(ring_gear_stress, "solved_window", solved_window)
     monkeypatch.setattr(ring_gear_stress, "nodal_averages", lambda *_: None)
     monkeypatch.setattr(ring_gear_stress, "nodal_by_sector", lambda *_: dict.fromkeys(NAMES, nodal))
@@ -67,12 +72,36 @@ def test_the_tooth_on_the_other_side_of_the_root_may_have_the_larger_stress(
     """The root has the same nodal average in both teeth."""
     solved = windows(monkeypatch, {0: 12.0, TEETH - 1: 16.0})
     found = ring_gear_stress.ring_gear_stresses(model(), cast(LoadState, None), 3, 0)[NAME]
-    assert solved == [(0, 0), (1, 0), (11, 0), (11, 1), (11, 2)]
+    assert solved == [(0, 0), (1, 0), (10, 0), (11, 0), (11, 1), (11, 2)]
     assert found.place.tooth == TEETH - 1 and found.levels == (16.0, 17.0, 18.0)
 
 
 def test_windows_that_are_left_out_still_tell_the_tooth(monkeypatch: pytest.MonkeyPatch) -> None:
     solved = windows(monkeypatch, {0: 12.0, TEETH - 1: 16.0})
     found = ring_gear_stress.ring_gear_stresses(model(), cast(LoadState, None), 2, 1)[NAME]
-    assert solved == [(0, 0), (1, 0), (11, 0), (11, 1)]
+    assert solved == [(0, 0), (1, 0), (10, 0), (11, 0), (11, 1)]
     assert np.isnan(found.levels[0]) and found.levels[1:] == (17.0,)
+
+
+def test_a_root_with_a_smaller_nodal_average_may_have_the_largest_stress(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """They lose much beside a contact near the root."""
+    solved = windows(monkeypatch, {0: 12.0, 5: 16.0}, further=5)
+    found = ring_gear_stress.ring_gear_stresses(model(), cast(LoadState, None), 3, 0)[NAME]
+    assert solved[-2:] == [(5, 1), (5, 2)] and {tooth for tooth, _ in solved} == {
+        0,
+        1,
+        4,
+        5,
+        6,
+        10,
+        11,
+    }
+    assert found.place.tooth == 5 and found.place.value == 18.0
+
+
+def test_a_tooth_that_has_nearly_as_much_is_followed(monkeypatch: pytest.MonkeyPatch) -> None:
+    solved = windows(monkeypatch, {0: 15.0, TEETH - 1: 16.0})
+    ring_gear_stress.ring_gear_stresses(model(), cast(LoadState, None), 3, 0)
+    assert solved[4:] == [(0, 1), (11, 1), (0, 2), (11, 2)]

@@ -1,0 +1,95 @@
+"""Contact forces of the drive on the flanks of a window.
+
+In the plane they act where the cells of the contact law carry them. In a cup drive, where the line
+loads of stations are known alone, they are spread along the profile by a parabola.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from swgpar.fem.body import RING_GEAR
+from swgpar.flank_pressure.flank_loads import (
+    flank_forces,
+    line_loads,
+    nodal_forces,
+    spread_forces,
+)
+from swgpar.flank_pressure.pressed_cells import PressedCells, pressed_cells
+from swgpar.largest_stress.places import APART_DISTANCE, TOUCHED, near_contact
+from swgpar.load.load_states import LoadState
+from swgpar.meshing.sector import SectorMesh
+from swgpar.model.drive_model import DriveModel
+
+HALF_WIDTH = 0.05
+"""Half width over the module over which a line load is spread, of the order of Hertz's; the root is
+far from it."""
+
+
+@dataclass(frozen=True)
+class WindowLoads:
+    """Contact forces on the flanks of the sectors of a window.
+
+    mesh : sector of the window;  count : sectors
+    nodal : (n, 3) N on the nodes of the flanks by (sector, side), in the order of their grids
+    cells : that carry, of flanks in the plane
+    """
+
+    mesh: SectorMesh
+    count: int
+    nodal: Mapping[tuple[int, int], np.ndarray]
+    cells: Mapping[tuple[int, int], PressedCells]
+
+    @classmethod
+    def of(
+        cls, model: DriveModel, state: LoadState, mesh: SectorMesh, teeth: np.ndarray
+    ) -> WindowLoads:
+        """The forces of a state on the `teeth` (n,) of a gear; collective. mesh : of the window"""
+        flanks, gear = model.problem.flanks_of(RING_GEAR), mesh.body
+        loads = line_loads(
+            model.partition.layouts[gear].mesh, flank_forces(model, state, teeth, flanks, gear)
+        )
+        cells = pressed_cells(model, flanks, gear, teeth) if mesh.plane else {}
+        grids, nodal = {grid.side: grid for grid in mesh.flanks}, {}
+        for (sector, side), load in loads.items():
+            grid, projected = grids[side], load.projected()
+            if (sector, side) in cells:
+                forces = spread_forces(projected, grid, cells[sector, side].shares(grid.s))
+            else:
+                forces = nodal_forces(projected, grid, HALF_WIDTH * model.geometry.module)
+            nodal[sector, side] = forces.reshape(-1, 3)
+        return cls(mesh, len(teeth), nodal, cells)
+
+    def near(self, module: float) -> np.ndarray:
+        """Nodes (count, n_node) bool within `APART_DISTANCE` of the contact of flanks. module : mm
+
+        In the plane from the ends of the cells on, so that finer windows read up to the same
+        distance. Elsewhere from loaded nodes on; smaller forces are what a load shares with the
+        next node.
+        """
+        mesh, distance = self.mesh, APART_DISTANCE * module
+        if mesh.plane:
+            near = np.zeros((self.count, len(mesh.coords)), dtype=bool)
+            for (sector, side), cells in self.cells.items():
+                near[sector] |= _within(mesh, side, cells.ends, distance)
+            return near
+        forces = np.zeros((self.count, len(mesh.coords)))
+        for grid in mesh.flanks:
+            for sector in range(self.count):
+                if (sector, grid.side) in self.nodal:
+                    size = np.linalg.norm(self.nodal[sector, grid.side], axis=1)
+                    forces[sector, grid.nodes.ravel()] = size
+        return near_contact(mesh, forces > TOUCHED * forces.max(initial=0.0), distance)
+
+
+def _within(mesh: SectorMesh, side: int, s: np.ndarray, distance: float) -> np.ndarray:
+    """Nodes (n_node,) bool of a plane sector within a distance (mm) of places `s` (n,) mm of a
+    flank."""
+    profile = mesh.profile
+    points = profile.point(np.clip(s, 0.0, profile.length)) * [side, 1.0]
+    nearest, _ = cKDTree(points).query(mesh.coords[:, :2])
+    return nearest < distance
