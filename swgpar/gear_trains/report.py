@@ -13,7 +13,7 @@ from swgpar.gear_trains.result import TrainResult, TrainSummary
 from swgpar.log import console
 from swgpar.presentation.answer_text import answer_table, detail_table, value_text
 from swgpar.results.number_tables import Labels, number_tables
-from swgpar.results.page import Table, TableRow
+from swgpar.results.page import Table
 from swgpar.results.result_page import RunFacts, result_page
 
 
@@ -21,7 +21,7 @@ def train_report(result: TrainResult) -> bytes:
     """The whole page; reads the figures in the results folder. Call it on one rank."""
     summary = result.summary
     compared = [asdict(row) for row in result.compared]
-    rows = [TableRow(list(row.values())) for row in compared]
+    rows = [list(row.values()) for row in compared]
     return result_page(
         "gear_trains/train_report.html.j2",
         f"Gear train: {result.design_table['gear_train']['model'].replace('_', ' ')}",

@@ -17,7 +17,7 @@ from swgpar.optimisation.comparison import (
 from swgpar.optimisation.optimisation_data import OptimisationData
 from swgpar.optimisation.problem import STATUS, Problem
 from swgpar.optimisation.spec import Specification
-from swgpar.results.page import Picture, Table, TableRow
+from swgpar.results.page import Picture, Table
 from swgpar.results.quantity import Quantity
 from swgpar.studies.figures import as_png
 from swgpar.studies.runs_page import FigureSection, runs_page, table_of_runs
@@ -31,6 +31,14 @@ PARALLEL = (
     "Every design that has been computed is a line. An axis is a variable between its bounds, or a "
     "quantity. Marks on an axis are limits, and the side beyond them is not allowed."
 )
+
+SECTIONS = (
+    (figures.PROGRESS, "Progress", "objectives by evaluation", ""),
+    (figures.PARALLEL, "Parallel coordinates", "variables and quantities of all designs", PARALLEL),
+    (figures.PARETO, "Pareto front", "objectives against each other", ""),
+    (figures.IMPORTANCE, "Importance of the variables", "importance of the variables", IMPORTANCE),
+)
+"""Begin of the names of figures, heading above them, what they show, text below the heading."""
 
 COLUMNS = 6
 """Designs beside each other in a table of the best ones."""
@@ -58,13 +66,13 @@ def make_report(
         bounds=bound_sentences(result),
         without_start=start_sentence(result) if ranked else "",
         designs=designs,
-        evaluations=table_of_runs(ranked, result.units, ranked=True) if ranked else None,
+        evaluations=table_of_runs(ranked, result.units) if ranked else None,
     )
 
 
 def _beside(part: DesignComparison) -> Table:
     """The table of a part of the comparison."""
-    rows = [TableRow([row.name, row.wanted, *row.cells]) for row in part.rows]
+    rows = [[row.name, row.wanted, *row.cells] for row in part.rows]
     return Table(["evaluation", "sought", *part.heads], rows)
 
 
@@ -72,7 +80,7 @@ def _variables(problem: Problem) -> Table:
     rows = []
     for v in problem.section.variable:
         scale = ", ".join(map(str, v.choices)) or ("log" if v.log else "")
-        rows.append(TableRow([", ".join(v.keys), v.low, v.high, problem.units[v.name], scale]))
+        rows.append([", ".join(v.keys), v.low, v.high, problem.units[v.name], scale])
     return Table(["variable", "low", "high", "unit", "scale or choices"], rows)
 
 
@@ -82,21 +90,19 @@ def _quantities(problem: Problem) -> Table:
     rows = []
     for name, goal in wanted:
         quantity = problem.known.get(name, Quantity("worst verdict of the rating sheet", ""))
-        rows.append(TableRow([name, goal, quantity.meaning, quantity.unit]))
+        rows.append([name, goal, quantity.meaning, quantity.unit])
     return Table(["quantity", "goal or limit", "meaning", "unit"], rows)
 
 
 def _load_cases(problem: Problem) -> Table | None:
     """The load cases; None where the file has none."""
     rows = [
-        TableRow(
-            [
-                one.name,
-                "rating sheet" if one.rate else "run",
-                ", ".join(one.set),
-                ", ".join(one.without),
-            ]
-        )
+        [
+            one.name,
+            "rating sheet" if one.rate else "run",
+            ", ".join(one.set),
+            ", ".join(one.without),
+        ]
         for one in problem.section.load_case
     ]
     return Table(["load case", "computed", "keys", "without"], rows) if rows else None
@@ -121,22 +127,9 @@ def _ranked(problem: Problem, result: OptimisationData) -> list[dict[str, Any]]:
 
 def _figures(result: OptimisationData) -> list[FigureSection]:
     found = figures.drawings(result)
-
-    def pictures(begin: str, text: str) -> list[Picture]:
-        names = [name for name in found if name.startswith(begin)]
-        return [Picture(as_png(found[name]()), text) for name in names]
-
-    return [
-        FigureSection("Progress", pictures(figures.PROGRESS, "objectives by evaluation")),
-        FigureSection(
-            "Parallel coordinates",
-            pictures(figures.PARALLEL, "variables and quantities of all designs"),
-            PARALLEL,
-        ),
-        FigureSection("Pareto front", pictures(figures.PARETO, "objectives against each other")),
-        FigureSection(
-            "Importance of the variables",
-            pictures(figures.IMPORTANCE, "importance of the variables"),
-            IMPORTANCE,
-        ),
-    ]
+    sections = []
+    for begin, title, shows, text in SECTIONS:
+        drawn = [draw() for name, draw in found.items() if name.startswith(begin)]
+        pictures = [Picture(as_png(figure), shows) for figure in drawn]
+        sections.append(FigureSection(title, pictures, text))
+    return sections

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from swgpar.answers.answer import Answer
-from swgpar.results.page import Amount, Table, TableRow, number
+from swgpar.results.page import Amount, Table, number
 
 NOTHING = 1e-9
 """Size below which a value is round-off and 0 is shown."""
@@ -24,13 +24,10 @@ def value_text(value: float | None, error: float | None = None) -> str:
         return number(0.0)
     if not np.isfinite(value) or error is None or error < NOTHING:
         written = number(float(value))
-        return written if abs(value) >= WRITTEN_OUT else _without_power(written)
+        # a power of ten stands for zeros before the point
+        is_short = abs(value) < WRITTEN_OUT and "e+" in written
+        return f"{float(written):.0f}" if is_short else written
     return _rounded(value, _decimals(error))
-
-
-def _without_power(written: str) -> str:
-    """A number without a power of ten, where that stands for zeros before the point."""
-    return f"{float(written):.0f}" if "e+" in written else written
 
 
 def _decimals(error: float) -> int:
@@ -71,9 +68,7 @@ def answer_table(answers: Iterable[Answer]) -> Table:
         text = value_text(answer.value, answer.error)
         amount = text if answer.value is None else Amount(answer.value, text)
         numbers = [amount, answer.unit, error_text(answer)]
-        rows.append(
-            TableRow([answer.text, *numbers, answer.place, remark_text(answer), answer.name])
-        )
+        rows.append([answer.text, *numbers, answer.place, remark_text(answer), answer.name])
     return Table(["", "value", "unit", "error", "where", "remark", "name"], rows)
 
 

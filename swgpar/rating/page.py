@@ -14,7 +14,7 @@ from swgpar.rating.texts import (
     limit_text,
     run_text,
 )
-from swgpar.results.page import Table, TableRow, page
+from swgpar.results.page import Table, page
 from swgpar.version import __version__
 
 STYLES = {
@@ -43,7 +43,8 @@ def rating_page(sheet: RatingSheet) -> bytes:
     ]
     runs = Table(
         ["run", "torque", "status", "time", "remark", "folder"],
-        [TableRow(_run_cells(run), bad=run.status in ("failed", "refused")) for run in sheet.runs],
+        [_run_cells(run) for run in sheet.runs],
+        bad=[k for k, run in enumerate(sheet.runs) if run.status in ("failed", "refused")],
     )
     return page(
         "rating/rating.html.j2",

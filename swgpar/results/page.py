@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -29,28 +29,22 @@ class Amount:
 
 
 @dataclass(frozen=True)
-class TableRow:
-    """Cells of a table. bad : whether something is wrong"""
-
-    cells: Sequence[Any]
-    bad: bool = False
-
-
-@dataclass(frozen=True)
 class Table:
-    """Texts stand on the left, numbers on the right. ranked : whether headings order rows by
-    `RANK`"""
+    """Texts stand on the left, numbers on the right.
+
+    rows : cells of each;  ranked : whether headings order rows by `RANK`
+    bad : numbers, from 0, of the rows in which something is wrong
+    """
 
     header: Sequence[str]
-    rows: Sequence[TableRow]
+    rows: Sequence[Sequence[Any]]
     ranked: bool = False
+    bad: Collection[int] = ()
 
     @property
     def has_texts(self) -> list[bool]:
         """Of every column: whether all its cells are texts."""
-        return [
-            all(isinstance(row.cells[k], str) for row in self.rows) for k in range(len(self.header))
-        ]
+        return [all(isinstance(row[k], str) for row in self.rows) for k in range(len(self.header))]
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import Any
 
 from swgpar.input.toml_file import to_toml
 from swgpar.results.figure_set import FOLDER
-from swgpar.results.page import Picture, Table, TableRow, page
+from swgpar.results.page import Picture, Table, page
 
 
 @dataclass(frozen=True)
@@ -56,11 +56,11 @@ def result_page(
 
 def _versions(facts: RunFacts) -> Table:
     """Versions, ranks, time and memory of a run."""
-    rows = [TableRow([name, str(value)]) for name, value in facts.versions.items()]
+    rows = [[name, str(value)] for name, value in facts.versions.items()]
     if facts.ranks is not None:
-        rows.append(TableRow(["MPI ranks", f"{facts.ranks}"]))
+        rows.append(["MPI ranks", f"{facts.ranks}"])
     if facts.wall_s is not None:
-        rows.append(TableRow(["time", f"{facts.wall_s:.4g} s"]))
+        rows.append(["time", f"{facts.wall_s:.4g} s"])
     if facts.memory_MB:
-        rows.append(TableRow(["largest memory of a rank", f"{max(facts.memory_MB):.0f} MB"]))
+        rows.append(["largest memory of a rank", f"{max(facts.memory_MB):.0f} MB"])
     return Table(["", "version or amount"], rows)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from swgpar.results.page import Picture, Table, TableRow
+from swgpar.results.page import Picture, Table
 from swgpar.results.quantity import with_unit
 from swgpar.studies import figures
 from swgpar.studies.runs_page import HEADINGS, FigureSection, runs_page, table_of_runs
@@ -74,7 +74,7 @@ def _cases(results: Sequence[JobResult]) -> Table:
         rows.append(row | {"note": notes[row["case"]]} if any(notes.values()) else row)
     quantities = shown_quantities(results).items()
     units = units_of_keys(results) | {name: quantity.unit for name, quantity in quantities}
-    return table_of_runs(rows, units, ranked=True)
+    return table_of_runs(rows, units)
 
 
 def _extremes(results: Sequence[JobResult]) -> Table:
@@ -86,18 +86,19 @@ def _extremes(results: Sequence[JobResult]) -> Table:
         ordered = sorted((values[name], case) for case, values in finest if name in values)
         if len(ordered) > 1:
             (low, of_low), (high, of_high) = ordered[0], ordered[-1]
-            rows.append(TableRow([with_unit(name, quantity.unit), low, of_low, high, of_high]))
+            rows.append([with_unit(name, quantity.unit), low, of_low, high, of_high])
     return Table(["quantity", "smallest", "of case", "largest", "of case"], rows)
 
 
 def _comparisons(comparisons: Sequence[CaseComparison]) -> Table:
     rows = published_rows(comparisons)
     heads = [HEADINGS.get(name, name) for name in rows[0]]
-    return Table(heads, [TableRow(list(row.values()), row["verdict"] == "MISS") for row in rows])
+    missed = [k for k, row in enumerate(rows) if row["verdict"] == "MISS"]
+    return Table(heads, [list(row.values()) for row in rows], bad=missed)
 
 
 def _meanings(results: Sequence[JobResult]) -> Table:
-    rows = [TableRow([name, q.meaning, q.unit]) for name, q in shown_quantities(results).items()]
+    rows = [[name, q.meaning, q.unit] for name, q in shown_quantities(results).items()]
     return Table(["quantity", "meaning", "unit"], rows)
 
 
@@ -111,7 +112,7 @@ def _estimates(results: Sequence[JobResult]) -> Table:
                 percent = 100.0 * estimate.error / abs(fine) if fine else None
                 title = with_unit(name, case.known[name].unit if name in case.known else "")
                 numbers = [coarse, fine, estimate.converged, estimate.error, percent]
-                rows.append(TableRow([case.name, title, *numbers]))
+                rows.append([case.name, title, *numbers])
     header = ["case", "quantity", "coarser mesh", "finest mesh", "converged"]
     return Table([*header, "error estimate", "error estimate (%)"], rows)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from swgpar.results.figure_set import drawn_for_files, import_matplotlib
-from swgpar.results.page import RANK, Picture, Table, TableRow, page
+from swgpar.results.page import RANK, Picture, Table, page
 from swgpar.results.quantity import with_unit
 from swgpar.studies.run_file import RunFile
 from swgpar.version import __version__
@@ -65,10 +65,8 @@ def runs_page(
     )
 
 
-def table_of_runs(
-    rows: Sequence[Mapping[str, Any]], units: Mapping[str, str], *, ranked: bool = False
-) -> Table:
-    """Rows of runs with a status. units : of columns that are keys or quantities"""
+def table_of_runs(rows: Sequence[Mapping[str, Any]], units: Mapping[str, str]) -> Table:
+    """Rows of runs with a status, to be ordered. units : of columns that are keys or quantities"""
     heads = [HEADINGS.get(name) or with_unit(name, units.get(name, "")) for name in rows[0]]
-    cells = [TableRow(list(row.values()), row.get("status") == "failed") for row in rows]
-    return Table(heads, cells, ranked)
+    failed = [k for k, row in enumerate(rows) if row["status"] == "failed"]
+    return Table(heads, [list(row.values()) for row in rows], ranked=True, bad=failed)

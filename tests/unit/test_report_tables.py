@@ -17,7 +17,7 @@ from support.paths import DESIGN, RECIPE
 from support.study_files import jobs_of
 from swgpar.optimisation.problem import make_problem
 from swgpar.optimisation.spec import load_specification
-from swgpar.results.page import RANK, Table, TableRow, page
+from swgpar.results.page import RANK, Table, page
 from swgpar.studies.case import Outcome
 from swgpar.studies.report import make_report
 from swgpar.studies.spec import load_study
@@ -104,7 +104,7 @@ def test_tables_of_an_optimisation(tmp_path: Path) -> None:
 def report(heading: str, text: str) -> str:
     """A page with one table of answers, and a script."""
     empty = Table(["", "version or amount"], [])
-    answers = Table([heading], [TableRow([text]), TableRow([0.1 + 0.2])])
+    answers = Table([heading], [[text], [0.1 + 0.2]])
     values = {
         "figures": [],
         "inputs": text,
