@@ -6,11 +6,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from mpi4py import MPI
 
+from swgpar import log
 from swgpar.errors import InputError
-from swgpar.input.arguments import require_number
+from swgpar.input.arguments import given_path, require_number
 from swgpar.input.quantities import show
 from swgpar.meshing import MeshRecipe
 
@@ -58,6 +60,16 @@ class RunOptions:
             value = getattr(self, name)
             if not isinstance(value, bool):
                 raise InputError(f"{name} = {show(value)} is no choice: allowed true or false")
+
+    @classmethod
+    def given(cls, out: str | Path | None, progress: bool | None, **more: Any) -> RunOptions:
+        """Options from arguments of the Python interface. more : further fields
+
+        Raises InputError for an argument of another type.
+        """
+        folder = None if out is None else given_path("out", out)
+        terminal = log.console.is_terminal if progress is None else progress
+        return cls(folder, terminal=terminal, **more)
 
     def require_available(self, available: frozenset[str], noun: str, *, mesh: bool) -> None:
         """Refuse what a kind of systems does not have, and a restart without a folder.

@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING
 
 from mpi4py import MPI
 
-from swgpar import log
 from swgpar.analysis.accuracy import require_accuracy
 from swgpar.api.runs import DesignLike, MeshLike, with_mesh
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
-from swgpar.input.arguments import given_path
 from swgpar.input.design import Design
 from swgpar.input.toml_file import Overrides, apply_overrides, read_toml, require_source
 from swgpar.rating.planned_runs import make_rated_drive
@@ -98,14 +96,8 @@ def rate(
     """
     from swgpar.rating.rate_drive import rate_drive  # what runs is imported where it is used
 
-    terminal = log.console.is_terminal if progress is None else progress
-    given = RunOptions(
-        given_path("out", out),
-        accuracy=accuracy,
-        restart=restart,
-        overwrite=overwrite,
-        comm=comm,
-        terminal=terminal,
+    given = RunOptions.given(
+        out, progress, accuracy=accuracy, restart=restart, overwrite=overwrite, comm=comm
     )
 
     def checked() -> tuple[DriveDesign, RunOptions]:

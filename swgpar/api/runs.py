@@ -159,40 +159,28 @@ def run(
     >>> result = swgpar.run("drivers/plane_half_turn.toml")
     >>> result.summary["root.s1"].value, result.history["fs_s1"].max()
     """
-    return run_sharing(
-        None,
-        design,
-        mesh,
+    given = RunOptions.given(
         out,
+        progress,
         accuracy=accuracy,
         plain=plain,
         restart=restart,
         overwrite=overwrite,
-        progress=progress,
         comm=comm,
     )
+    return run_with(given, design, mesh)
 
 
-def run_sharing(
-    drives: Drives | None,
-    design: DesignLike,
-    mesh: MeshLike | None,
-    out: str | Path | None,
-    *,
-    progress: bool | None,
-    comm: MPI.Comm,
-    **asked: Any,
+def run_with(
+    given: RunOptions, design: DesignLike, mesh: MeshLike | None, drives: Drives | None = None
 ) -> Result:
     """Run a design, a drive by an adapter whose runs share models; collective.
 
-    drives : None where each run builds its own models
-    asked : further fields of `RunOptions`; the other parameters are those of `run`
+    given : options without a mesh;  drives : None where each run builds its own models
     """
-    folder = None if out is None else given_path("out", out)
-    terminal = log.console.is_terminal if progress is None else progress
-    given = RunOptions(folder, comm=comm, terminal=terminal, **asked)
+    folder, comm = given.out, given.comm
     checked, options = on_all(comm, lambda: _checked(design, mesh, given))
-    with log.session(comm, terminal=terminal):
+    with log.session(comm, terminal=given.terminal):
         system = system_of_section(checked.system)
         if drives is not None and isinstance(checked, DriveDesign):
             system = drives

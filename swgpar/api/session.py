@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 from mpi4py import MPI
 
-from swgpar.api.runs import DesignLike, MeshLike, run_sharing
+from swgpar.api.runs import DesignLike, MeshLike, run_with
 from swgpar.errors import SwgparError
 from swgpar.input.arguments import require_number
 from swgpar.input.require import require
+from swgpar.run_options import RunOptions
 
 if TYPE_CHECKING:
     from swgpar.analysis.model_sources import LoadedDrives
@@ -85,18 +86,11 @@ class Session:
             self._drives = LoadedDrives(
                 self.models, keeps_windows=True, starts_near=self.starts_near
             )
+        given = RunOptions.given(
+            out, progress, accuracy=accuracy, plain=plain, overwrite=overwrite, comm=self.comm
+        )
         try:
-            return run_sharing(
-                Drives(self._drives),
-                design,
-                mesh,
-                out,
-                accuracy=accuracy,
-                plain=plain,
-                overwrite=overwrite,
-                progress=progress,
-                comm=self.comm,
-            )
+            return run_with(given, design, mesh, Drives(self._drives))
         except SwgparError:
             raise
         except BaseException:  # a model that was interrupted in a solve is of no use

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,8 +12,32 @@ from swgpar.optimisation.problem import Evaluation
 from swgpar.optimisation.spec import OptimiseSection
 
 
-@dataclass(frozen=True)
-class OptimisationData:
+@dataclass(frozen=True, kw_only=True)
+class SearchedDesigns:
+    """Designs of a search, whether it has ended or goes on.
+
+    section : what is sought;  units : of variables and quantities, by name
+    evaluations : designs that were tried, by number;  best : numbers of the best ones
+    start : number of the start design; None where it is no point of the search, or has not ended
+    """
+
+    section: OptimiseSection
+    units: dict[str, str]
+    evaluations: dict[int, Evaluation]
+    best: list[int]
+    start: int | None
+
+
+def number_of(
+    evaluations: Mapping[int, Evaluation], values: Mapping[str, Any] | None
+) -> int | None:
+    """Number of the first evaluation of a design; None where it has none."""
+    same = (n for n in sorted(evaluations) if evaluations[n].values == values)
+    return next(same, None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OptimisationData(SearchedDesigns):
     """What an optimisation gives, without figures; the same on every rank.
 
     Attributes
@@ -43,15 +68,10 @@ class OptimisationData:
         Seconds of this call.
     """
 
-    evaluations: dict[int, Evaluation]
-    best: list[int]
-    start: int | None
     without_start: str
     at_bounds: dict[int, tuple[AtBound, ...]]
     importance: dict[str, dict[str, float]]
     designs: dict[int, dict[str, Any]]
-    section: OptimiseSection
-    units: dict[str, str]
     folder: Path
     wall_s: float
 

@@ -7,14 +7,14 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from swgpar.optimisation.bounds import position
-from swgpar.optimisation.optimisation_data import OptimisationData
+from swgpar.optimisation.optimisation_data import SearchedDesigns
 from swgpar.optimisation.problem import Evaluation
-from swgpar.optimisation.spec import OptimiseSection, Variable
+from swgpar.optimisation.spec import Variable
 from swgpar.results.figure_set import new_figure
 from swgpar.results.page import number
 from swgpar.results.quantity import with_unit
@@ -44,30 +44,6 @@ STYLES: dict[str, dict[str, Any]] = {
 FORBIDDEN = "#c03030"
 
 
-class Searched(Protocol):
-    """Designs of a search, as `OptimisationData` has them."""
-
-    @property
-    def section(self) -> OptimiseSection:
-        """What is sought."""
-
-    @property
-    def units(self) -> dict[str, str]:
-        """Of variables and quantities, by name."""
-
-    @property
-    def evaluations(self) -> dict[int, Evaluation]:
-        """Designs by number."""
-
-    @property
-    def best(self) -> list[int]:
-        """Numbers of the best ones."""
-
-    @property
-    def start(self) -> int | None:
-        """Number of the start design."""
-
-
 @dataclass(frozen=True)
 class ParallelAxis:
     """title : below it;  low, high : texts at its ends
@@ -82,7 +58,7 @@ class ParallelAxis:
     limits: tuple[tuple[float, float], ...] = ()
 
 
-def parallel_coordinates(result: OptimisationData) -> Figure:
+def parallel_coordinates(result: SearchedDesigns) -> Figure:
     """Every design with a run as a line; an axis for every variable, objective and limit."""
     axes = parallel_axes(result)
     figure = new_figure(figsize=(WIDTH * (len(axes) + 0.5), HEIGHT), layout="constrained")
@@ -110,7 +86,7 @@ def parallel_coordinates(result: OptimisationData) -> Figure:
     return figure
 
 
-def parallel_axes(result: Searched) -> list[ParallelAxis]:
+def parallel_axes(result: SearchedDesigns) -> list[ParallelAxis]:
     """An axis for every variable, objective and limit."""
     axes = [_of_variable(result, one) for one in result.section.variable]
     return axes + [_of_quantity(result, name) for name in result.section.quantities]
@@ -125,7 +101,7 @@ def _draw_axis(panel: Axes, k: int, axis: ParallelAxis) -> None:
         panel.text(k, y, text, ha="center", va=side, fontsize=8, clip_on=False)
 
 
-def _of_variable(result: Searched, variable: Variable) -> ParallelAxis:
+def _of_variable(result: SearchedDesigns, variable: Variable) -> ParallelAxis:
     ends = variable.choices or [variable.low, variable.high]
     return ParallelAxis(
         _wrapped(with_unit(variable.name, result.units.get(variable.name, ""))),
@@ -135,7 +111,7 @@ def _of_variable(result: Searched, variable: Variable) -> ParallelAxis:
     )
 
 
-def _of_quantity(result: Searched, name: str) -> ParallelAxis:
+def _of_quantity(result: SearchedDesigns, name: str) -> ParallelAxis:
     section = result.section
     limits = [
         (limit, sign)
@@ -158,7 +134,7 @@ def _place(low: float, high: float, value: float) -> float:
     return (value - low) / (high - low)
 
 
-def _range(result: Searched, name: str, limits: list[float]) -> tuple[float, float]:
+def _range(result: SearchedDesigns, name: str, limits: list[float]) -> tuple[float, float]:
     """Ends of the axis of a quantity: it shows all feasible designs, the start design, limits, and
     most of the other designs."""
     shown = list(limits)

@@ -4,18 +4,18 @@ and best designs."""
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from mpi4py import MPI
 
-from swgpar import log, watch
+from swgpar import watch
 from swgpar.input.arguments import given_path
 from swgpar.input.toml_file import to_toml
 from swgpar.optimisation.bounds import at_bounds
 from swgpar.optimisation.files import BEST, DESIGNS, REPORT, TABLE
-from swgpar.optimisation.problem import Evaluation, Problem, make_problem
+from swgpar.optimisation.optimisation_data import number_of
+from swgpar.optimisation.problem import Problem, make_problem
 from swgpar.optimisation.report import make_report
 from swgpar.optimisation.result import OptimisationResult
 from swgpar.optimisation.search import JOURNAL, Search, open_storage
@@ -25,6 +25,7 @@ from swgpar.results import made_files
 from swgpar.results.atomic import agreed, on_all, write_from_root
 from swgpar.results.lock import releasing
 from swgpar.results.table import format_csv
+from swgpar.run_options import RunOptions
 from swgpar.studies.many_runs import claim_folder
 
 SCREEN = " screen"
@@ -76,13 +77,17 @@ def optimise(
     >>> found = swgpar.optimise("drivers/optimise/parabolic_cam.toml", "results/cam")
     >>> found.evaluations[found.best[0]].values
     """
-    terminal = log.console.is_terminal if progress is None else progress
     begin, folder = time.perf_counter(), given_path("out", out)
+    options = RunOptions.given(folder, progress, restart=restart, overwrite=overwrite, comm=comm)
     spec = on_all(comm, lambda: load_specification(optimisation))
     problem = on_all(comm, lambda: make_problem(spec))
     section, screen = spec.section, spec.section.screen
     cheaper = on_all(comm, lambda: make_problem(spec, screen=True)) if screen else None
-    _claim(folder, comm, restart, overwrite)
+    written = (JOURNAL, TABLE, REPORT, f"{BEST}/{DESIGNS}")
+    claim_folder(folder, options, "an optimisation", [JOURNAL, TABLE], written)
+    with agreed(comm, folder / JOURNAL):
+        if comm.rank == 0:
+            made_files.note(folder / JOURNAL)  # Optuna makes it
     storage = open_storage(section.storage, folder, comm)
 
     def searched(problem: Problem, end: str, first: list[dict[str, Any]], wanted: int) -> Search:
@@ -91,7 +96,7 @@ def optimise(
         receive = None
         if comm.rank == 0:
             known = search.evaluations()
-            receive = OptimiseProgress(name, section, known, wanted, terminal).receive
+            receive = OptimiseProgress(name, section, known, wanted, options.terminal).receive
         search.run(wanted, receive)
         comm.Barrier()
         if comm.rank == 0:
@@ -110,7 +115,7 @@ def optimise(
         content = OptimisationResult(
             evaluations=evaluations,
             best=best,
-            start=_number(evaluations, problem.start.values),
+            start=number_of(evaluations, problem.start.values),
             without_start=problem.start.reason,
             at_bounds={n: at_bounds(section.variable, evaluations[n].values) for n in best},
             importance=search.importance(),
@@ -123,22 +128,6 @@ def optimise(
     result = comm.bcast(content)
     _write(spec, problem, result, comm)
     return result
-
-
-def _number(evaluations: Mapping[int, Evaluation], values: Mapping[str, Any] | None) -> int | None:
-    """Number of the first evaluation of a design; None where it has none."""
-    same = (n for n in sorted(evaluations) if evaluations[n].values == values)
-    return next(same, None)
-
-
-def _claim(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
-    kept = out / JOURNAL, out / TABLE
-    written = (JOURNAL, TABLE, REPORT, f"{BEST}/{DESIGNS}")
-    what = "an optimisation"
-    claim_folder(comm, out, what, kept, written, restart=restart, overwrite=overwrite)
-    with agreed(comm, out / JOURNAL):
-        if comm.rank == 0:
-            made_files.note(out / JOURNAL)  # Optuna makes it
 
 
 def _write(

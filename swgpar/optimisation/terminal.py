@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 
+from rich import box
+from rich.table import Table
+
 from swgpar.log import console
 from swgpar.optimisation.comparison import (
     DesignComparison,
@@ -17,7 +20,6 @@ from swgpar.optimisation.problem import STATUS, Evaluation
 from swgpar.optimisation.spec import OptimiseSection
 from swgpar.results.page import number
 from swgpar.studies.many_runs import note_ended, print_line
-from swgpar.studies.terminal import folded_table
 
 SHOWN = 20
 """Designs in the tables at the end: optimise.csv has all."""
@@ -91,7 +93,7 @@ def print_result(result: OptimisationData) -> None:
 
 
 def _print_part(part: DesignComparison, width: int) -> None:
-    table = folded_table()
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
     table.add_column("evaluation", overflow="fold", width=width)
     for head in part.heads:
         table.add_column(head, justify="right", overflow="fold", max_width=LONGEST)

@@ -11,36 +11,18 @@ from typing import Any
 from swgpar.errors import OutputError
 from swgpar.input.toml_file import parse_value
 from swgpar.optimisation.files import TABLE
+from swgpar.optimisation.optimisation_data import SearchedDesigns, number_of
 from swgpar.optimisation.problem import Evaluation, Problem, make_problem
 from swgpar.optimisation.spec import OptimiseSection, Variable, load_specification
 from swgpar.results.atomic import reason_of
+from swgpar.results.table import is_number
 
 
-@dataclass(frozen=True)
-class TriedDesigns:
-    """problem : what is sought;  evaluations : by number, without violations
-    best : numbers of the best ones
-    """
+@dataclass(frozen=True, kw_only=True)
+class TriedDesigns(SearchedDesigns):
+    """The evaluations are without violations. problem : what is sought"""
 
     problem: Problem
-    evaluations: dict[int, Evaluation]
-    best: list[int]
-
-    @property
-    def section(self) -> OptimiseSection:
-        """What is sought."""
-        return self.problem.section
-
-    @property
-    def units(self) -> dict[str, str]:
-        """Of variables and quantities, by name."""
-        return self.problem.units
-
-    @property
-    def start(self) -> int | None:
-        """Number of the start design; None where it is no point of the search."""
-        values = self.problem.start.values
-        return next((n for n, each in self.evaluations.items() if each.values == values), None)
 
     def table(self, number: int) -> dict[str, Any]:
         """Content of the design file of a tried design."""
@@ -58,7 +40,14 @@ def read_tried(specification: Path, folder: Path) -> TriedDesigns:
         raise OutputError(f"{path} cannot be read: {reason_of(error)}") from None
     evaluations = {int(row["evaluation"]): _evaluation(problem.section, row) for row in rows}
     best = [int(row["evaluation"]) for row in rows if row["best"] == "1"]
-    return TriedDesigns(problem, evaluations, best)
+    return TriedDesigns(
+        section=problem.section,
+        units=problem.units,
+        evaluations=evaluations,
+        best=best,
+        start=number_of(evaluations, problem.start.values),
+        problem=problem,
+    )
 
 
 def _evaluation(section: OptimiseSection, row: dict[str, str]) -> Evaluation:
@@ -66,7 +55,7 @@ def _evaluation(section: OptimiseSection, row: dict[str, str]) -> Evaluation:
         {one.name: _value(one, row[one.name]) for one in section.variable if row.get(one.name)},
         row["status"],
         row.get("reason", ""),
-        {name: float(row[name]) for name in section.quantities if _is_number(row.get(name))},
+        {name: float(row[name]) for name in section.quantities if is_number(row.get(name) or "")},
         {},
     )
 
@@ -75,11 +64,3 @@ def _value(variable: Variable, text: str) -> Any:
     value = parse_value(text)
     taken = variable.taken(value)
     return value if taken is None else taken
-
-
-def _is_number(text: str | None) -> bool:
-    try:
-        float(text or "")
-    except ValueError:
-        return False
-    return True

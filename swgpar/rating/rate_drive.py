@@ -68,10 +68,11 @@ class _Book:
     def compute(self, run: PlannedRun, system: System[Any, Any], comm: MPI.Comm) -> Outcome:
         """Do a run; collective."""
         folder = self.options.out
+        accuracy, _ = accuracy_of(run, self.options.accuracy)
         given = replace(
             self.options,
             out=folder and folder / self.places[run.name],
-            accuracy=accuracy_of(run, self.options.accuracy),
+            accuracy=accuracy,
             comm=comm,
             terminal=False,
         )
@@ -96,15 +97,14 @@ class _Book:
     def _entry(self, run: PlannedRun) -> RunEntry:
         outcome = self.outcomes.get(run.name)
         status = "waits" if outcome is None else outcome.status
+        _, without_accuracy = accuracy_of(run, self.options.accuracy)
         return RunEntry(
             name=run.name,
             torque=run.torque,
             status="refused" if run.refusal else status,
             folder=self.places[run.name],
             reason=run.refusal or ("" if outcome is None else outcome.reason),
-            left_out=", ".join(
-                filter(None, (run.left_out, without_accuracy(run, self.options.accuracy)))
-            ),
+            left_out=", ".join(filter(None, (run.left_out, without_accuracy))),
             wall_s=None if outcome is None else outcome.wall_s,
         )
 
@@ -134,7 +134,7 @@ def rate_drive(design: DriveDesign, options: RunOptions) -> RatingSheet:
         raise InputError("out is missing: a rating keeps its runs in a folder")
     book = _begin(design, options)
     plan, count = book.plan, len(book.plan.runs)
-    _claim(folder, options)
+    claim_folder(folder, options, "a rating", [RUNS], (JSON, CSV, PAGE), RUNS)
     watch.saved("runs", 0, count)
 
     def run(index: int, own: MPI.Comm, _: object) -> None:
@@ -180,20 +180,14 @@ def _identity(run: PlannedRun, recipe: MeshRecipe) -> str:
     return "" if run.design is None else str(DRIVE.identity(run.design, recipe)["identity"])
 
 
-def accuracy_of(run: PlannedRun, accuracy: float | None) -> float | None:
-    """The accuracy of a run; None where its mesh is not chosen by one."""
+def accuracy_of(run: PlannedRun, accuracy: float | None) -> tuple[float | None, str]:
+    """The accuracy of a run, None where its mesh is not chosen by one; and why a run whose stresses
+    are resolved does not have the one that is asked for."""
     if accuracy is None or run.design is None or not run.windows:
-        return None
-    return accuracy if not_refinable(run.design) is None else None
-
-
-def without_accuracy(run: PlannedRun, accuracy: float | None) -> str:
-    """Why a run whose stresses are resolved has the mesh of the recipe; empty where its mesh is
-    chosen by the accuracy, or none is asked for."""
-    if accuracy is None or run.design is None or not run.windows:
-        return ""
-    found = not_refinable(run.design)
-    return "" if found is None else f"--accuracy, which is not available with {found[0]}"
+        return None, ""
+    if found := not_refinable(run.design):
+        return None, f"--accuracy, which is not available with {found[0]}"
+    return accuracy, ""
 
 
 def _words(index: int, count: int, run: PlannedRun, outcome: Outcome) -> list[str]:
@@ -202,19 +196,6 @@ def _words(index: int, count: int, run: PlannedRun, outcome: Outcome) -> list[st
     if outcome.status != "finished":
         return [*words, f"{outcome.status}: {outcome.reason}"]
     return [*words, f"{outcome.wall_s:.1f} s", "finished before" if outcome.kept else "finished"]
-
-
-def _claim(folder: Path, options: RunOptions) -> None:
-    claim_folder(
-        options.comm,
-        folder,
-        "a rating",
-        [folder / RUNS],
-        (JSON, CSV, PAGE),
-        runs=RUNS,
-        restart=options.restart,
-        overwrite=options.overwrite,
-    )
 
 
 def _write(sheet: RatingSheet, folder: Path, comm: MPI.Comm) -> None:

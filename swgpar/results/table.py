@@ -36,10 +36,11 @@ def _cell(value: Any) -> Any:
     if not isinstance(value, str):
         return value
     value = printable(value)
-    return f"'{value}" if value.startswith(FORMULA) and not _is_number(value) else value
+    return f"'{value}" if value.startswith(FORMULA) and not is_number(value) else value
 
 
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
+    """Whether a cell of a table holds a number."""
     try:
         float(text)
     except ValueError:

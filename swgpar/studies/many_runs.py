@@ -14,31 +14,30 @@ from swgpar.log import console
 from swgpar.results import made_files
 from swgpar.results.atomic import agreed
 from swgpar.results.lock import acquire
+from swgpar.run_options import RunOptions
 from swgpar.studies.job import remove_runs
 from swgpar.tasks import Send, share_tasks
 
 
 def claim_folder(
-    comm: MPI.Comm,
     out: Path,
+    options: RunOptions,
     what: str,
-    marks: Iterable[Path],
+    marks: Iterable[str],
     written: Iterable[str],
-    *,
     runs: str = "",
-    restart: bool,
-    overwrite: bool,
 ) -> None:
     """Make and lock a folder. `releasing` must decorate the caller; collective.
 
-    what : the folder holds, in messages;  marks : paths of which one is there then
+    what : the folder holds, in messages;  marks : names in it of which one is there then
     written : patterns of the names of its own files;  runs : folder in it of the runs
     """
-    with agreed(comm, out):
-        if comm.rank == 0:
+    restart, overwrite = options.restart, options.overwrite
+    with agreed(options.comm, out):
+        if options.comm.rank == 0:
             out.mkdir(parents=True, exist_ok=True)
             acquire(out)
-            if not overwrite and not restart and any(mark.exists() for mark in marks):
+            if not overwrite and not restart and any((out / mark).exists() for mark in marks):
                 raise OutputError(
                     f"{out} already holds {what}: continue it with restart = true (--restart), "
                     "replace it with overwrite = true (--overwrite), or choose another folder"

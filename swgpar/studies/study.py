@@ -5,15 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from mpi4py import MPI
 
-from swgpar import log, watch
+from swgpar import watch
 from swgpar.errors import InputError, OutputError
-from swgpar.input.arguments import given_path
 from swgpar.input.toml_file import require_source
 from swgpar.results.atomic import on_root, write_from_root
 from swgpar.results.lock import releasing
@@ -178,34 +177,35 @@ def study(
     >>> found.table["mean.fs_s1"]
     """
     require_source("study", study)
-    terminal = log.console.is_terminal if progress is None else progress
-    folder = None if out is None else given_path("out", out)
+    given = RunOptions.given(
+        out, progress, plain=True, restart=restart, overwrite=overwrite, comm=comm
+    )
+    folder = given.out
     file, jobs = on_root(comm, lambda: _read(study))  # whatever happens to the file meanwhile
     if folder is not None:
-        _claim(folder, comm, restart, overwrite)
+        claim_folder(folder, given, "a study", [CASES], (TABLE, PUBLISHED, REPORT), CASES)
     elif restart:
         raise InputError(
             "restart = true needs the folder of the study: a study in memory leaves nothing to "
             "continue"
         )
-    order = on_root(comm, lambda: queue(jobs, _statuses(jobs, folder)))
+    order = on_root(comm, lambda: queue(jobs, [_status(job, folder) for job in jobs]))
 
     def run(index: int, own: MPI.Comm, send: Send) -> None:
         job = jobs[order[index]]
-        options = RunOptions(
-            None if folder is None else job.folder(folder),
+        options = replace(
+            given,
+            out=folder and job.folder(folder),
             recipe=job.recipe,
             recipe_name=str(job.mesh or ""),
-            plain=True,
-            restart=restart,
-            overwrite=overwrite,
             comm=own,
+            terminal=False,
             on_increment=lambda: send((order[index], None)),
         )
         outcome = run_one(job.case.system, job.case.design, options, job.case.refusal)
         send((order[index], outcome))
 
-    book = _Book(file, jobs, folder, terminal) if comm.rank == 0 else None
+    book = _Book(file, jobs, folder, given.terminal) if comm.rank == 0 else None
     try:
         do_runs(comm, file.section.parallel, len(jobs), run, book.receive if book else None)
     finally:
@@ -222,23 +222,9 @@ def _read(source: str | Path | Mapping[str, Any]) -> tuple[Study, list[Job]]:
     return study, expand(study)
 
 
-def _claim(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
-    claim_folder(
-        comm,
-        out,
-        "a study",
-        [out / CASES],
-        (TABLE, PUBLISHED, REPORT),
-        runs=CASES,
-        restart=restart,
-        overwrite=overwrite,
-    )
-
-
-def _statuses(jobs: Sequence[Job], folder: Path | None) -> list[str | None]:
-    if folder is None:
-        return [None] * len(jobs)
-    return [read_status(job.folder(folder)).get("status") for job in jobs]
+def _status(job: Job, folder: Path | None) -> str | None:
+    """Status of an earlier call; None in memory, and without one."""
+    return None if folder is None else read_status(job.folder(folder)).get("status")
 
 
 def queue(jobs: Sequence[Job], statuses: Sequence[str | None]) -> list[int]:

@@ -5,9 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rich import box
-from rich.table import Table
-
 from swgpar.log import console, progress_bar
 from swgpar.results.number_tables import Labels, number_tables
 from swgpar.results.page import number
@@ -94,11 +91,3 @@ def print_results(results: Sequence[JobResult], comparisons: Sequence[CaseCompar
 
 def _cell(outcome: Outcome, value: float | None) -> str:
     return number(value) if outcome.status == "finished" else "failed"
-
-
-def folded_table(*texts: str) -> Table:
-    """A table whose first columns are texts."""
-    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    for text in texts:
-        table.add_column(text, overflow="fold")
-    return table

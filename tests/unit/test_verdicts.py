@@ -24,7 +24,7 @@ from swgpar.drive_results.summary import DriveSummary
 from swgpar.errors import InputError
 from swgpar.input.toml_file import read_toml
 from swgpar.rating.planned_runs import LoadCase, plan_runs, rating_loads
-from swgpar.rating.rate_drive import accuracy_of, without_accuracy
+from swgpar.rating.rate_drive import accuracy_of
 from swgpar.rating.rated_answers import STATIC_PRESSURE
 from swgpar.rating.rows import (
     NO_FLANK_PRESSURE,
@@ -532,7 +532,7 @@ def test_sections_that_exclude_each_other_may_stand_in_one_file() -> None:
 
 def test_an_accuracy_is_for_runs_with_stresses() -> None:
     runs = {run.name: run for run in plan_runs(rated()).runs}
-    refined = {name for name, run in runs.items() if accuracy_of(run, 0.02)}
+    refined = {name for name, run in runs.items() if accuracy_of(run, 0.02) == (0.02, "")}
     assert refined == {"repeated peak torque", "largest torque"}
     springs = {"radial_stiffness": 1e5, "axial_stiffness": 1e5, "tilting_stiffness": 1e4}
     sideways = {"output_bearing": springs | {"radial_force": 10.0}, "frequencies": None}
@@ -541,11 +541,11 @@ def test_an_accuracy_is_for_runs_with_stresses() -> None:
         for run in plan_runs(rated(deviations=None, **sideways)).runs
         if run.name == "largest torque"
     ]
-    assert accuracy_of(carried, 0.02) is None
-    assert "radial force" in without_accuracy(carried, 0.02)
-    assert without_accuracy(carried, None) == ""
-    assert not any(without_accuracy(run, 0.02) for run in runs.values())
-    assert all(accuracy_of(run, None) is None for run in runs.values())
+    chosen, reason = accuracy_of(carried, 0.02)
+    assert chosen is None and "radial force" in reason
+    assert accuracy_of(carried, None) == (None, "")
+    assert not any(reason for _, reason in (accuracy_of(run, 0.02) for run in runs.values()))
+    assert all(accuracy_of(run, None) == (None, "") for run in runs.values())
     with pytest.raises(InputError, match="--accuracy = 0.5 is out of range"):
         swgpar.rate(rated(), "results", accuracy=0.5)
 
