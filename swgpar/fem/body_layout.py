@@ -105,11 +105,6 @@ class BodyLayout:
         """Name of the body, as in the design file."""
         return self.body.name
 
-    @property
-    def teeth_per_period(self) -> int:
-        """Teeth after which the model repeats."""
-        return self.mesh.n_sectors // self.copies
-
     def sector_angle(self, tooth: np.ndarray) -> np.ndarray:
         """Angle (rad) of the sectors of teeth about z, counter-clockwise from +y; any shape."""
         return self.mesh.sector_angle(tooth)
@@ -120,7 +115,8 @@ class BodyLayout:
 
     def sector_of_tooth(self, tooth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Index in the chain of any tooth (-1 where it is not modelled) and its flag (uint8)."""
-        periods, rest = np.divmod(np.asarray(tooth) - self.first_tooth, self.teeth_per_period)
+        after = self.mesh.n_sectors // self.copies  # so many teeth the model repeats
+        periods, rest = np.divmod(np.asarray(tooth) - self.first_tooth, after)
         return np.where(rest < self.count, rest, -1), sixths_of_turn(self.copies, periods)
 
     def with_inner_nodes(self, sectors: np.ndarray, field: np.ndarray) -> np.ndarray:

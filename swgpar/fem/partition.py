@@ -74,13 +74,6 @@ class Partition:
         """Ranks (n,) that own the sectors of the indices (n,) in the chain."""
         return np.searchsorted(self._first[body], index, side="right") - 1
 
-    def _into_chain(self, body: str, index: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Indices in 0 .. count - 1 of a closed chain, and the flags of the sectors."""
-        b = self.layouts[body]
-        index = np.asarray(index)
-        periods, rest = np.divmod(index, b.count)
-        return rest, sixths_of_turn(b.copies, periods)
-
     def node_numbers(
         self, body: str, index: np.ndarray, nodes: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
@@ -100,7 +93,8 @@ class Partition:
         end = np.zeros(k.shape, dtype=bool)
         sixths = np.zeros(k.shape, dtype=np.uint8)
         if b.closed:
-            k, sixths = self._into_chain(body, k)
+            periods, k = np.divmod(k, b.count)
+            sixths = sixths_of_turn(b.copies, periods)
         else:
             end = k == b.count
             k = np.where(end, b.count - 1, k)

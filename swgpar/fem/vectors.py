@@ -8,9 +8,6 @@ from swgpar.fem.partition import Partition
 from swgpar.geometry.rotation import to_images
 from swgpar.petsc import PETSc
 
-DENSE = 4
-"""Span of node numbers over their count up to which they are counted instead of sorted."""
-
 
 def create_vector(partition: Partition) -> PETSc.Vec:
     """Distributed vector of three unknowns per node, multipliers last."""
@@ -59,17 +56,6 @@ class Exchange:
         return self.target.array_r.reshape(-1, 3).copy()
 
 
-def _unique(number: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Sorted numbers without repetition, and the place of each of `number` among them, as
-    `numpy.unique`; those of neighbouring sectors, which are close together, without sorting."""
-    low, span = (int(number.min()), int(np.ptp(number)) + 1) if number.size else (0, 1)
-    if span > DENSE * number.size:
-        return np.unique(number, return_inverse=True)
-    present = np.zeros(span, dtype=bool)
-    present[number - low] = True
-    return np.flatnonzero(present) + low, (np.cumsum(present) - 1)[number - low]
-
-
 def read_field(
     partition: Partition, body: str, sectors: np.ndarray, vector: PETSc.Vec
 ) -> np.ndarray:
@@ -77,7 +63,7 @@ def read_field(
     number, sixths = partition.node_numbers(
         body, sectors, np.arange(len(partition.layouts[body].mesh.coords))
     )
-    needed, position = _unique(number)
+    needed, position = np.unique(number, return_inverse=True)
     absent = int(len(needed) > 0 and needed[0] == -1)
     exchange = Exchange(partition, needed[absent:].astype(np.int32))
     values = exchange(vector)

@@ -11,21 +11,15 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans
-from swgpar.constraints.supports import (
-    RING_COUPLING,
-    SPLINE_COUPLING,
-    FixedRing,
-    FloatingRing,
-    Supports,
-)
+from swgpar.constraints.supports import RING_COUPLING, FixedRing, FloatingRing, Supports
+from swgpar.constraints.wave_inertia import WaveInertia
 from swgpar.contact.contact import largest
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact, RigidSurface, cam_pose, pin_pose
 from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import ContactSection, Solver
-from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.body import FLEXIBLE_SPLINE, OUTER_RACE, RING_GEAR
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.condensed_parts import relative_end_rotation
 from swgpar.fem.elements import BodyElements, Elements
@@ -35,10 +29,9 @@ from swgpar.fem.stress import body_fields, part_maxima
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
 from swgpar.meshing.drive_geometry import DriveGeometry
-from swgpar.model.bearing_model import build_bearing_contacts, build_race, race_coupling
+from swgpar.model.bearing_model import build_bearing_contacts, build_race
 from swgpar.model.contact_distances import contact_search, foot_reach
-from swgpar.model.couplings import output_springs, ring_guide, spline_attachment
-from swgpar.model.inertia import inertia_terms
+from swgpar.model.couplings import build_supports
 from swgpar.model.layouts import build_gear, build_layout
 from swgpar.model.regions import sector_regions
 from swgpar.model.window_mesh import WindowMesh
@@ -284,64 +277,11 @@ def build_layouts(design: DriveDesign, meshes: Mapping[str, SectorMesh]) -> list
     return layouts
 
 
-def build_supports(design: DriveDesign, partition: Partition, elements: Elements) -> Supports:
-    """Couplings of the spline, of a ring gear that is not clamped and of a bearing; the guide of a
-    rotating ring."""
-    spline = elements.bodies[FLEXIBLE_SPLINE]
-    copies = design.copies
-    # a plane section with deviations is centred by its cam alone: the wall of the cup gives way
-    centred = design.has_cup or (design.drive.model == "plane" and design.deviations is None)
-    rotates, guide = design.kinematics.output_gear != "flexible_spline", None
-    carried = design.output_bearing is not None
-    couplings: list[NodeMeans] = []
-    if design.has_attachment:
-        penalty = design.penalty("flexible_spline")
-        attachment = spline_attachment(
-            partition,
-            spline,
-            design.cup,
-            penalty,
-            images=copies > 1,
-            moves=carried and not rotates,
-        )
-        couplings.append(attachment)
-    else:
-        couplings.append(DistributingCoupling(partition, spline, "bore", copies > 1, centred))
-    if rotates or not design.frame_is_rigid:
-        ring = elements.bodies[design.kinematics.output_gear if rotates else RING_GEAR]
-        ring_coupling = DistributingCoupling(partition, ring, "outer", copies > 1)
-        couplings.append(ring_coupling)
-        if design.frame_is_rigid:
-            ends = design.axial_range(design.kinematics.output_gear)
-            penalty = design.penalty(design.kinematics.output_gear)
-            guide = ring_guide(
-                ring_coupling,
-                ends,
-                copies,
-                penalty,
-                design.frame_growth,
-                follows=carried and copies == 1,
-            )
-    scale = design.modulus_of("flexible_spline") * design.drive.module
-    race = None if design.bearing is None else race_coupling(partition, elements, couplings[0])
-    spline_ratio = None
-    if design.dynamic_spline is not None:  # the flexible spline rotates with the dynamic one
-        spline_ratio = 1.0 if design.kinematics.output_gear == "dynamic_spline" else 0.0
-    output = len(couplings) - 1 if rotates else SPLINE_COUPLING
-    springs = None
-    if design.output_bearing is not None:
-        springs = output_springs(design.output_bearing, couplings[output], copies)
-    return Supports(
-        partition,
-        couplings,
-        output=output,
-        guide=guide,
-        scale=scale,
-        share=1.0 / copies,
-        race=race,
-        spline_ratio=spline_ratio,
-        bearing=springs,
-    )
+def inertia_terms(design: DriveDesign, elements: Elements) -> list[WaveInertia]:
+    """Forces of inertia of the bodies that the wave deforms, at `load.input_speed`."""
+    bodies = [name for name in (FLEXIBLE_SPLINE, OUTER_RACE) if name in elements.bodies]
+    lobes = design.wave_generator.lobes
+    return [WaveInertia(elements.bodies[name], lobes, *design.speeds) for name in bodies]
 
 
 def rigid_contacts(design: DriveDesign) -> RigidContacts:

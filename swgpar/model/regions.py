@@ -166,21 +166,16 @@ def _smooth_region(geometry: DriveGeometry, mesh: SectorMesh, node: int, touched
     near = NEAR * geometry.module
     inside = UNDER_CONTACT if touched else INSIDE
     if mesh.body == "ring_gear":
-        outer = geometry.gears["ring_gear"].outer_radius
+        gear = geometry.gears["ring_gear"]
         if radius < root - near:
             return TIP if radius < mesh.profile.r_tip_circle + near else inside
-        return (
-            OUTER
-            if radius > outer - near
-            else RIM
-            if radius > root + 0.5 * geometry.gears["ring_gear"].rim
-            else TOOTH_ROOT
-        )
+        of_rim = RIM if radius > root + 0.5 * gear.rim else TOOTH_ROOT
+        return OUTER if radius > gear.outer_radius - near else of_rim
+    at_end = abs(z) > END * geometry.face_width and not mesh.plane
     if radius < root + near:
-        return TOOTH_END if abs(z) > END * geometry.face_width and not mesh.plane else TOOTH_ROOT
+        return TOOTH_END if at_end else TOOTH_ROOT
     if radius > mesh.profile.r_tip_circle - near:
         return TIP
-    at_end = abs(z) > END * geometry.face_width and not mesh.plane
     return TOOTH_END if at_end and not touched else inside
 
 
