@@ -48,19 +48,8 @@ if TYPE_CHECKING:
     from swgpar.systems.gear_train import TrainResult
 
 _MODULES = {
-    "new": "api",
-    "new_train": "api",
-    "export": "api",
-    "load_design": "api",
-    "load_mesh": "api",
-    "run": "api",
-    "Session": "api",
-    "open_result": "api",
-    "rate": "api",
     "study": "studies.study",
     "optimise": "optimisation.run_optimisation",
-    "check": "api",
-    "mesh": "api",
     "DriveDesign": "design.drive_design",
     "MeshRecipe": "meshing.recipe",
     "DriveMesh": "meshing.drive_mesh",
@@ -76,7 +65,7 @@ _MODULES = {
     "TimeLimitError": "errors",
     "OutOfMemoryError": "errors",
 }
-"""Public name -> module that it is imported from."""
+"""Public name -> module that it is imported from, where that is not `api`."""
 
 __all__ = [
     "ConvergenceError",
@@ -111,12 +100,12 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _MODULES:
+    if name not in __all__:
         raise AttributeError(f"module 'swgpar' has no attribute {name!r}")
-    value = getattr(import_module(f"swgpar.{_MODULES[name]}"), name)
+    value = getattr(import_module(f"swgpar.{_MODULES.get(name, 'api')}"), name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_MODULES})
+    return sorted({*globals(), *__all__})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -95,15 +95,6 @@ class GearTrains(System[TrainDesign, TrainResult]):
 
     def describe_names(self, known: Mapping[str, Quantity]) -> str:
         return ", ".join(dict.fromkeys(name.partition("[")[0] for name in known))
-
-    def check_published(self, design: TrainDesign, names: Iterable[str]) -> None:
-        """A run of a gear train leaves nothing out."""
-
-    def increments(self, design: TrainDesign) -> int:
-        return 1
-
-    def dimensions(self, design: TrainDesign) -> int:
-        return 0
 
     def identity(self, design: TrainDesign, recipe: MeshRecipe | None) -> dict[str, Any]:
         content = design.model_dump(exclude={"output": True, **dict.fromkeys(SECTIONS, True)})

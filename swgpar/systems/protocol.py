@@ -138,17 +138,16 @@ class System(ABC, Generic[D, R]):
     def describe_names(self, known: Mapping[str, Quantity]) -> str:
         """The names of quantities that are allowed, in words."""
 
-    @abstractmethod
     def check_published(self, design: D, names: Iterable[str]) -> None:
         """Refuse published quantities that a run of this design leaves out, with an InputError."""
 
-    @abstractmethod
     def increments(self, design: D) -> int:
         """Increments of the whole run."""
+        return 1
 
-    @abstractmethod
     def dimensions(self, design: D) -> int:
         """Dimensions of the mesh: 2 or 3; 0 without one."""
+        return 0
 
     @abstractmethod
     def identity(self, design: D, recipe: MeshRecipe | None) -> dict[str, Any]:
