@@ -147,6 +147,12 @@ class DriveData(DriveTables):
             kinematics.shown_ratio,
         )
 
+    def cam_angle(self, number: int) -> float:
+        """Angle (rad) of the cam in the fields of an increment by its number, from 1; 0 where the
+        wave generator is fixed."""
+        angle = float(np.radians(self.history["wg_angle_deg"][number - 1]))
+        return self.summary.design.kinematics.in_frame_of_result(angle, angle)
+
     def mesh(self, body: GearName = SPLINE) -> BodyMesh:
         """Undeformed mesh of the modelled part of a body.
 
@@ -215,8 +221,7 @@ class DriveData(DriveTables):
         """
         pressure = self.field("pressure", increment)
         grids = self._source(SPLINE).flanks(SPLINE)
-        sizes, design = self.summary.bodies[SPLINE], self.summary.design
-        teeth = sizes.elements // (sizes.elements_whole // design.drive.teeth_fs)
+        teeth = self.summary.design.drive.teeth_fs // self.summary.copies
         return FlankPressure(grids.s, grids.z, pressure.reshape(teeth, -1)[:, grids.nodes])
 
     def grid(
@@ -249,12 +254,8 @@ class DriveData(DriveTables):
         cells = np.concatenate(
             [cells + start for start, (_, cells, _) in zip(first, parts, strict=False)]
         )
-        kinds = np.full(len(cells), pyvista.CellType.HEXAHEDRON)
-        grid = pyvista.UnstructuredGrid(
-            np.hstack([np.full((len(cells), 1), 8), cells]).ravel(),
-            kinds,
-            np.concatenate([part[0] for part in parts]),
-        )
+        points = np.concatenate([part[0] for part in parts])
+        grid = pyvista.UnstructuredGrid({pyvista.CellType.HEXAHEDRON: cells}, points)
         known = {name: values for *_, fields in parts for name, values in fields.items()}
         for name, example in known.items():
             values = [

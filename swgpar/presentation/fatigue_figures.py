@@ -61,10 +61,7 @@ def sector_picture(sector: SectorFields, plane: bool) -> np.ndarray:
     its axis."""
     import pyvista
 
-    cells = np.hstack([np.full((len(sector.cells), 1), 8), sector.cells]).ravel()
-    grid = pyvista.UnstructuredGrid(
-        cells, np.full(len(sector.cells), pyvista.CellType.HEXAHEDRON), sector.points
-    )
+    grid = pyvista.UnstructuredGrid({pyvista.CellType.HEXAHEDRON: sector.cells}, sector.points)
     grid.point_data["safety"] = np.clip(sector.fields["safety_goodman"], *SHOWN)
     plotter = off_screen_plotter(1200, 900)
     surface = grid.extract_surface(algorithm="dataset_surface")

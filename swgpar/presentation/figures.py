@@ -280,7 +280,7 @@ class DriveFigures(FigureSet):
         pair in contact the teeth at the major axis are shown. increment : as in `DriveData.field`
         """
         row, pairs = self._row(increment), self._result.pairs
-        cam_angle = angle = self._cam_angle(row)
+        cam_angle = angle = self._result.cam_angle(row + 1)
         z = 0.0
         here = np.flatnonzero(pairs["increment"] == row + 1) if pairs else ()
         if len(here):
@@ -304,7 +304,7 @@ class DriveFigures(FigureSet):
                 f'drive.model = "{self._geometry.model}" has no cup: allowed with "cup"'
             )
         when, lobes = self._when(increment), self._kinematics.lobes
-        angle = self._cam_angle(self._row(increment))
+        angle = self._result.cam_angle(self._row(increment) + 1)
         grids = self._grids(increment)
         return draw_cup_section(grids, self._geometry, lobes, angle, when)
 
@@ -315,12 +315,11 @@ class DriveFigures(FigureSet):
         increment : as in `DriveData.field`
         """
         result, row = self._result, self._row(increment)
-        sizes = result.summary.bodies[SPLINE]
         return draw_circumference(
             self._geometry,
             result.mesh(SPLINE).points,
             {name: result.field(name, increment, SPLINE) for name in FIELDS},
-            sizes.elements // (sizes.elements_whole // self._kinematics.teeth_fs),
+            self._kinematics.teeth_fs // result.summary.copies,
             float(np.radians(result.history["wg_angle_deg"][row])),
             self._when(increment),
         )
@@ -359,12 +358,6 @@ class DriveFigures(FigureSet):
     def _row(self, increment: int) -> int:
         """Row of the history, from 0, of an increment with fields."""
         return chosen_increment(self._result.field_increments, increment) - 1
-
-    def _cam_angle(self, row: int) -> float:
-        """Angle (rad) of the cam in the fields of a row of the history; 0 where the wave generator
-        is fixed."""
-        angle = float(np.radians(self._result.history["wg_angle_deg"][row]))
-        return self._kinematics.in_frame_of_result(angle, angle)
 
     def _when(self, increment: int) -> str:
         row = self._row(increment)

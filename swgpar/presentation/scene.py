@@ -122,7 +122,7 @@ def scene(result: DriveData) -> Scene | None:
         "increments": [
             {
                 "label": _label(result, number),
-                "turn": _cam_angle(result, number),
+                "turn": result.cam_angle(number),
                 "bodies": [
                     *(_fields(source, body, number, fields[body]) for body in meshes),
                     *_solid_points(result, number, list(solids)),
@@ -145,9 +145,9 @@ def scene(result: DriveData) -> Scene | None:
 
 def _sector_mesh(result: DriveData, source: FieldSource, body: str) -> StoredSector:
     points, cells = source.mesh(body)
-    drive, sizes = result.summary.design.drive, result.summary.bodies[body]
+    drive = result.summary.design.drive
     teeth = drive.teeth_rg if body in ("ring_gear", "housing") else drive.teeth_fs
-    sectors = sizes.elements * teeth // sizes.elements_whole
+    sectors = teeth // result.summary.copies
     return StoredSector(points[: len(points) // sectors], cells[: len(cells) // sectors], sectors)
 
 
@@ -212,17 +212,11 @@ def _solid_points(result: DriveData, number: int, names: list[str]) -> list[dict
     """Places of the rigid bodies; null while the cam is not yet in place."""
     if result.history["step"][number - 1] < Stage.ENGAGE:
         return [None] * len(names)
-    solids, angle = _solids(result, number), _cam_angle(result, number)
+    solids, angle = _solids(result, number), result.cam_angle(number)
     return [
         {"points": _text(turned(solids[name], angle), "<f4")} if name in solids else None
         for name in names
     ]
-
-
-def _cam_angle(result: DriveData, number: int) -> float:
-    """Angle (rad) of the cam in the fields of an increment, from 1."""
-    angle = float(np.radians(result.history["wg_angle_deg"][number - 1]))
-    return result.summary.design.kinematics.in_frame_of_result(angle, angle)
 
 
 def _label(result: DriveData, number: int) -> str:
