@@ -29,8 +29,8 @@ OF_DESIGN: Mapping[str, Callable[[DriveDesign, Path], list[Path]]] = {
 }
 """Formats of a design: its geometry."""
 
-ON_MESH: Mapping[str, Callable[..., list[Path]]] = {"inp": write_calculix}
-"""Formats of a design on a mesh of a `recipe`: a job of another program."""
+ON_MESH = "inp"
+"""Format of a design on a mesh: a job of another program."""
 
 OF_RESULT: Mapping[str, Callable[[DriveData, Path], list[Path]]] = {
     "vtkhdf": write_vtkhdf,
@@ -62,21 +62,22 @@ def export_files(
     Raises OutputError where they are there otherwise, InputError for a format that the source does
     not have, one whose package or mesh is missing, or a mesh that no format has.
     """
-    writers: dict[str, Callable[..., list[Path]]] = {**OF_RESULT}
-    noun = "a result"
+    writers: dict[str, Callable[..., list[Path]]]
     if isinstance(source, DriveDesign):
-        noun = "a design"
-        on_mesh = {name: partial(write, recipe=recipe) for name, write in ON_MESH.items()}
-        writers = {**OF_DESIGN, **on_mesh}
+        noun, writers = "a design", {**OF_DESIGN, ON_MESH: partial(write_calculix, recipe=recipe)}
+    else:
+        noun, writers = "a result", {**OF_RESULT}
+        writers["fmu"] = partial(write_fmu, periodic=ripple, idle=idle)
+        writers["lookup"] = partial(write_look_up, idle=idle)
     for name in formats:
         if name not in writers:
             raise InputError(
                 f'format = "{name}" is not available for {noun}: allowed {", ".join(writers)}'
             )
-        if name in ON_MESH and recipe is None:
+        if name == ON_MESH and recipe is None:
             raise InputError(f'format = "{name}" needs a mesh recipe: --mesh, or mesh= in Python')
-    if recipe is not None and not set(formats) & set(ON_MESH):
-        raise InputError(f"a mesh recipe is of no use without the format {' or '.join(ON_MESH)}")
+    if recipe is not None and ON_MESH not in formats:
+        raise InputError(f"a mesh recipe is of no use without the format {ON_MESH}")
     given = {"ripple": ripple, "idle": idle}
     for option, allowed in (("ripple", ("fmu",)), ("idle", ("fmu", "lookup"))):
         if given[option] is not None and not set(formats) & set(allowed):
@@ -84,8 +85,6 @@ def export_files(
                 f"--{option} is not available for the format {', '.join(formats)}: allowed with "
                 f"{' and '.join(allowed)}"
             )
-    writers["fmu"] = partial(write_fmu, periodic=ripple, idle=idle)
-    writers["lookup"] = partial(write_look_up, idle=idle)
     with whole_files(folder, overwrite=overwrite) as made:
         paths = [path for name in formats for path in writers[name](source, made)]
     return [folder / path.name for path in paths]
