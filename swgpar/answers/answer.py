@@ -49,6 +49,10 @@ class AnswerKind:
         name, text = (one.replace(word, part) for one in (self.name, self.text))
         return replace(self, name=name, text=text)
 
+    def answer(self, value: float | None, **more: Any) -> Answer:
+        """The answer of this kind with a value. more : further fields"""
+        return Answer(self.name, value, self.unit, self.text, detail=self.detail, **more)
+
 
 @dataclass(frozen=True)
 class Answer:
@@ -172,17 +176,13 @@ class AnswerGroup:
             error = self._at(kind.error)
             if value is not None or kind.name in reasons:
                 known = kind.exact or value is None or error is not None
-                yield Answer(
-                    kind.name,
+                yield kind.answer(
                     None if value is None else float(value),
-                    kind.unit,
-                    kind.text,
                     error=error,
                     no_error="" if known else NO_ESTIMATE,
                     place=self._at(kind.place) or "",
                     remark=reasons[kind.name] if value is None else self._at(kind.remark) or "",
                     limit=self._at(kind.limit),
-                    detail=kind.detail,
                 )
 
     def reasons(self) -> Mapping[str, str]:

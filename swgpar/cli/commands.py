@@ -69,10 +69,8 @@ def _optimise(arguments: argparse.Namespace) -> None:
 
 
 def _new_train(arguments: argparse.Namespace) -> None:
-    usual = {"layout": "ring_fixed", "model": "cup", "shape": "cup", "lobes": 2}
-    usual |= dict.fromkeys(("bore", "profile", "cam"))
-    for name, value in usual.items():
-        if getattr(arguments, name) != value:
+    for name in ("layout", "model", "shape", "lobes", "bore", "profile", "cam"):
+        if getattr(arguments, name) != arguments.parser.get_default(name):
             raise InputError(f"--{name} has no meaning for a gear train: leave it out")
     given = _given(api.new_train, arguments)
     api.new_train(arguments.design, **given)

@@ -86,14 +86,7 @@ class NaturalFrequencies(AnswerGroup):
 
     def answers(self) -> Iterator[Answer]:
         for kind, mode in zip(self._numbered(len(self.modes)), self.modes, strict=True):
-            yield Answer(
-                kind.name,
-                mode.frequency,
-                kind.unit,
-                kind.text,
-                no_error=NO_ESTIMATE,
-                remark=mode.text,
-            )
+            yield kind.answer(mode.frequency, no_error=NO_ESTIMATE, remark=mode.text)
 
 
 class LumpedMass:

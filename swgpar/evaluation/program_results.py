@@ -104,7 +104,7 @@ class ProgramStages(AnswerGroup):
             for kind in self.kinds_with("STAGE", (stage,)):
                 value = float(values[kind.name.rpartition(".")[2]])
                 no_error = "" if kind.exact else NO_ESTIMATE
-                yield Answer(kind.name, value, kind.unit, kind.text, no_error=no_error)
+                yield kind.answer(value, no_error=no_error)
 
 
 def stage_ends(rows: Sequence[PointRow]) -> ProgramStages:

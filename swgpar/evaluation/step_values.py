@@ -52,7 +52,7 @@ class StepValues(AnswerGroup):
     def answers(self) -> Iterator[Answer]:
         for kind in declared_answers(StepValues):
             if kind.name in self.values:
-                yield Answer(kind.name, self.values[kind.name], kind.unit, kind.text, detail=True)
+                yield kind.answer(self.values[kind.name])
 
 
 def step_values(rows: Sequence[Row]) -> StepValues:

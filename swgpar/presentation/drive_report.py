@@ -53,8 +53,8 @@ def drive_report(result: DriveResult) -> bytes:
         look=[check.name for check in judged if check.good is False],
         strong=all(check.good for check in judged if check.of_strength),
         drawings=draw_drive(design),
-        groups=_groups(summary),
-        details=list(_details(summary)),
+        groups=list(_groups(summary, details=False)),
+        details=list(_groups(summary, details=True)),
         not_asked=[f"{kind.TITLE} ({kind.ASKED_BY})" for kind in summary.not_asked_for()],
         checks=judged,
         scene=view,
@@ -72,24 +72,16 @@ def _description(summary: DriveSummary) -> str:
     )
 
 
-def _groups(summary: DriveSummary) -> list[Group]:
-    """The answers by evaluation, without details."""
-    groups = []
-    for evaluation in summary.groups():
-        shown = [answer for answer in evaluation.answers() if not answer.detail]
-        if shown:
-            groups.append(Group(evaluation.TITLE, answer_table(shown), list(evaluation.remarks())))
-    return groups
-
-
-def _details(summary: DriveSummary) -> Iterator[Group]:
-    """Further answers by evaluation; those of a region of a body by region."""
+def _groups(summary: DriveSummary, *, details: bool) -> Iterator[Group]:
+    """The answers without details by evaluation, with its remarks; or the details alone, those of a
+    region of a body by region."""
     for evaluation in summary.groups():
         parts: dict[str, list[Answer]] = {}
         for answer in evaluation.answers():
-            if answer.detail:
+            if answer.detail == details:
                 _, inside, region = answer.name.partition(" in ")
                 title = f"{evaluation.TITLE}: {region}" if inside else evaluation.TITLE
                 parts.setdefault(title, []).append(answer)
+        remarks = [] if details else list(evaluation.remarks())
         for title, answers in parts.items():
-            yield Group(title, answer_table(answers), [])
+            yield Group(title, answer_table(answers), remarks)

@@ -65,11 +65,6 @@ class StoredSector:
     cells: np.ndarray
     sectors: int
 
-    @property
-    def surface(self) -> np.ndarray:
-        """Triangles (k, 3) of the surface of the first sector."""
-        return sector_surface(self.points, self.cells)
-
 
 def sector_surface(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """Triangles (n, 3) of the surface of one sector, without the sides where it meets its
@@ -157,7 +152,7 @@ def _body(name: str, mesh: StoredSector, copies: int) -> dict[str, Any]:
         "sectors": mesh.sectors,
         "copies": copies,
         "points": _text(mesh.points, "<f4"),
-        "faces": _text(mesh.surface, "<u4"),
+        "faces": _text(sector_surface(mesh.points, mesh.cells), "<u4"),
         "cells": _text(mesh.cells, "<u4"),
     }
 

@@ -89,14 +89,8 @@ def spline_life(summary: DriveSummary) -> Answer | None:
     if summary.fatigue is None:
         return None
     hours = summary.fatigue.life.life_hours
-    answer = Answer(
-        name=LIFE_HOURS.name,
-        value=math.inf if hours is None else hours,
-        unit=LIFE_HOURS.unit,
-        text=LIFE_HOURS.text,
-        place=summary.fatigue.least["goodman"].place,
-    )
-    return with_error(answer, None)
+    place = summary.fatigue.least["goodman"].place
+    return with_error(LIFE_HOURS.answer(math.inf if hours is None else hours, place=place), None)
 
 
 def static_safety(summary: DriveSummary) -> Answer | None:
