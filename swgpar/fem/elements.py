@@ -134,9 +134,9 @@ class BodyElements:
         self.active = active
         self.assembled = self._assembled()
 
-    def condense_teeth(self, condensed: np.ndarray) -> None:
-        """Let the teeth of the sectors (n_sectors,) bool be one element each, and no others."""
-        self.whole_teeth = ~condensed
+    def keep_teeth(self, whole: np.ndarray) -> None:
+        """Let the teeth of all sectors but these (n_sectors,) bool be one element each."""
+        self.whole_teeth = whole
         self.assembled = self._assembled()
 
     def _assembled(self) -> list[AssembledElements]:

@@ -9,8 +9,7 @@ has no rows of the nodes inside of them either; their displacement follows from 
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -18,24 +17,40 @@ from swgpar.fem.body import RING_GEAR
 from swgpar.fem.elements import BodyElements, Elements
 
 
-class SectorsInReach(ABC):
+class SectorsInReach:
     """Which sectors of a closed chain are within reach or near; the same choice on every rank.
 
-    count : sectors of the body in the model
+    body : name of the body;  count : its sectors in the model
+    take : changes the elements of the body, by the choice for the sectors that a rank sees
+    margins : active sectors on each side of those within reach: at least, when the choice is made
+    anew, and at most
 
     Attributes:
     active : (count,) bool
     """
 
-    LEAST: int
-    """Sectors on each side of those within reach that are active, at least."""
-    MARGIN: int
-    """The same when the choice is made anew."""
-    MOST: int
-    """The same, at most."""
-
-    def __init__(self, count: int) -> None:
+    def __init__(
+        self,
+        body: str,
+        count: int,
+        take: Callable[[BodyElements, np.ndarray], None],
+        margins: tuple[int, int, int],
+    ) -> None:
+        self.body, self.margins, self._take = body, margins, take
         self.active = np.ones(count, dtype=bool)
+
+    @classmethod
+    def of_ring(cls, count: int) -> SectorsInReach:
+        """Sectors of the ring gear that are modelled."""
+        return cls(RING_GEAR, count, BodyElements.activate, (2, 3, 5))
+
+    @classmethod
+    def whole_teeth(cls, body: str, count: int) -> SectorsInReach:
+        """Teeth of a body that are not one element; no flank of the others may touch.
+
+        The choice follows from the shape at the search alone: one that repeats has the same teeth.
+        """
+        return cls(body, count, BodyElements.keep_teeth, (1, 1, 1))
 
     def _with_neighbours(self, sectors: np.ndarray, margin: int) -> np.ndarray:
         """Mask (count,) of the sectors (n,) and of `margin` sectors on either side."""
@@ -45,59 +60,23 @@ class SectorsInReach(ABC):
 
     def update(self, within_reach: np.ndarray, elements: Elements) -> bool:
         """Choose by the sectors (n,) within reach; returns whether the elements have changed."""
-        missing = self._with_neighbours(within_reach, self.LEAST) & ~self.active
-        if (
-            not missing.any()
-            and not (self.active & ~self._with_neighbours(within_reach, self.MOST)).any()
-        ):
+        least, anew, most = (self._with_neighbours(within_reach, one) for one in self.margins)
+        if not (least & ~self.active).any() and not (self.active & ~most).any():
             return False
-        self.active = self._with_neighbours(within_reach, self.MARGIN)
-        self._apply(elements)
+        self._choose(anew, elements)
         return True
 
     def resume(self, active: list[int], elements: Elements) -> None:
         """Take a choice as it was made before: the sectors that are active."""
-        self.active = np.isin(np.arange(len(self.active)), active)
-        self._apply(elements)
+        self._choose(np.isin(np.arange(len(self.active)), active), elements)
 
     def chosen(self) -> list[int]:
         """The sectors that are active, for `resume`."""
         return np.flatnonzero(self.active).tolist()
 
-    @abstractmethod
-    def _apply(self, elements: Elements) -> None:
-        """Change the elements."""
-
-    def _seen(self, body: BodyElements) -> np.ndarray:
-        """The choice (n_sectors,) for the sectors of a body that a rank sees."""
-        return self.active[body.sectors % len(self.active)]
-
-
-class RingSectors(SectorsInReach):
-    """Sectors of the ring gear that are modelled."""
-
-    LEAST, MARGIN, MOST = 2, 3, 5
-
-    def _apply(self, elements: Elements) -> None:
-        body = elements.bodies[RING_GEAR]
-        body.activate(self._seen(body))
-
-
-class WholeTeeth(SectorsInReach):
-    """Teeth of a body that are not one element; no flank of the others may touch. `body` : its name
-
-    The choice follows from the shape at the search alone: one that repeats has the same teeth.
-    """
-
-    LEAST, MARGIN, MOST = 1, 1, 1
-
-    def __init__(self, count: int, body: str) -> None:
-        super().__init__(count)
-        self.body = body
-
-    def _apply(self, elements: Elements) -> None:
-        body = elements.bodies[self.body]
-        body.condense_teeth(~self._seen(body))
+    def _choose(self, active: np.ndarray, elements: Elements) -> None:
+        self.active, body = active, elements.bodies[self.body]
+        self._take(body, active[body.sectors % len(active)])
 
 
 class ModelledSectors:
@@ -111,8 +90,8 @@ class ModelledSectors:
     def __init__(
         self,
         elements: Elements,
-        ring_sectors: RingSectors | None = None,
-        whole_teeth: Sequence[WholeTeeth] = (),
+        ring_sectors: SectorsInReach | None = None,
+        whole_teeth: Sequence[SectorsInReach] = (),
     ) -> None:
         self.elements, self.ring_sectors, self.whole_teeth = elements, ring_sectors, whole_teeth
         self.choices: list[SectorsInReach] = [*whole_teeth]

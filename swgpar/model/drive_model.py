@@ -24,7 +24,7 @@ from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.condensed_parts import relative_end_rotation
 from swgpar.fem.elements import BodyElements, Elements
 from swgpar.fem.partition import Partition
-from swgpar.fem.sectors_in_reach import ModelledSectors, RingSectors, WholeTeeth
+from swgpar.fem.sectors_in_reach import ModelledSectors, SectorsInReach
 from swgpar.fem.stress import body_fields, part_maxima
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
@@ -209,7 +209,11 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
     modelled = ModelledSectors(
         elements,
         ring_sectors(design, partition.layouts[RING_GEAR]),
-        [WholeTeeth(layout.count, layout.name) for layout in layouts if layout.tooth is not None],
+        [
+            SectorsInReach.whole_teeth(layout.name, layout.count)
+            for layout in layouts
+            if layout.tooth is not None
+        ],
     )
     problem = DiscreteProblem(
         partition=partition,
@@ -249,11 +253,11 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
     )
 
 
-def ring_sectors(design: DriveDesign, ring: BodyLayout) -> RingSectors | None:
+def ring_sectors(design: DriveDesign, ring: BodyLayout) -> SectorsInReach | None:
     """What chooses the sectors of the ring gear that are modelled; None where all are, also where
     its growth or that of its frame stresses it all round."""
     pressed = any(ring.body.growths) or bool(ring.held)
-    return RingSectors(ring.count) if design.leaves_out_sectors and not pressed else None
+    return SectorsInReach.of_ring(ring.count) if design.leaves_out_sectors and not pressed else None
 
 
 def build_layouts(design: DriveDesign, meshes: Mapping[str, SectorMesh]) -> list[BodyLayout]:

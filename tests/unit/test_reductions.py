@@ -14,7 +14,7 @@ from swgpar.analysis.coarse_start import levels
 from swgpar.errors import InputError
 from swgpar.evaluation.period import continued
 from swgpar.fem.body import RING_GEAR
-from swgpar.fem.sectors_in_reach import RingSectors
+from swgpar.fem.sectors_in_reach import SectorsInReach
 from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.interpolation import interpolation
@@ -147,8 +147,9 @@ class _Elements:
 
 
 def test_far_teeth_follow_the_near_ones_with_hysteresis() -> None:
-    far, elements = RingSectors(61), _Elements(61)
-    least, margin = far.LEAST, far.MARGIN
+    least, margin = 2, 3
+    far = SectorsInReach(RING_GEAR, 61, _Elements.activate, (least, margin, 5))
+    elements = _Elements(61)
 
     def near(*sectors: int) -> bool:
         return far.update(np.array(sectors, dtype=np.int64), elements)
