@@ -35,7 +35,8 @@ def test_strain_by_the_cam_is_that_of_a_thin_ring() -> None:
 
 
 def test_a_rim_that_the_cam_strains_too_much_is_refused() -> None:
-    with pytest.raises(InputError, match=r"flexible_spline.rim = 12 .* allowed up to 11.28 mm, .* of up to 10 %"):
+    refusal = r"flexible_spline.rim = 12 .* allowed up to 11.28 mm, .* of up to 10 %"
+    with pytest.raises(InputError, match=refusal):
         design("flexible_spline.rim=12")
 
 
