@@ -18,6 +18,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 from support.bad_inputs import BadInput, attempt, draw_inputs
+from support.bad_sections import bad_sections
 from support.commands import environment, on_ranks
 from support.paths import DESIGN, RECIPE, REFERENCE
 from support.small_drive import PLANE
@@ -61,21 +62,26 @@ def arguments_of(bad: BadInput, folder: Path, number: int) -> list[str]:
 
 
 def sample(count: int, number: int, folder: Path) -> list[list[str]]:
-    """Commands with so many inputs that are refused; their files are written into folders of this
-    one."""
+    """Commands with so many inputs that are refused, half of them in newer sections; their files
+    are written into folders of this one."""
     commands: list[list[str]] = []
     folder.mkdir(parents=True, exist_ok=True)
 
     def visit(bad: BadInput) -> None:
         here = folder / f"{len(commands):04d}"
         here.mkdir(exist_ok=True)
-        if len(commands) < count and attempt(bad, here).status == "refused":
+        if len(commands) < wanted and attempt(bad, here).status == "refused":
             (here / history.NAME).touch()
             commands.append(arguments_of(bad, here, len(commands)))
 
-    while len(commands) < count:
-        draw_inputs(count, number, folder, visit)
-        number += 1
+    for wanted in (count // 2, count):
+        while len(commands) < wanted:
+            if wanted < count:
+                draw_inputs(count, number, folder, visit)
+            else:
+                for bad in bad_sections(count, number):
+                    visit(bad)
+            number += 1
     return commands
 
 

@@ -318,12 +318,10 @@ def _use_design(folder: Path) -> str:
 
 def _run_train(folder: Path) -> None:
     """Run a train with few samples and steps: it is refused where a result is not finite."""
-    train = swgpar.load_design(folder / "input.toml")
     table = read_toml(folder / "input.toml")
-    model = table["gear_train"]["model"]
-    small = SMALL.get({"ring": "ring_moving_load"}.get(model, model), ())
-    given = tuple(part for part in small if part.partition(".")[0] in table)
-    swgpar.run(swgpar.load_design(table, given) if given else train)
+    model = "ring_moving_load" if "moving_load" in table else table["gear_train"]["model"]
+    small = [part for part in SMALL.get(model, ()) if part.partition(".")[0] in table]
+    swgpar.run(swgpar.load_design(table, small))
 
 
 def _use_recipe(folder: Path) -> str:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from swgpar.gear_trains.drawing import axes
 from swgpar.gear_trains.planetary_parts.campbell import campbell
 from swgpar.gear_trains.result import TrainResult
@@ -71,12 +73,14 @@ def _sun_path(result: TrainResult) -> Figure:
 
 
 def _spectrum(result: TrainResult) -> Figure:
-    table = result.tables["spectrum"]
-    labels = "sun and planet 1 (N)", "ring and planet 1 (N)"
+    """Of the planet with the largest mean load: another one may be without any."""
+    table, share = result.tables["spectrum"], result.summary.quantities["mean_share"]
+    most = 1 + int(np.argmax(share))
+    labels = f"sun and planet {most} (N)", f"ring and planet {most} (N)"
     title = "amplitudes of mesh forces"
     figure, panels = axes(title, "cycles in a revolution of the carrier", *labels)
     for axis, gear in zip(panels, ("sun", "ring"), strict=True):
-        axis.vlines(table["cycles"][1:], 0.0, table[f"{gear}_force_1_N"][1:], lw=0.8)
+        axis.vlines(table["cycles"][1:], 0.0, table[f"{gear}_force_{most}_N"][1:], lw=0.8)
         axis.set_ylim(bottom=0.0)
     return figure
 

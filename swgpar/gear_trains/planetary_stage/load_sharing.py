@@ -48,20 +48,24 @@ class Revolution:
         """Load sharing factors (trains,) of the mean loads over the revolution."""
         return self.share.mean(axis=0).max(axis=1) * self.share.shape[-1]
 
-    def remark_on_back_flanks(self) -> str:
-        """Which planets of the first train touch sun or ring with their back flanks, or nothing."""
+    def remarks(self) -> list[str]:
+        """Which planets of the first train touch with back flanks, or are without load."""
         sentences = []
-        for gear, force in (("sun", self.sun[:, 0]), ("ring", self.ring[:, 0])):
-            part = np.mean(force < 0.0, axis=0)
-            if touching := np.flatnonzero(part).tolist():
-                names = ", ".join(f"{k + 1} ({100.0 * part[k]:.3g} %)" for k in touching)
-                sentences.append(f"{gear} and planet {names}")
-        if not sentences:
-            return ""
-        return (
-            f"back flanks are in contact at a part of the places of the carrier: "
-            f"{'; '.join(sentences)}. Errors or weights are larger than the load takes up there"
-        )
+        for what, touches in (
+            ("back flanks are in contact", lambda force: force < 0.0),
+            ("nothing is in contact", lambda force: force == 0.0),
+        ):
+            places = []
+            for gear, force in (("sun", self.sun[:, 0]), ("ring", self.ring[:, 0])):
+                part = np.mean(touches(force), axis=0)
+                names = [f"{k + 1} ({100.0 * part[k]:.3g} %)" for k in np.flatnonzero(part)]
+                places += [f"{gear} and planet {', '.join(names)}"] if names else []
+            if places:
+                sentences.append(
+                    f"{what} at a part of the places of the carrier: {'; '.join(places)}. Errors "
+                    "or weights are larger than the load takes up there"
+                )
+        return sentences
 
 
 def revolution(design: PlanetaryStageDesign, errors: StageErrors, places: int) -> Revolution:

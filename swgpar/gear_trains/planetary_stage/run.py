@@ -47,7 +47,7 @@ def compute(design: PlanetaryStageDesign, comm: MPI.Comm) -> Computed:
     }
     done, seconds = run_tasks(comm, groups)
     (found,) = done["revolution"]
-    if sentence := found.remark_on_back_flanks():
+    for sentence in found.remarks():
         logger.warning(sentence)
     modes = mode_table(PlanetaryModel(design))
     tables = {"planets": _planets(found), "spectrum": _spectrum(found), "modes": modes}

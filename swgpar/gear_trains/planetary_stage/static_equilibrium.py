@@ -190,19 +190,20 @@ class StaticStage:
         across = np.divide(length - self.clearance, length, out=np.zeros_like(length), where=beyond)
         return beyond * (along + across * (np.eye(2) - along))
 
-    def _energy(self, z: np.ndarray, place: _Place) -> np.ndarray:
-        """Potential energy (trains,), N·m."""
+    def _energy(self, z: np.ndarray, place: _Place) -> tuple[np.ndarray, np.ndarray]:
+        """Potential energy (trains,) and the sum of the sizes of its parts, N·m."""
         meshes, bearing, _ = self._forces(z, place)
-        energy = 0.5 * ((z @ place.springs) * z).sum(axis=1) - z @ place.load
-        energy += 0.5 * (meshes**2 / place.mesh).sum(axis=1)
-        return energy + 0.5 * (bearing**2).sum(axis=(1, 2)) / self.bearing
+        held = 0.5 * ((z @ place.springs) * z).sum(axis=1)
+        held += 0.5 * (meshes**2 / place.mesh).sum(axis=1)
+        held += 0.5 * (bearing**2).sum(axis=(1, 2)) / self.bearing
+        return held - z @ place.load, held + np.abs(z) @ np.abs(place.load)
 
     def _part(self, z: np.ndarray, step: np.ndarray, place: _Place) -> np.ndarray:
-        """Part (trains,) of the step that lowers the energy of each train."""
-        part, before = np.ones(len(z)), self._energy(z, place)
+        """Part (trains,) of the step that lowers the energy of each train, to round-off."""
+        part, (before, size) = np.ones(len(z)), self._energy(z, place)
         for _ in range(MAX_HALVINGS):
-            after = self._energy(z + part[:, None] * step, place)
-            worse = after > before + 1e-13 * np.abs(before)
+            after, _ = self._energy(z + part[:, None] * step, place)
+            worse = after > before + 1e-13 * size
             if not worse.any():
                 break
             part[worse] *= 0.5
