@@ -37,7 +37,7 @@ class KeyControl:
             self.entry.props["data-key"] = field.key
             self.entry.props["aria-description"] = help_text
             self.entry.props["aria-label"] = f"{field.key}, {field.unit}".rstrip(", ")
-            if field.kind == "number" and isinstance(field.value, float) and field.value > 0.0:
+            if _is_number(field) and field.value > 0.0:
                 self.slider = self._make_slider(field.value)
             self.refusal = ui.label().classes("text-negative text-caption").props("role=alert")
         self.show(field, None)
@@ -48,7 +48,7 @@ class KeyControl:
         value = refused[0] if refused is not None else _as_entry(field)
         if self.entry.value != value:
             self.entry.value = value
-        if self.slider is not None and isinstance(field.value, float) and not self._moves:
+        if self.slider is not None and _is_number(field) and not self._moves:
             self.slider.show(field.value)
         self.refusal.text = "" if refused is None else refused[1]
         self.refusal.set_visibility(refused is not None)
@@ -70,7 +70,8 @@ class KeyControl:
 
     def _make_slider(self, value: float) -> Slider:
         high, name = min(SLIDERS * value, self.field.high), f"slider of {self.field.key}"
-        slider = Slider(max(0.0, self.field.low), high, high / STEPS, name, self._slid)
+        step = 1.0 if self.field.kind == "whole number" else high / STEPS
+        slider = Slider(max(0.0, self.field.low), high, step, name, self._slid)
         slider.props["data-slider"] = self.field.key
         return slider
 
@@ -86,6 +87,11 @@ class KeyControl:
     async def _slid(self, value: float, moves: bool) -> None:
         self._moves = moves
         await self._change(self.field, f"{value:.6g}", moves)
+
+
+def _is_number(field: FormField) -> bool:
+    """Whether a key has a number; one that is left out has none."""
+    return field.kind in ("number", "whole number") and field.value is not None
 
 
 def _as_entry(field: FormField) -> Any:

@@ -9,6 +9,7 @@ from functools import partial
 from nicegui import ui
 
 from swgpar.app.answers_panel import AnswersPanel
+from swgpar.app.drawings import drawings_of, show_drawings
 from swgpar.app.fields import FormField, form_fields, is_optional, missing_sections
 from swgpar.app.jobs_panel import JobsPanel
 from swgpar.app.key_control import KeyControl
@@ -27,6 +28,10 @@ JOBS = 1.0
 PLAY = 0.2
 """Seconds between two pictures while the cam turns."""
 
+KEYS = "keys"
+PARTS = {KEYS: "swgpar-shows-keys", "answers and jobs": "swgpar-shows-answers"}
+"""Parts of a narrow window below the section of the teeth, and classes that show them."""
+
 
 class Page:
     """One window. Its parts are drawn again in all windows when the state has changed."""
@@ -34,13 +39,16 @@ class Page:
     def __init__(self, state: AppState) -> None:
         self.state = state
         self.controls: dict[str, KeyControl] = {}
-        with ui.header().classes("items-center gap-4 q-px-md q-py-xs"):
+        with ui.header().classes("items-center gap-4 q-px-md q-py-xs swgpar-header"):
             ui.label("swgpar").classes("text-h6")
             self.variant = ui.select([], label="variant", on_change=self._choose)
             self.beside = ui.select([], label="beside", on_change=self._choose)
             self.new_drive = NewDrive(state)
             self.header()
-        with ui.row().classes("w-full items-start no-wrap-md gap-4 swgpar-columns"):
+        with ui.row().classes("w-full items-start gap-4 swgpar-columns") as self.columns:
+            self.part = ui.toggle(list(PARTS), value=KEYS, on_change=self._choose_part)
+            self.part.classes("swgpar-parts").props("spread no-caps dense")
+            self._choose_part()
             with _region("swgpar-form", "keys of the design"):
                 self.form()
             with _region("swgpar-section", "section of the teeth"):
@@ -53,6 +61,10 @@ class Page:
         ui.timer(PLAY, self.section.turn)
         state.windows.append(self)
         ui.context.client.on_delete(lambda: state.windows.remove(self))
+
+    def _choose_part(self) -> None:
+        """Show the keys or the answers, where the window has no room for both."""
+        self.columns.classes(remove=" ".join(PARTS.values()), add=PARTS[self.part.value])
 
     # -- header ------------------------------------------------------------------------------------
 
@@ -147,6 +159,10 @@ class Page:
         self.controls.clear()
         for name, fields in sections.items():
             with ui.expansion(f"[{name}]", value=name == "drive").classes("w-full"):
+                if drawings := drawings_of(design, name):
+                    show = partial(show_drawings, name, drawings)
+                    button = ui.button("drawing", on_click=show).props("flat dense no-caps")
+                    button.props["aria-label"] = f"drawing of [{name}]"
                 for field in fields:
                     self.controls[field.key] = KeyControl(field, self.state.set)
                 if is_optional(design, name):
@@ -191,8 +207,9 @@ class Page:
         self.answers.verdict.draw()
 
     def draw_logs(self) -> None:
-        """Draw what jobs that run have printed."""
+        """Draw what jobs that run have printed and written."""
         self.jobs.draw_logs()
+        self.answers.verdict.look()
 
 
 def _region(classes: str, name: str) -> ui.column:

@@ -10,6 +10,7 @@ from nicegui import app, ui
 
 from swgpar.api.designs import new
 from swgpar.app.access import TokenGate
+from swgpar.app.drawings import ADDRESS, FOLDER
 from swgpar.app.jobs import JobQueue
 from swgpar.app.page import Page
 from swgpar.app.plane_state import PlaneWorker
@@ -81,6 +82,7 @@ def serve(source: Path, port: int | None = None, *, show: bool = True) -> None:
     results = workspace.folder / RESULTS
     results.mkdir(exist_ok=True)
     app.add_static_files(f"/{RESULTS}", results)
+    app.add_static_files(ADDRESS, FOLDER)
     token = secrets.token_urlsafe(24)
     port = free_port() if port is None else require_port(port)
     app.add_middleware(TokenGate, token=token, port=port)

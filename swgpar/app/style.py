@@ -18,6 +18,7 @@ STYLE = """
 }
 .swgpar-queue { max-height: 34vh; overflow-y: auto; flex-wrap: nowrap }
 .swgpar-columns { flex-wrap: nowrap }
+.swgpar-parts { display: none }
 .swgpar-form { width: 330px; max-height: calc(100vh - 80px); overflow-y: auto; flex: none }
 .swgpar-section { flex: 1 1 400px; min-width: 0 }
 .swgpar-plot { height: calc(100vh - 190px); min-height: 320px }
@@ -34,14 +35,19 @@ STYLE = """
 .swgpar-angle { width: 3em; text-align: right }
 .swgpar-view { border: 0 }
 .swgpar-search { width: min(90vw, 900px); max-width: none }
+.swgpar-drawings { width: min(90vw, 1000px); max-width: none }
+.swgpar-drawings img { background: white }
 .swgpar-text { max-height: 60vh; overflow: auto; user-select: all }
 .swgpar-log { white-space: pre-wrap; font-family: monospace; font-size: 11px }
 @media (max-width: 1000px) {
   .swgpar-columns { flex-wrap: wrap }
   .swgpar-form, .swgpar-answers, .swgpar-section { width: 100%; max-height: none; flex: 1 1 100% }
-  .swgpar-plot { height: 60vh }
-  .swgpar-half { height: 40vh }
-  .swgpar-section { order: -1 }
+  .swgpar-header { gap: 2px 8px }
+  .swgpar-plot { height: 45vh }
+  .swgpar-half { height: 35vh }
+  .swgpar-section { order: -2 }
+  .swgpar-parts { display: flex; order: -1; width: 100% }
+  .swgpar-shows-keys > .swgpar-answers, .swgpar-shows-answers > .swgpar-form { display: none }
 }
 """
 """Texts have a contrast of 4.5 and more, on white and on black. Of important rules

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-from pathlib import Path
-
 from nicegui import ui
 
 from swgpar.answers.verdict import Judgement
@@ -18,6 +15,7 @@ from swgpar.errors import SwgparError
 from swgpar.input.differences import Difference, differences
 from swgpar.input.toml_file import read_toml
 from swgpar.presentation.answer_text import plus_minus, value_text
+from swgpar.rating import sheet
 from swgpar.rating.sheet_differences import RowDifference, sheet_differences
 from swgpar.rating.stored_sheet import StoredRow, StoredSheet, read_sheet
 from swgpar.results.quantity import with_unit
@@ -31,10 +29,11 @@ COLOURS = {
 
 
 class VerdictPanel:
-    """The sheet of the last rating of the variant that is shown."""
+    """The sheet of the last rating of the variant that is shown, also of one that still runs."""
 
     def __init__(self, state: AppState) -> None:
         self.state = state
+        self._seen = 0  # when the sheet that is shown was written
         self._remarks: tuple[DriveDesign, list[str]] | None = None
         self.remarks()
         heading("rating sheet")
@@ -61,18 +60,23 @@ class VerdictPanel:
     def verdict(self) -> None:
         """The sheet, and the keys that have changed since then."""
         job = self._last(self.state.variant.name)
-        sheet = self._sheet(job)
-        if job is None or sheet is None:
+        known = self._sheet(job)
+        if job is None or known is None:
             can_rate = self.state.variant.design.rating is not None
             text = "not rated yet: press rate" if can_rate else "add [rating], then rate"
             say(self.headline, "")
             ui.label(text).classes("text-caption")
             return
-        say(self.headline, sheet.sentence or f"{sheet.headline}: {sheet.title}")
-        self.headline.classes(replace=f"text-{COLOURS[sheet.headline]} text-bold")
+        self._seen = self._written(job)
+        said = known.sentence or f"{known.headline}: {known.title}"
+        say(
+            self.headline,
+            said if job.state == JobState.FINISHED else f"{job.state}, so far: {said}",
+        )
+        self.headline.classes(replace=f"text-{COLOURS[known.headline]} text-bold")
         ui.label("bars: share of the limit that is used").classes("text-caption")
-        others = [row for row in sheet.rows if row.limit is None]
-        for row in sheet.rows:
+        others = [row for row in known.rows if row.limit is None]
+        for row in known.rows:
             if row.limit is not None:
                 _gauge(row)
         with ui.expansion(f"{len(others)} rows without a limit").classes("w-full"):
@@ -102,17 +106,36 @@ class VerdictPanel:
         table(["answer", *names, "change"], rows, "answers that differ").classes("swgpar-since")
         ui.label("± is the sum of both errors").classes("text-caption")
 
+    def look(self) -> None:
+        """Draw a sheet that has been written since."""
+        job = self._last(self.state.variant.name)
+        if job is not None and self._written(job) != self._seen:
+            self.draw()
+
     def _last(self, variant: str, before: int = 0) -> AppJob | None:
-        """The last rating of a variant that has ended, or one before it."""
+        """The last rating of a variant that has written a sheet, or one before it."""
         jobs = [
             job
             for job in self.state.queue.jobs
-            if job.command == "rate" and job.variant == variant and job.state == JobState.FINISHED
+            if job.command == "rate" and job.variant == variant and self._written(job)
         ]
         return jobs[-1 - before] if len(jobs) > before else None
 
+    def _written(self, job: AppJob) -> int:
+        """When the sheet of a rating was written, ns; 0 where it is not."""
+        try:
+            return (self.state.queue.folder / job.out / sheet.JSON).stat().st_mtime_ns
+        except OSError:
+            return 0
+
     def _sheet(self, job: AppJob | None) -> StoredSheet | None:
-        return None if job is None else _read(self.state.queue.folder / job.out)
+        """The sheet of a rating; None where it cannot be read."""
+        if job is None:
+            return None
+        try:
+            return read_sheet(self.state.queue.folder / job.out)
+        except SwgparError:
+            return None
 
     def _changed_keys(self, job: AppJob) -> list[Difference]:
         """Keys that have changed since a job."""
@@ -121,15 +144,6 @@ class VerdictPanel:
             return differences(drive_of(table, {}), self.state.variant.design)
         except SwgparError:
             return []
-
-
-@lru_cache(maxsize=16)
-def _read(folder: Path) -> StoredSheet | None:
-    """The sheet of a rating that has ended; None where it cannot be read."""
-    try:
-        return read_sheet(folder)
-    except SwgparError:
-        return None
 
 
 def _gauge(row: StoredRow) -> None:

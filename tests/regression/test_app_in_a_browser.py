@@ -185,6 +185,24 @@ def compare_variants(page: sync_api.Page, folder: Path) -> None:
     expect(changes).to_contain_text("drive.addendum_coef")
 
 
+def look_at_a_narrow_window(page: sync_api.Page) -> None:
+    """The answers are not behind the keys; a section has its drawing."""
+    expect = sync_api.expect
+    page.get_by_role("button", name="drawing of [drive]", exact=True).click()
+    drawing = page.get_by_role("img", name="keys of [drive]: drive teeth", exact=True)
+    expect(drawing).to_be_visible()
+    assert drawing.evaluate("one => one.decode().then(() => one.naturalWidth)") > 500
+    press(page, "close")
+    page.set_viewport_size({"width": 400, "height": 850})
+    keys, rate = page.locator(".swgpar-form"), page.get_by_role("button", name="rate", exact=True)
+    expect(keys).to_be_visible()
+    expect(rate).not_to_be_visible()
+    press(page, "answers and jobs")
+    expect(rate).to_be_visible()
+    expect(keys).not_to_be_visible()
+    page.set_viewport_size({"width": 1300, "height": 850})
+
+
 def look_at_jobs(page: sync_api.Page, folder: Path) -> None:
     """The first one ends and its view opens; another one is cancelled; files are exported."""
     expect = sync_api.expect
@@ -225,6 +243,7 @@ def test_a_session_with_a_killed_server(
     served = opened(page, folder, servers)
     sync_api.expect(clearance).to_have_text(changed)
     compare_variants(page, folder)
+    look_at_a_narrow_window(page)
     look_at_jobs(page, folder)
     assert undressed(page) == []
     assert not alerts

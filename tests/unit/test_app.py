@@ -11,7 +11,7 @@ import time
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -20,6 +20,7 @@ import swgpar
 from support.paths import DESIGN, DRIVERS, RECIPE
 from swgpar.answers.verdict import Judgement
 from swgpar.app.access import COOKIE, TokenGate
+from swgpar.app.drawings import DRAWINGS, FOLDER, drawings_of
 from swgpar.app.fields import FormField, form_fields, is_optional, missing_sections
 from swgpar.app.flank_gaps import NEAR, flank_gaps
 from swgpar.app.jobs import AppJob, JobQueue, JobState, shell_environment
@@ -36,6 +37,7 @@ from swgpar.input.differences import differences
 from swgpar.optimisation.tried_designs import read_tried
 from swgpar.presentation.body_curves import body_curves
 from swgpar.presentation.overlap_areas import slot_overlap
+from swgpar.profiles.keys import ExternalProfile, InternalProfile
 from swgpar.profiles.mesh_gap import outline
 from swgpar.rating.sheet_differences import sheet_differences
 from swgpar.rating.stored_sheet import StoredRow, StoredSheet, read_sheet
@@ -116,6 +118,22 @@ def test_the_picture_repeats_after_a_pitch_of_the_ring_gear() -> None:
         gaps[-1][flank, found.tooth] = found.gap
     assert np.isfinite(gaps[0]).sum() > 8
     assert gaps[1] == pytest.approx(np.roll(gaps[0], 1, axis=1), abs=1e-9)
+
+
+def test_sections_with_a_shape_have_drawings() -> None:
+    """Every file that is named is there, and every kind of profile has one."""
+    named = {name for names in DRAWINGS.values() for name in names}
+    kinds = {
+        get_args(kind.model_fields["type"].annotation)[0]
+        for union in (ExternalProfile, InternalProfile)
+        for kind in get_args(get_args(union)[0])
+    }
+    assert len(kinds) > 6
+    files = {path.stem for path in FOLDER.glob("*.png")}
+    assert files == named | {f"profile_{kind}" for kind in kinds}
+    design = drive(DRIVERS / "rating.toml")
+    assert drawings_of(design, "ring_gear.profile") == (f"profile_{design.ring_gear.profile.type}",)
+    assert set(DRAWINGS) >= {"cup", "wave_generator.bearing"} and not drawings_of(design, "fatigue")
 
 
 def test_an_overlap_is_marked() -> None:
