@@ -7,6 +7,7 @@ shares: at other angles the same share of the value stands for the error.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from functools import partial
 
@@ -86,14 +87,25 @@ def contact_errors(
         shown = max(contacts, key=lambda pair: np.nan_to_num(measure(pair))).unresolved
         return max(PRESSURE_SAFETY[model] * share, shown, by_force, least_pressure)
 
+    share = of_force(lambda pair: pair.force_share)
+    if share is not None and force is not None and model == "plane":
+        # the force of a pair and that of all may have changed together by chance
+        share = max(share, math.hypot(force, _error_of_total(meshes)))
     off_edges = None if _is_slight(contacts) else of_pressure(_pressure_off_edges)
     return ContactErrorShares(
         pressure=of_pressure(lambda pair: pair.pressure_MPa),
         pressure_off_edges=off_edges,
         force=force,
-        force_share=of_force(lambda pair: pair.force_share),
+        force_share=share,
         on_lines=model == "plane",
     )
+
+
+def _error_of_total(meshes: Sequence[tuple[MeshRecipe, Sequence[PairContact]]]) -> float:
+    """Error of the sum of the forces of all pairs, over that sum. The torque tells it where all
+    press one flank of their teeth; it changes where other pairs press against it."""
+    totals = [(recipe, sum(pair.force_N for pair in pairs)) for recipe, pairs in meshes]
+    return _shown(totals) / totals[-1][1]
 
 
 def _pressure_off_edges(pair: PairContact) -> float:

@@ -18,15 +18,16 @@ from swgpar.contact.flank_pairs import Faces, FlankPairs
 PIECES = 8
 """Equal pieces of a line on a face. The overlap is looked for with a cell on each."""
 
-PARTS = np.array([1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64])
+PARTS = np.array([1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256])
 """Cells on a piece. With other numbers between them the number would change with every half a
 percent of the overlap. A force has a jump there, so that many states would have no solution."""
 
 FINEST = 1.25
 """Most cells of a piece, over `across`."""
 
-ACROSS, RESOLVED = 22, 44
-"""Least number of cells in the overlap: in a solve, and where pressures are reported."""
+ACROSS, RESOLVED, NARROW = 22, 44, 176
+"""Least number of cells in the overlap: in a solve, where pressures are reported, and where these
+have peaks as narrow as the cells."""
 
 PLACED = 0.2
 """Gap, over the length of a face, above which a line on it has no cells."""

@@ -13,6 +13,8 @@ has a defined result.
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 
 from swgpar.contact import friction
@@ -289,12 +291,17 @@ class FlankContact:
         pair = active.parent[chosen] // self.n_face
         return moment, self.flank_pairs.line_keys(nodes, pair, self.symmetric)
 
-    def pressed_lines(self, u: np.ndarray, state: LoadState) -> list[PressedLine]:
+    def pressed_lines(
+        self, u: np.ndarray, state: LoadState, narrow: Collection[FlankPair] | None = None
+    ) -> list[PressedLine]:
         """Pressures of the pairs whose flexible-spline tooth this rank owns at displacement u
-        (n_local, 3) mm, on finer cells than those of a solve."""
+        (n_local, 3) mm, on finer cells than those of a solve.
+
+        narrow : see `LineCells.pressed_lines`
+        """
         if state.flank_clearance is None or not len(self.cells.near):
             return []
-        return self.cells.pressed_lines(u, state.flank_clearance)
+        return self.cells.pressed_lines(u, state.flank_clearance, narrow)
 
     def add_owned_forces(
         self, u: np.ndarray, state: LoadState, residual: np.ndarray, *, friction: bool = True

@@ -3,17 +3,19 @@ solution. The tangent does not contain the motion of the cuts between them."""
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from functools import partial
 
 import numpy as np
 
 from swgpar.contact.active_cells import ActiveCells
 from swgpar.contact.cell_forces import CellForces
-from swgpar.contact.cell_placement import ACROSS, RESOLVED, CellPlacement, Gaps
+from swgpar.contact.cell_placement import ACROSS, NARROW, RESOLVED, CellPlacement, Gaps
 from swgpar.contact.cells import Stations
 from swgpar.contact.flank_kernel import FlankKernel
 from swgpar.contact.friction_history import FrictionHistory
 from swgpar.contact.pressed_lines import PressedLine
+from swgpar.contact.search import FlankPair
 from swgpar.contact.tangential_stiffness import tangential_stiffness
 
 SLIDING = 0.5
@@ -72,14 +74,25 @@ class LineCells:
             self._pressed_at = u.copy()
         return self.active
 
-    def pressed_lines(self, u: np.ndarray, clearance: float) -> list[PressedLine]:
+    def pressed_lines(
+        self, u: np.ndarray, clearance: float, narrow: Collection[FlankPair] | None = None
+    ) -> list[PressedLine]:
         """Pressures of the pairs whose flexible-spline tooth this rank owns at displacement u
         (n_local, 3) mm, on finer cells than those of a solve.
 
         In the plane they carry the forces of the present cells, which are in equilibrium: at the
         same displacement other cells have up to some percent more or less.
+
+        narrow : pairs whose pressure has narrow peaks: these alone, on still finer cells; None for
+        all pairs
         """
-        fine = self._placed(u, clearance, RESOLVED)
+        if narrow is None:
+            fine = self._placed(u, clearance, RESOLVED)
+        else:
+            pair = self.kernel.pairs.faces.patch[self.near]
+            wanted = [k for k, one in enumerate(self.kernel.pairs.pairs) if one in narrow]
+            placement = self._placement_on(self.near[np.isin(pair, wanted)])
+            fine = self._placed(u, clearance, NARROW, placement)
         if self.active is not None and self.law.n_line == 1:
             self.law.carry(fine, self.share, self.active)
         return self.law.pressed_lines(fine)
@@ -91,11 +104,16 @@ class LineCells:
         touching = self._place().overlapping(u, self._gaps(clearance))
         return bool(np.isin(touching, self.active.placed.line, invert=True).any())
 
-    def _placed(self, u: np.ndarray, clearance: float, across: int) -> ActiveCells:
+    def _placed(
+        self, u: np.ndarray, clearance: float, across: int, placement: CellPlacement | None = None
+    ) -> ActiveCells:
         """Cells that are placed and pressed at displacement u, with the friction that begins on
-        them. across : least number of cells in an overlap"""
+        them.
+
+        across : least number of cells in an overlap;  placement : None for that of all near faces
+        """
         pairs = self.kernel.pairs
-        placed = self._place().place(u, self._gaps(clearance), across)
+        placed = (placement or self._place()).place(u, self._gaps(clearance), across)
         gap, foot = self.kernel.gaps(placed.faces, u, SLIDING, clearance)
         active = self.law.measured(pairs, placed, foot)
         self.law.press(active, gap, self.share)
@@ -111,14 +129,17 @@ class LineCells:
     def _place(self) -> CellPlacement:
         """What places cells, made once for a search."""
         if self._placement is None:
-            self._placement = CellPlacement(
-                self.kernel.pairs,
-                self.near,
-                n_face=self.law.n_face,
-                n_layer=self.law.n_layer,
-                stations=self.stations,
-            )
+            self._placement = self._placement_on(self.near)
         return self._placement
+
+    def _placement_on(self, near: np.ndarray) -> CellPlacement:
+        return CellPlacement(
+            self.kernel.pairs,
+            near,
+            n_face=self.law.n_face,
+            n_layer=self.law.n_layer,
+            stations=self.stations,
+        )
 
     # -- frozen cells ------------------------------------------------------------------------------
 

@@ -14,6 +14,10 @@ RISES = 1.01
 RISING = 4
 """Cells at an end over which the pressure rises to an edge."""
 
+WIDE, PEAKED = 12, 0.03
+"""Strips of a contact, and what halves of them may have more than these at the largest pressure: in
+the middle of Hertz's contact 0.1 %."""
+
 ROUND_OFF = 1e-9
 """Distance of two cells over the length of their line below which they touch."""
 
@@ -90,6 +94,13 @@ class PressedLine:
         steps = np.zeros(len(places))
         steps[1::2] = self.pressure * (self.high - self.low)
         return np.diff(np.interp(ends, places, np.cumsum(steps))) / np.diff(ends)
+
+    @property
+    def has_narrow_peak(self) -> bool:
+        """Whether the pressure has a peak that is not much wider than the cells, as where the
+        curvature of flanks that nearly conform jumps."""
+        contact = self.contact
+        return bool(contact.strips(2 * WIDE).max() > (1.0 + PEAKED) * contact.strips(WIDE).max())
 
 
 def _rises(pressure: np.ndarray, gaps: np.ndarray) -> bool:

@@ -50,6 +50,9 @@ STRIPS = 48
 """Strips of a line on which its pressure is reported in the plane."""
 
 
+NEARLY = 0.85
+"""Pressure over the largest one off edges from which a narrow peak is resolved."""
+
 FACE_END = "end of the face width"
 """Edge on which the load of a pair may lie, in words."""
 
@@ -76,8 +79,8 @@ class PairContact:
     width; the pressure is then no property of the drive;  edge_place : which of them, in words
     ring : body whose tooth is meant, in a drive with two ring gears; else empty
     stations : along the face width, those that carry a load
-    peak_MPa : largest pressure of a cell of the law, 0 where it did not tell the pressure; strips
-    show less of a peak that is as narrow
+    unresolved : what strips and cells of about the same width differ by, over the largest pressure;
+    0 where the law's cells did not tell it
 
     From `width_mm` to `sliding_mm_s` all are nan where the pressure is not computed.
     """
@@ -101,13 +104,7 @@ class PairContact:
     edge_place: str = ""
     ring: str = ""
     stations: tuple[ContactStation, ...] = ()
-    peak_MPa: float = 0.0
-
-    @property
-    def unresolved(self) -> float:
-        """What strips and cells of about the same width differ by, over the largest pressure; 0
-        where the law's cells did not tell it."""
-        return max(self.peak_MPa / self.pressure_MPa - 1.0, 0.0) if self.peak_MPa > 0.0 else 0.0
+    unresolved: float = 0.0
 
     @property
     def key(self) -> tuple[str, int, str]:
@@ -116,7 +113,7 @@ class PairContact:
 
     def row(self) -> dict[str, Any]:
         """The row of pairs.csv."""
-        left_out = ("stations", "peak_MPa") if self.ring else ("stations", "peak_MPa", "ring")
+        left_out = ("stations", "unresolved") if self.ring else ("stations", "unresolved", "ring")
         return {name: value for name, value in asdict(self).items() if name not in left_out}
 
     def station_rows(self) -> list[dict[str, Any]]:
@@ -168,25 +165,36 @@ def _contacts(model: DriveModel, state: LoadState, flanks: FlankContact) -> list
 
     @cache
     def lines() -> dict[tuple[int, int], list[PressedLine]]:
-        """Of the contact law, by sector and side: in space few pairs ask for them, or none."""
-        found: dict[tuple[int, int], list[PressedLine]] = {}
-        for line in flanks.pressed_lines(u, state):
-            found.setdefault((line.pair.sector, line.pair.side), []).append(line)
-        return found
+        """Of the contact law: in space few pairs ask for them, or none."""
+        return _by_flank(flanks.pressed_lines(u, state))
 
     def of_pair(pair: FlankPair) -> list[PressedLine]:
         return lines().get((pair.sector, pair.side), [])
 
-    failed = []
-    for k, trio, facing_trio in zip(resolved, moved, facing):
+    teeth_of, failed = dict(zip(resolved, zip(moved, facing))), []
+
+    def press(k: int, lines_of_law: Callable[[], list[PressedLine]]) -> None:
         load = pressing[pairs[k].sector - first, pairs[k].side]
         try:
-            of_this = partial(of_pair, pairs[k])
             carried[k] = _with_pressure(
-                carried[k], model, load, of_this, trio, facing_trio, modulus
+                carried[k], model, load, lines_of_law, *teeth_of[k], modulus
             )
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             failed.append(f"tooth {pairs[k].sector}: {error}")
+
+    for k in resolved:
+        press(k, partial(of_pair, pairs[k]))
+    if plane:
+        large = _large_off_edges(model, [carried[k] for k in resolved])
+        narrow = [
+            k
+            for k, is_large in zip(resolved, large)
+            if is_large and any(line.has_narrow_peak for line in of_pair(pairs[k]))
+        ]
+        if narrow:
+            lines().update(_by_flank(flanks.pressed_lines(u, state, {pairs[k] for k in narrow})))
+            for k in narrow:
+                press(k, partial(of_pair, pairs[k]))
     contacts = [contact for part in model.comm.allgather(carried) for contact in part]
     reasons = [reason for part in model.comm.allgather(failed) for reason in part]
     if reasons:
@@ -197,6 +205,22 @@ def _contacts(model: DriveModel, state: LoadState, flanks: FlankContact) -> list
     total = model.copies * sum(contact.force_N for contact in contacts)
     contacts = [replace(contact, force_share=contact.force_N / total) for contact in contacts]
     return sorted(contacts, key=lambda one: (one.tooth, one.flank))
+
+
+def _by_flank(lines: Iterable[PressedLine]) -> dict[tuple[int, int], list[PressedLine]]:
+    """Lines by sector and side of the flexible spline's flank."""
+    found: dict[tuple[int, int], list[PressedLine]] = {}
+    for line in lines:
+        found.setdefault((line.pair.sector, line.pair.side), []).append(line)
+    return found
+
+
+def _large_off_edges(model: DriveModel, contacts: list[PairContact]) -> list[bool]:
+    """Whether contacts of this rank are off edges and have nearly the largest pressure of those;
+    collective."""
+    pressures = [0.0 if one.edge else float(np.nan_to_num(one.pressure_MPa)) for one in contacts]
+    top = max(model.comm.allgather(max(pressures, default=0.0)))
+    return [pressure > NEARLY * top for pressure in pressures]
 
 
 def _carried(
@@ -255,7 +279,7 @@ def _with_pressure(
     """
     tooth, facing = teeth[1], ring_teeth[1]
     gap, plane = FlankGap(tooth, facing), model.design.drive.model == "plane"
-    patch, lines, on_ring_tip, peak = None, [], False, 0.0
+    patch, lines, on_ring_tip, unresolved = None, [], False, 0.0
     try:
         if plane:
             lines = lines_of_law()
@@ -281,7 +305,8 @@ def _with_pressure(
         reaches = not plane and any(
             one.z - one.length < low or one.z + one.length > high for one in lines
         )
-        width, peak = sum(one.length for one in lines), line.largest
+        width = sum(one.length for one in lines)
+        unresolved = max(line.largest / station.pressure_MPa - 1.0, 0.0)
         shear = largest_shear(line.low, line.high, line.pressure, station.half_width_mm)
     else:
         return contact
@@ -309,7 +334,7 @@ def _with_pressure(
         edge=int(bool(edges)),
         edge_place=" and the ".join(edges),
         stations=stations,
-        peak_MPa=peak,
+        unresolved=unresolved,
     )
 
 

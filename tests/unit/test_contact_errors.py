@@ -65,7 +65,14 @@ def test_changes_of_both_groups_are_added() -> None:
     found = errors([pair(1, 500.0, force=90.0)], [pair(1, 530.0)], [pair(1, 520.0)])
     assert found.pressure == pytest.approx(FACTOR * (30.0 + 10.0) / 520.0)
     assert found.force == pytest.approx(FACTOR * 10.0 / 100.0)
-    assert found.force_share == LEAST_FORCE["plane"]  # no change at all is chance
+
+
+def test_a_share_has_the_errors_of_the_force_and_of_all_forces() -> None:
+    """Here it does not change at all, by chance: one pair has all of both."""
+    found = errors([pair(1, 500.0, force=90.0)], [pair(1, 500.0)], [pair(1, 500.0)])
+    assert found.force_share == pytest.approx(math.sqrt(2.0) * FACTOR * 10.0 / 100.0)
+    beside = [pair(1, 500.0), pair(2, 400.0, force=50.0)]
+    assert errors(beside, beside, beside).force_share == LEAST_FORCE["plane"]
 
 
 def test_a_pressure_has_half_of_the_error_of_forces() -> None:
@@ -163,10 +170,10 @@ def test_pressures_of_cups_are_less_certain_beside_an_edge() -> None:
 def test_a_peak_as_narrow_as_the_cells_has_an_error_of_its_own() -> None:
     """The pair with the largest pressure counts, with and without edges; forces are as before."""
     same = [pair(0, 100.0), pair(1, 50.0)]
-    peaked = [replace(same[0], peak_MPa=120.0), same[1]]
+    peaked = [replace(same[0], unresolved=0.2), same[1]]
     assert errors(same, same, peaked).pressure == pytest.approx(0.2)
     assert errors(same, same, peaked).pressure_off_edges == pytest.approx(0.2)
     assert errors(same, same, peaked).force == errors(same, same, same).force
-    beside = [same[0], replace(same[1], peak_MPa=60.0)]
+    beside = [same[0], replace(same[1], unresolved=0.2)]
     assert errors(same, same, beside) == errors(same, same, same)
-    assert "peak_MPa" not in peaked[0].row()
+    assert "unresolved" not in peaked[0].row()

@@ -72,3 +72,13 @@ def test_a_line_with_two_contacts_has_the_pressure_and_width_of_one() -> None:
     assert station.s_mm == pytest.approx(alone.s_mm)
     assert station.line_load_Nmm == pytest.approx(1.5 * alone.line_load_Nmm)
     assert max(station.cells_MPa) < 0.98 * alone.pressure_MPa
+
+
+def test_a_peak_as_narrow_as_the_cells_is_seen() -> None:
+    """Where the curvature of flanks that nearly conform jumps; not in the middle of a smooth
+    contact, nor of one whose pressure rises to one side."""
+    x = (np.arange(44) + 0.5) / 22.0 - 1.0
+    smooth = np.sqrt(1.0 - x**2)
+    assert not line(smooth).has_narrow_peak
+    assert not line(smooth * (1.0 + 0.5 * x)).has_narrow_peak
+    assert line(smooth + 0.8 * np.exp(-(((x + 0.8) / 0.05) ** 2))).has_narrow_peak
