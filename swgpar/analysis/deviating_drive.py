@@ -15,6 +15,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.coarse_start import MeshedDrive
+from swgpar.analysis.deviation_guess import DeviationGuess
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.constraints.distributing_coupling import TILT_X, TILT_Y, X, Y
@@ -46,6 +47,14 @@ CAM_QUADRATURE, CAM_PENALTY = 2, 1.0
 fewer points that come and go save a fifth of the iterations and change the output's angle by a
 thousandth of what deviations do."""
 
+WORTH_GUESSES = 40
+"""States at one place of a period from which a linear model of the drive pays on two ranks: each
+makes it, and it takes as long as some ten states."""
+
+RTOL = 1e-5
+"""Newton's tolerance on the coarse mesh, at least: it changes the output's angle by a millionth of
+an arc second and the input torque by 1e-4."""
+
 STEPS = (4, 16)
 """Equal steps from the ideal state to the deviations where these cannot be reached at once; then
 more of them."""
@@ -72,18 +81,19 @@ def turn_design(design: DriveDesign) -> DriveDesign:
     them, with condensed sectors, half of it if deviations allow."""
     deviations, solver, wave = design.deviations, design.solver, design.wave_generator
     contact = design.contact.model_copy(update={"friction": 0.0})
-    changes = {
+    changes: dict[str, float] = {
         "symmetry": solver.symmetry and _is_twofold(design, deviations),
         "condensed_sectors": design.can_condense,
         "max_iterations": max(solver.max_iterations, MAX_ITERATIONS),
     }
-    solver = solver.model_copy(update=changes)
     if deviations.mesh == "coarse":
+        changes["rtol"] = max(solver.rtol, RTOL)
         cam = {
             "wg_quadrature": min(contact.wg_quadrature, CAM_QUADRATURE),
             "wg_penalty_coef": min(contact.wg_penalty_coef, CAM_PENALTY),
         }
         contact = contact.model_copy(update=cam)
+    solver = solver.model_copy(update=changes)
     steps = design.steps.model_copy(update={"bent_start": True, "samples": 0, "rotation": 0.0})
     if wave.bearing is not None:  # balls that pass would make every pitch another drive
         bearing = wave.bearing.model_copy(update={"cage_speed": 1.0})
@@ -169,13 +179,38 @@ class DeviatingDrive:
                 if index not in known:
                     renamed = tuple(self._renamed(index) % period for period in self.periods)
                     states.setdefault(renamed, []).append(index)
-            start, guess = split(len(states), share[1]), ideal
-            for first, *others in list(states.values())[start[share[0]] : start[share[0] + 1]]:
-                found = self._point(first, state, ideal, guess)
-                guess = self.model.problem.x.copy()
-                yield found
-                for index in others:
-                    yield self._repeated(found, index)
+            start = split(len(states), share[1])
+            mine = list(states.values())[start[share[0]] : start[share[0] + 1]]
+            guess = self._guess(state) if len(states) >= WORTH_GUESSES else None
+            last = ideal
+            try:
+                for first, *others in mine:
+                    found = self._point(first, state, ideal, guess or last)
+                    last = self.model.problem.x.copy()
+                    yield found
+                    for index in others:
+                        yield self._repeated(found, index)
+            finally:
+                if guess is not None:
+                    guess.destroy()
+
+    def _guess(self, state: LoadState) -> DeviationGuess | None:
+        """What guesses the states around the ideal one, near which x is; None in a cup drive, in
+        which the faces on the cam are many, and with a bearing."""
+        problem = self.model.problem
+        if (
+            self.model.comm.size > 1
+            or self.design.drive.model != "plane"
+            or problem.wave_generator.cam is None
+            or not self.model.solver.system.solver.is_factor
+        ):
+            return None
+        none = self.tables.scaled(0.0)
+        problem.flanks_of(RING_GEAR).deviate(none)
+        # the cam may have been displaced
+        if not self.model.solver.solve(state, search=False).converged:
+            return None
+        return DeviationGuess(self.model, state, none)
 
     def _renamed(self, index: int) -> int:
         """By how many pitches the teeth are renamed at the angle of an index."""
@@ -218,7 +253,9 @@ class DeviatingDrive:
         offsets[SPLINE_COUPLING, [X, Y]] = share * rotated(part.shift, turn) + self.bore_z * lean
         offsets[SPLINE_COUPLING, [TILT_X, TILT_Y]] = -lean[1], lean[0]
 
-    def _point(self, index: int, state: LoadState, ideal: PETSc.Vec, guess: PETSc.Vec) -> TurnPoint:
+    def _point(
+        self, index: int, state: LoadState, ideal: PETSc.Vec, guess: PETSc.Vec | DeviationGuess
+    ) -> TurnPoint:
         """The state at an angle, from a guess, or from the ideal one step by step.
 
         state, ideal : of the ideal drive at the same place of a period
@@ -229,10 +266,13 @@ class DeviatingDrive:
             renamed * self.design.kinematics.pitch_angle,
         )
         for start, steps in ((guess, 1), *((ideal, steps) for steps in STEPS)):
-            start.copy(problem.x)
+            if isinstance(start, PETSc.Vec):
+                start.copy(problem.x)
             for share in np.arange(1, steps + 1) / steps:
                 self._displace_bore(renamed, state, share)
                 problem.flanks_of(RING_GEAR).deviate(deviations.scaled(share))
+                if isinstance(start, DeviationGuess):
+                    start.set_x()
                 result = self.model.solver.solve(state, search=False)
                 iterations += result.iterations
                 if not result.converged:

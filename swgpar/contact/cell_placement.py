@@ -118,6 +118,13 @@ class CellPlacement:
         nearest = {k: float(coarse.closest[self._side == k].min(initial=np.inf)) for k in (1, -1)}
         return PlacedCells(cells, faces, line, nearest)
 
+    def least_gaps(self, u: np.ndarray, gaps: Gaps) -> np.ndarray:
+        """Smallest gap (n_pair,) mm on the lines of each pair at u; inf without any."""
+        gap, _ = gaps(self._samples, u, CONTINUATION)
+        least = np.full(len(self._pairs.pairs), np.inf)
+        np.minimum.at(least, self._samples.patch, _least(gap))
+        return least
+
     def overlapping(self, u: np.ndarray, gaps: Gaps) -> np.ndarray:
         """Numbers (n,) of the lines that touch at u."""
         coarse = self._coarse(u, gaps)

@@ -303,6 +303,28 @@ class FlankContact:
             return []
         return self.cells.pressed_lines(u, state.flank_clearance, narrow)
 
+    def least_gaps(self, u: np.ndarray, state: LoadState) -> np.ndarray:
+        """Smallest gap (n_pair,) mm of each pair of the last search at u (n_local, 3) mm; inf where
+        none of its faces is near."""
+        return self.cells.least_gaps(u, state.flank_clearance)
+
+    def add_forces(
+        self,
+        active: ActiveCells,
+        chosen: np.ndarray,
+        u: np.ndarray,
+        state: LoadState,
+        residual: np.ndarray,
+    ) -> None:
+        """Add the forces of some cells (n,) without friction to residual (n_local, 3) N;
+        collective."""
+        faces, moments = active.faces.subset(chosen), np.zeros(len(chosen))
+        pressure = np.ascontiguousarray(active.pressure[chosen])
+        at = u, pressure, state.flank_clearance, residual
+        self.kernel(faces, *at, moment=moments, beyond=SLIDING)
+        owned = self.flank_pairs.owned[faces.patch]
+        self.ring_motion.add_ring_moment(u, float(moments[owned].sum()), residual)
+
     def add_owned_forces(
         self, u: np.ndarray, state: LoadState, residual: np.ndarray, *, friction: bool = True
     ) -> None:

@@ -97,6 +97,11 @@ class LineCells:
             self.law.carry(fine, self.share, self.active)
         return self.law.pressed_lines(fine)
 
+    def least_gaps(self, u: np.ndarray, clearance: float) -> np.ndarray:
+        """Smallest gap (n_pair,) mm of each pair at displacement u (n_local, 3) mm, as far as its
+        faces are near; else inf. clearance : mm"""
+        return self._place().least_gaps(u, self._gaps(clearance))
+
     def misses_lines(self, u: np.ndarray, clearance: float) -> bool:
         """Whether lines touch at u that have no frozen cells."""
         if not self.frozen or not len(self.near):

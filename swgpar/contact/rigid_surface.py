@@ -155,6 +155,12 @@ class RigidContact(PressedPoints):
             self._add_blocks(normal, rotation @ hessian[touching] @ rotation.T, touching, rows)
         return NO_KEYS
 
+    def normals(self, u: np.ndarray, state: LoadState) -> np.ndarray:
+        """Set gaps and pressures at u (n_local, 3) mm in a load state with this contact; returns
+        the level's gradients (n_face, n_q, 3)."""
+        pose = self.pose(state)
+        return self._find_gaps(u, pose)[0] @ pose.rotation().T
+
     def add_owned_forces(self, u: np.ndarray, state: LoadState, residual: np.ndarray) -> None:
         """Add the forces of the faces that this rank owns to residual (n_local, 3) N."""
         pose = self.pose(state)

@@ -161,22 +161,23 @@ class NewtonSolver:
             self.system.discard_factor()
         p.stateIncrease()
         bound = problem.torque_control.output_step_bound(state.load_state)
-        self._set_system(u, state.load_state, bound)
+        self._set_system(self.system, u, state.load_state, bound)
 
-    def _set_system(self, u: np.ndarray, state: LoadState, bound: float | None) -> None:
+    def _set_system(
+        self, system: BorderedSystem, u: np.ndarray, state: LoadState, bound: float | None
+    ) -> None:
         """Border the tangent at u (n_local, 3) mm. bound : see `BorderedSystem.set_system`"""
         blocks, supports = self.problem.blocks, self.problem.supports
-        border, rows = supports.border(u, state)
-        ranks = supports.grounding(u), border, rows, bound, supports.springs(u)
-        self.system.set_system(blocks.matrix, blocks.matrix_rows.active, *ranks)
+        ranks = supports.grounding(u), *supports.border(u, state), bound, supports.springs(u)
+        system.set_system(blocks.matrix, blocks.matrix_rows.active, *ranks)
 
-    def factorise_tangent(self, state: LoadState) -> None:
-        """Make the factor of the tangent in the equilibrium x under a load state, for
-        `system.solve_with_factor`; collective. `system.discard_factor` ends its use."""
-        problem, u = self.problem, self.problem.displacement()
+    def factorise_tangent(self, state: LoadState, other: BorderedSystem | None = None) -> None:
+        """Make the factor of the tangent in the equilibrium x under a load state, for an `other`
+        system, or that of this solver; collective. `discard_factor` ends its use."""
+        problem, system, u = self.problem, other or self.system, self.problem.displacement()
         problem.complete_tangent(u, state)
-        self._set_system(u, state, np.inf if state.control == "torque" else None)
-        self.system.factorise()
+        self._set_system(system, u, state, np.inf if state.control == "torque" else None)
+        system.factorise()
 
     def _test_convergence(
         self, snes: PETSc.SNES, its: int, norms: tuple[float, float, float]

@@ -13,6 +13,7 @@ from pytest_mpi import parallel_assert
 import swgpar
 from support.paths import RECIPE
 from support.stepping import WORLD, load_stepper, rotate, small
+from swgpar.analysis import deviating_drive
 from swgpar.analysis.deviating_drive import DeviatingDrive, TurnPoint, turn_design
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.design.drive_design import DriveDesign
@@ -161,6 +162,23 @@ def test_an_eccentric_spline_is_seen_twice_per_turn_against_it() -> None:
     own = np.isclose(order / 2.1, np.round(order / 2.1))
     assert amplitude[~own].max() < 1e-6 * amplitude.max()
     assert order[amplitude.argmax()] == pytest.approx(2.1)
+
+
+def test_a_linear_model_knows_the_contacts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From its guess Newton's iteration reaches the same states in half of the iterations, also
+    where the cam is displaced."""
+    keys = (*PITCH, ONE_ANGLE, "deviations.wave_generator.eccentricity=0.005")
+    found = []
+    for least in (1, 1000):
+        monkeypatch.setattr(deviating_drive, "WORTH_GUESSES", least)
+        found.append(points(deviating(*keys), (0, 5, 9, 21)))
+    guessed, last = found
+    for k in guessed:
+        assert guessed[k].output_angle == pytest.approx(last[k].output_angle, rel=1e-6)
+        assert guessed[k].wg_torque == pytest.approx(last[k].wg_torque, rel=1e-5)
+    counts = [sum(point.iterations for point in some.values()) for some in found]
+    print(counts)
+    assert counts[0] <= 0.5 * counts[1]
 
 
 @pytest.mark.parallel([1, 2])
