@@ -26,7 +26,16 @@ SHRUNK = 820, 537
 KEY, OVERLAPS = "ring_gear.c_P", (0.99, 1.0, 1.01, 1.02, 1.03, 0.97)
 """A key, and values of it, of which the last ones but one make teeth overlap."""
 
+CLEARANCE = ".swgpar-section [role=status]"
+CHANGED = "([line, before]) => document.querySelector(line).innerText !== before"
+
+WHEEL = 4
+"""Notches of the wheel."""
+
 COLOURS = 64
+LONG = 300_000
+"""Milliseconds for a loaded state on a machine that does other work."""
+
 MS = {"turn": 120, "change": 700, "end": 2000}
 """Milliseconds of a frame."""
 
@@ -53,25 +62,39 @@ class Film:
 
 def record(page: Page, film: Film) -> None:
     """What the film shows."""
-    page.wait_for_selector('[data-plane-state="computed"]', timeout=60_000)
-    play = page.get_by_role("button", name="play", exact=True)
-    play.click()
+    page.wait_for_selector('[data-plane-state="computed"]', timeout=LONG)
+    page.get_by_role("button", name="play", exact=True).click()
     for _ in range(24):
         page.wait_for_timeout(150)
         film.take("turn")
-    play.click()
+    page.get_by_role("button", name="stop", exact=True).click()
+    page.get_by_role("slider", name="angle of the cam, degrees").press("Home")
+    zoom(page, -1)
     field = page.locator(f'input[data-key="{KEY}"]')
     page.get_by_text("[ring_gear]", exact=True).click()
     field.scroll_into_view_if_needed()
     for value in OVERLAPS:
+        before = page.locator(CLEARANCE).inner_text()
         field.fill(f"{value:g}")
         field.press("Enter")
+        page.wait_for_function(CHANGED, arg=[CLEARANCE, before])
         page.wait_for_timeout(900)
         film.take("change")
+    zoom(page, 1)
     page.get_by_role("button", name="loaded", exact=True).click()
-    page.wait_for_selector('[data-plane-state="computed"]', timeout=60_000)
+    page.wait_for_selector('[data-plane-state="computed"]', timeout=LONG)
     page.wait_for_timeout(2500)
     film.take("end")
+
+
+def zoom(page: Page, way: int) -> None:
+    """Turn the wheel above the teeth, -1 to see them larger."""
+    plot = page.locator(".js-plotly-plot").bounding_box()
+    assert plot is not None
+    page.mouse.move(plot["x"] + 0.42 * plot["width"], plot["y"] + 0.47 * plot["height"])
+    for _ in range(WHEEL):
+        page.mouse.wheel(0, way * 300)
+        page.wait_for_timeout(200)
 
 
 def main() -> None:

@@ -14,6 +14,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from enum import StrEnum
+from itertools import takewhile
 from pathlib import Path
 
 from swgpar.errors import InputError
@@ -171,7 +172,7 @@ class JobQueue:
         for job in self.jobs:
             if job.state == JobState.RUNS and (code := self._ended(job)) is not None:
                 job.state = JobState.FINISHED if code == 0 else JobState.FAILED
-                job.reason = "" if code == 0 else self._last_line(job)
+                job.reason = "" if code == 0 else self._reason(job)
                 changed = True
         waiting = [job for job in self.jobs if job.state == JobState.WAITS]
         if waiting and not self.runs:
@@ -219,8 +220,12 @@ class JobQueue:
             return None
         return 0 if job.last_file and (self.folder / job.last_file).exists() else 1
 
-    def _last_line(self, job: AppJob) -> str:
-        return "".join(_last_lines(self._log(job), 1)) or "it has printed nothing"
+    def _reason(self, job: AppJob) -> str:
+        """Sentence of a job that has failed, or the last line of its own before those of mpirun."""
+        lines = _last_lines(self._log(job), TAIL)
+        sentences = [line for line in lines if line.startswith("swgpar: ")]
+        own = [*takewhile(lambda line: not line.startswith("-----"), lines)]
+        return (sentences or own or ["it has printed nothing"])[-1]
 
     def _log(self, job: AppJob) -> Path:
         return self.folder / "logs" / f"{job.number}.log"

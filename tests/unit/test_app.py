@@ -243,6 +243,25 @@ def test_jobs_follow_each_other(tmp_path: Path) -> None:
     assert good.typed == f"swgpar check {DESIGN}"
 
 
+@pytest.mark.parametrize(
+    ("printed", "reason"),
+    [
+        ("swgpar: error: no file\n-----\nmpirun detected that\n-----\n", "swgpar: error: no file"),
+        ("Traceback\nKeyError: 1\n-----\nMPI_ABORT was invoked\n-----\n", "KeyError: 1"),
+        ("", "it has printed nothing"),
+    ],
+)
+def test_a_failed_job_has_its_own_sentence(tmp_path: Path, printed: str, reason: str) -> None:
+    """Not the last line of mpirun."""
+    job = {"number": 1, "arguments": ["run", "one.toml"], "ranks": 2, "out": "results/1"}
+    job |= {"state": "runs", "process": 2**22 + 1}  # no process has such a number
+    (tmp_path / "jobs.json").write_text(json.dumps({"jobs": [job]}), encoding="utf-8")
+    (tmp_path / "logs").mkdir()
+    (tmp_path / "logs" / "1.log").write_text(printed, encoding="utf-8")
+    queue = JobQueue(tmp_path)
+    assert queue.step() and queue.jobs[0].reason == reason
+
+
 def test_the_plane_model_of_a_cup_is_a_design() -> None:
     for name in ("cup_45deg.toml", "silk_hat.toml", "rating.toml"):
         design = drive(DRIVERS / name)
