@@ -16,8 +16,9 @@ from support.bad_inputs import (
     bad_inputs,
     draw_inputs,
     is_sentence,
-    right_files,
 )
+from support.bad_sections import bad_sections
+from support.right_files import newer_sections, right_files
 
 COUNT = 400
 
@@ -33,6 +34,16 @@ def test_what_is_changed_is_right_at_first(folder: Path, kind: str) -> None:
         content = tomli_w.dumps(table).encode()
         outcome = attempt(BadInput(kind, {"input.toml": content}, "nothing"), folder)
         assert (outcome.status, outcome.fault) == ("accepted", ""), (outcome.sentence, table)
+
+
+def test_newer_sections_are_right_at_first(folder: Path) -> None:
+    """And their changes are the same for the same number."""
+    for name, section in newer_sections().items():
+        content = tomli_w.dumps(section.table).encode()
+        outcome = attempt(BadInput(section.kind, {"input.toml": content}, "nothing"), folder)
+        assert (outcome.status, outcome.fault) == ("accepted", ""), (name, outcome.sentence)
+    first, again = (list(bad_sections(46, 3)) for _ in range(2))
+    assert first == again and {bad.section for bad in first} == set(newer_sections())
 
 
 def test_bad_inputs_are_refused_or_make_sense(
