@@ -191,8 +191,10 @@ class Search:
             study.enqueue_trial(values, skip_if_exists=True)
         state = optuna.trial.TrialState
         for trial in study.get_trials(deepcopy=False, states=(state.RUNNING,)) if own else ():
-            # interrupted: tried once more. In this order a kill between the two loses none
-            study.enqueue_trial(trial.params)
+            # interrupted: tried once more. In this order a kill between the two loses none. A
+            # design that is given has its values in `fixed_params`, before they are its parameters
+            if values := trial.system_attrs.get("fixed_params", {}) | trial.params:
+                study.enqueue_trial(values)
             study.tell(trial.number, state=state.FAIL)
 
     def _complete(self) -> list[optuna.trial.FrozenTrial]:

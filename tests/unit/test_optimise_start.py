@@ -68,9 +68,11 @@ def test_a_start_design_that_is_no_point_of_the_search(
     assert f"The start design is no point of the search: {words}." in page
 
 
+@pytest.mark.parametrize("where", ["swgpar.optimisation.problem.Problem.evaluate", "in ask"])
 def test_a_start_design_that_was_interrupted_is_tried_after_a_restart(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, where: str
 ) -> None:
+    """Also where it has no parameters yet."""
     path, out = tmp_path / "search.toml", tmp_path / "out"
     path.write_text(FROM_START.replace("evaluations = 12", "evaluations = 2"), encoding="utf-8")
 
@@ -78,7 +80,7 @@ def test_a_start_design_that_was_interrupted_is_tried_after_a_restart(
         raise KeyboardInterrupt
 
     with monkeypatch.context() as context:
-        context.setattr("swgpar.optimisation.problem.Problem.evaluate", killed)
+        context.setattr("optuna.Trial._suggest" if where == "in ask" else where, killed)
         with pytest.raises(KeyboardInterrupt):
             swgpar.optimise(path, out)
     again = swgpar.optimise(path, out, restart=True)
