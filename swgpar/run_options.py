@@ -17,10 +17,6 @@ from swgpar.input.quantities import show
 from swgpar.meshing import MeshRecipe
 
 
-def _nothing() -> None:
-    """What a run does after an increment by default."""
-
-
 @dataclass(frozen=True)
 class RunOptions:
     """Options of a run.
@@ -49,7 +45,7 @@ class RunOptions:
     overwrite: bool = False
     comm: MPI.Comm = field(default_factory=lambda: MPI.COMM_WORLD)
     terminal: bool = False
-    on_increment: Callable[[], None] = _nothing
+    on_increment: Callable[[], None] = lambda: None
 
     def __post_init__(self) -> None:
         if self.accuracy is not None:

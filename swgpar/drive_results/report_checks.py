@@ -30,24 +30,16 @@ QUALITY = 0.2
 
 def checks(summary: DriveSummary, history: Mapping[str, np.ndarray]) -> list[Check]:
     """All checks of a run, from its summary and history."""
-    steps, contact, module = (
-        summary.design.steps,
-        summary.design.contact,
-        summary.design.drive.module,
-    )
-    loaded = 1000.0 * summary.design.load.torque > summary.design.negligible_torque
-    period = 0.999999 * np.degrees(summary.design.kinematics.period_angle)
-    covered = steps.samples > 0 or steps.rotation >= period
-    tolerance = contact.penetration_tolerance * module
+    design = summary.design
+    loaded = 1000.0 * design.load.torque > design.negligible_torque
+    period = 0.999999 * np.degrees(design.kinematics.period_angle)
+    covered = design.steps.samples > 0 or design.steps.rotation >= period
+    judged = loaded and covered and design.repeats
     return [
         _balance(summary.numerics),
-        _energy(
-            summary.rotation,
-            loaded and covered and summary.design.repeats,
-            contact.friction > 0.0,
-        ),
-        _penetration(tolerance, history),
-        _clearance(clearances(summary.design.rigid_pairs)),
+        _energy(summary.rotation, judged, design.contact.friction > 0.0),
+        _penetration(design.contact.penetration_tolerance * design.drive.module, history),
+        _clearance(clearances(design.rigid_pairs)),
         _edge(summary.contact),
         _resolution(summary.root_stress, summary.accuracy),
         _meshed(summary.stresses),
@@ -58,18 +50,14 @@ def checks(summary: DriveSummary, history: Mapping[str, np.ndarray]) -> list[Che
 
 
 def _balance(found: Numerics) -> Check:
-    left, largest, allowed = (
-        found.balance_error_Nmm,
-        found.largest_tooth_torque_Nmm,
-        found.largest_balance_Nmm,
-    )
+    left, largest = found.balance_error_Nmm, found.largest_tooth_torque_Nmm
     if largest == 0.0:
         return Check("balance of torques", None, "the teeth carry no torque")
     text = (
         f"{left:.2g} N·mm are left over of {largest:.4g} N·mm at the teeth; good up to {BALANCE:g} "
         f"of it"
     )
-    return Check("balance of torques", left <= allowed, text)
+    return Check("balance of torques", left <= found.largest_balance_Nmm, text)
 
 
 def _energy(rotation: Rotation, judged: bool, friction: bool) -> Check:
@@ -90,22 +78,17 @@ def _energy(rotation: Rotation, judged: bool, friction: bool) -> Check:
     torque = "mean torque on the standing wave generator" if rotation.input else "mean input torque"
     text = f"{torque} {mean:.5g} N·mm, by the energy balance {expected:.5g} N·mm"
     if friction:
-        return Check(
-            name,
-            mean >= expected * (1.0 - ENERGY),
-            f"{text}; friction takes {mean - expected:.3g} N·mm",
-        )
-    return Check(
-        name, abs(mean / expected - 1.0) <= ENERGY, f"{text}; good within {100 * ENERGY:g} %"
-    )
+        good = mean >= expected * (1.0 - ENERGY)
+        return Check(name, good, f"{text}; friction takes {mean - expected:.3g} N·mm")
+    good = abs(mean / expected - 1.0) <= ENERGY
+    return Check(name, good, f"{text}; good within {100 * ENERGY:g} %")
 
 
 def _penetration(allowed: float, history: Mapping[str, np.ndarray]) -> Check:
     loaded = loaded_increments(history)
     if "max_penetration_mm" not in history:  # a result of another version
         return Check("penetration", None, "the history does not have it")
-    values = history["max_penetration_mm"][loaded] if len(loaded) else history["max_penetration_mm"]
-    most = float(values.max(initial=0.0))
+    most = float(history["max_penetration_mm"][loaded].max(initial=0.0))
     text = (
         f"cam and pins penetrate the spline by up to {1000 * most:.2g} µm; good up to "
         f"{1000 * allowed:.2g} µm"

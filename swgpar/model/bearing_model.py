@@ -7,8 +7,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans
-from swgpar.constraints.race_coupling import RaceCoupling
 from swgpar.contact.ball_contact import LARGEST_REACH, BallContact, BallSet
 from swgpar.contact.point_contact import ball_spring
 from swgpar.contact.race_contact import RaceContact
@@ -16,7 +14,6 @@ from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body import FLEXIBLE_SPLINE, OUTER_RACE, Body
 from swgpar.fem.elements import Elements
-from swgpar.fem.partition import Partition
 from swgpar.geometry.micro_geometry import crowning
 from swgpar.materials import contact_modulus
 from swgpar.meshing.race_sector import opposite_cells, race_grid, race_sector
@@ -110,10 +107,3 @@ def build_bearing_contacts(
         pressure_limit=pressure_limit * design.modulus_of("bearing"),
     )
     return WaveGeneratorContacts(race=contact, balls=build_ball_contact(design, elements))
-
-
-def race_coupling(partition: Partition, elements: Elements, spline: NodeMeans) -> RaceCoupling:
-    """Support of the race. spline : coupling of the flexible spline"""
-    return RaceCoupling(
-        DistributingCoupling(partition, elements.bodies[OUTER_RACE], "outer", spline.images), spline
-    )

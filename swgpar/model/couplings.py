@@ -6,19 +6,19 @@ import numpy as np
 
 from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans
 from swgpar.constraints.output_springs import OutputSprings
+from swgpar.constraints.race_coupling import RaceCoupling
 from swgpar.constraints.radial_guide import RadialGuide
 from swgpar.constraints.rigid_attachment import RigidAttachment, face_sides
 from swgpar.constraints.supports import SPLINE_COUPLING, Supports
 from swgpar.design.cup_section import Cup
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.output_bearing import OutputBearing
-from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.body import FLEXIBLE_SPLINE, OUTER_RACE, RING_GEAR
 from swgpar.fem.elements import BodyElements, Elements
 from swgpar.fem.partition import Partition
 from swgpar.log import logger
 from swgpar.materials import NO_GROWTH
 from swgpar.meshing.sector import SectorMesh
-from swgpar.model.bearing_model import race_coupling
 
 
 def spline_attachment(
@@ -94,7 +94,10 @@ def build_supports(design: DriveDesign, partition: Partition, elements: Elements
     spline_ratio = None
     if design.dynamic_spline is not None:  # the flexible spline rotates with the dynamic one
         spline_ratio = 1.0 if output_gear == "dynamic_spline" else 0.0
-    output = len(couplings) - 1 if rotates else SPLINE_COUPLING
+    output, race = len(couplings) - 1 if rotates else SPLINE_COUPLING, None
+    if design.bearing is not None:
+        outer = DistributingCoupling(partition, elements.bodies[OUTER_RACE], "outer", copies > 1)
+        race = RaceCoupling(outer, couplings[0])
     return Supports(
         partition,
         couplings,
@@ -102,7 +105,7 @@ def build_supports(design: DriveDesign, partition: Partition, elements: Elements
         guide=guide,
         scale=design.modulus_of("flexible_spline") * design.drive.module,
         share=1.0 / copies,
-        race=None if design.bearing is None else race_coupling(partition, elements, couplings[0]),
+        race=race,
         spline_ratio=spline_ratio,
         bearing=None if bearing is None else _output_springs(bearing, couplings[output], copies),
     )

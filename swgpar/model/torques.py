@@ -53,10 +53,8 @@ def torques(problem: DiscreteProblem, state: LoadState) -> Torques:
     reactions = supports.reactions(problem.multipliers())
     if state.control == "torque":
         reactions[supports.output_gear] = state.torque
-    output, wave_generator = (
-        float(reactions[supports.output_gear]),
-        moment(problem.wave_generator.all),
-    )
+    output = float(reactions[supports.output_gear])
+    wave_generator = moment(problem.wave_generator.all)
     teeth = tuple(moment([flanks]) for flanks in problem.flanks)
     reactions[supports.output_gear] += supports.bearing_moment(u)
     balance = abs(wave_generator + sum(teeth) + float(reactions[SPLINE_COUPLING]))

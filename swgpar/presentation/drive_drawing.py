@@ -184,10 +184,8 @@ def _cut(curve: np.ndarray, half: float, low: float, high: float) -> np.ndarray:
 def _meridian(design: DriveDesign) -> Sheet:
     cup, wall, width = design.cup, design.cup_sizes.wall, design.drive.face_width
     spline, ring = (design.profile(gear) for gear in GEARS)
-    outer, ring_outer = (
-        design.geometry.outer_radius,
-        design.geometry.gears["ring_gear"].outer_radius,
-    )
+    geometry = design.geometry
+    outer, ring_outer = geometry.outer_radius, geometry.gears["ring_gear"].outer_radius
     back = 0.5 * width
     end, length = back + cup.length, width + wall.farthest - back
     top = max(outer, wall.edge)
@@ -196,7 +194,7 @@ def _meridian(design: DriveDesign) -> Sheet:
     recipe = CupRecipe(
         cylinder=48 if cup.contour else 1, fillet=24, closed_end=48 if cup.end_contour else 1
     )
-    lines = meridian(design.geometry.cup, recipe)
+    lines = meridian(geometry.cup, recipe)
     tip, bore = spline.r_tip_circle, design.inner_radius
     tooth = [[tip, back], [tip, -back], [bore, -back]]
     boxes = {
