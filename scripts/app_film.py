@@ -69,6 +69,7 @@ def record(page: Page, film: Film) -> None:
         film.take("turn")
     page.get_by_role("button", name="stop", exact=True).click()
     page.get_by_role("slider", name="angle of the cam, degrees").press("Home")
+    page.wait_for_timeout(3000)
     zoom(page, -1)
     field = page.locator(f'input[data-key="{KEY}"]')
     page.get_by_text("[ring_gear]", exact=True).click()

@@ -22,6 +22,7 @@ class SectionPanel:
     def __init__(self, state: AppState) -> None:
         self.state = state
         self.plots: list[ui.plotly] = []
+        self._moves = False  # whether the slider does
         self.pictures()
         with ui.row().classes("w-full items-center no-wrap gap-3"):
             self.view = ui.toggle(VIEWS, value=state.loaded, on_change=self._view)
@@ -37,6 +38,8 @@ class SectionPanel:
     def draw(self) -> None:
         """Draw the pictures, others where variants come or go."""
         self.angle.text = f"{self.state.angle_deg:.0f}°"
+        if not self._moves:
+            self.slider.show(self.state.angle_deg)
         if len(self.plots) != len(self.state.shown):
             self.pictures.refresh()
             return
@@ -52,7 +55,6 @@ class SectionPanel:
         """Turn the cam on while it plays."""
         if self.state.plays and not self.state.loaded:
             self.state.angle_deg = (self.state.angle_deg + 1.0) % 360.0
-            self.slider.show(self.state.angle_deg)
             self.draw()
 
     @ui.refreshable_method
@@ -86,9 +88,10 @@ class SectionPanel:
         found = state.worker.state(design)
         return section_figure(design, loaded=found.outline if found is not None else None)
 
-    async def _turned(self, angle: float, _: bool) -> None:
-        self.state.angle_deg = angle
-        self.draw()
+    async def _turned(self, angle: float, moves: bool) -> None:
+        self.state.angle_deg, self._moves = angle, moves
+        for window in self.state.windows:
+            window.draw_section()
 
     def _view(self) -> None:
         self.state.loaded = bool(self.view.value)
