@@ -80,7 +80,7 @@ def draw_profile(ax: Axes, profile: ToothProfile, r_pitch: float, spots: Spot) -
         label(ax, (line[-1][0] + 0.06, line[-1][1]), name, color=INK, ha="left")
     names = [segment.name for segment in profile.segments]
     for segment in profile.segments:
-        points = segment.point(np.linspace(0.0, segment.length, 60))
+        points = segment.at(np.linspace(0.0, segment.length, 60)).point
         ax.plot(*points.T, color=COLOURS[segment.name], lw=2.6, solid_capstyle="butt")
         if isinstance(segment, Segment) and segment.curvature:
             middle, at = points[len(points) // 2], center(segment)

@@ -27,9 +27,6 @@ CORNER = np.radians(0.1)
 """Corner between two pieces of a swept area from which it is said. Below, the flank is smooth
 beside the deviations of any cutter."""
 
-BEGIN = np.zeros(1)
-"""Arc length at which a segment begins, mm."""
-
 
 def check_teeth(design: DriveDesign) -> None:
     """Raise InputError where tips lie beyond the root circle of the other gear at the major axis,
@@ -85,15 +82,8 @@ def _room(design: DriveDesign, gear: GearName, faced: GearName) -> float:
 
 def _largest_corner(flank: ToothProfile) -> float:
     """Largest angle (rad) between pieces of the boundary of a swept area; 0 without any."""
-    return max(
-        (
-            abs(float(np.angle(np.exp(1j * (after.angle(BEGIN)[0] - piece.angle(end)[0])))))
-            for piece, after in pairwise(flank.segments)
-            if piece.name == after.name == "swept"
-            for end in [np.array([piece.length])]
-        ),
-        default=0.0,
-    )
+    swept = [one.name == other.name == "swept" for one, other in pairwise(flank.segments)]
+    return float(np.abs(flank.kinks[swept]).max(initial=0.0))
 
 
 def tooth_remarks(design: DriveDesign) -> list[str]:

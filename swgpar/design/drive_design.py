@@ -276,9 +276,7 @@ class DriveDesign(DriveSections):
     def rigid_teeth(self, ring: GearName = "ring_gear") -> RigidTeeth:
         """Undeformed teeth of the flexible spline and of a ring gear at mid-width."""
         profiles = self.profile("flexible_spline"), self.profile(ring)
-        drive, motion = self.drive, self.tooth_motion(ring=ring)
-        lobes = self.wave_generator.lobes
-        return RigidTeeth(*profiles, motion, lobes, drive.teeth_fs, drive.module)
+        return RigidTeeth(*profiles, self.tooth_motion(ring=ring), self.drive.module)
 
     @property
     def rigid_pairs(self) -> dict[GearName, RigidTeeth]:

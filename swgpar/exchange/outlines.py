@@ -52,7 +52,7 @@ def flank_edges(profile: ToothProfile) -> list[Edge]:
         if not isinstance(segment, Segment):
             edges.append(Edge(profile.point(np.linspace(begin, end, FLANK_POINTS))[::-1]))
             continue
-        ends = segment.point(np.array([segment.length, 0.0]))
+        ends = segment.at(np.array([segment.length, 0.0])).point
         if segment.curvature == 0.0:
             edges.append(Edge(ends))
             continue

@@ -68,9 +68,7 @@ def stations(profile: ToothProfile, first: float, last: float, n: int) -> Floats
 def inclination(profile: ToothProfile, s: Floats) -> Floats:
     """Angle (n,), rad, of the flank's normal above the tangential direction, towards the tip."""
     x, y = profile.point(s).T
-    towards_tip = (
-        np.stack((x, y), axis=-1) / np.hypot(x, y)[:, None] * (1.0 if profile.external else -1.0)
-    )
+    towards_tip = profile.sign * np.stack((x, y), axis=-1) / np.hypot(x, y)[:, None]
     return np.arcsin(np.clip(np.einsum("ij,ij->i", profile.normal(s), towards_tip), -1.0, 1.0))
 
 
@@ -224,7 +222,7 @@ class HalfTooth:
         direction /= np.hypot(*direction)
         width = (1.0 - fraction) * q[0]
         j = q + direction * width / abs(direction[0])
-        towards_tip = 1.0 if self.profile.external else -1.0
+        towards_tip = self.profile.sign
         least = self.interface + LEAST_UNDER * (j[1] - self.interface)
         height = j[1] + 0.5 * (j[1] - q[1]) * j[0] / width * fraction
         return j, np.array((0.0, towards_tip * max(towards_tip * height, towards_tip * least)))
@@ -238,7 +236,7 @@ class HalfTooth:
         inwards = -self.profile.normal(self.s_side[0])[0]
         if self.s_side[0] == 0.0:
             # a sharp edge: halfway between the flank and the top land
-            upwards = k / np.hypot(*k) * (1.0 if self.profile.external else -1.0)
+            upwards = self.profile.sign * k / np.hypot(*k)
             if -inwards @ upwards > np.sin(TIP_NORMAL):  # a short rounded edge: of its chord
                 x, y = (side[1] - k) / np.hypot(*(side[1] - k))
                 inwards = np.array((y, -x)) * np.sign(upwards[1])

@@ -128,24 +128,12 @@ def _of_lines(lines: PairedLines, fillet: int) -> Iterator[tuple[list[float], fl
 
 def _of_tooth(profile: ToothProfile, rim: float) -> Iterator[SharpCorner]:
     """Where segments of the flank join with an angle, and where the root meets its circle."""
-    side = 1.0 if profile.external else -1.0
+    end = complex(*profile.tangent(profile.length)[0])
+    along = np.exp(-1j * profile.polar_angle(profile.length)[0])
+    kinks = profile.sign * np.append(profile.kinks, np.angle(along / end))
     lengths = np.diff(profile.breaks)
-    pairs = zip(profile.segments, profile.segments[1:], strict=False)
-    for k, (before, after) in enumerate(pairs):
-        angles = before.angle(np.array([before.length]))[0], after.angle(np.zeros(1))[0]
-        size = float(min(rim, lengths[k], lengths[k + 1]))
-        yield _kink(profile, float(profile.breaks[k + 1]), side, angles, size)
-    end = profile.segments[-1]
-    along = -float(profile.polar_angle(profile.length)[0])
-    angles = end.angle(np.array([end.length]))[0], along
-    size = float(min(rim, lengths[-1]))
-    yield _kink(profile, profile.length, side, angles, size)
-
-
-def _kink(
-    profile: ToothProfile, s: float, side: float, angles: tuple[float, float], size: float
-) -> SharpCorner:
-    """The corner at an arc length (mm). angles : rad, of the tangents before and after it"""
-    turn = side * float(np.angle(np.exp(1j * (angles[1] - angles[0]))))
-    x, y = profile.point(s)[0]
-    return SharpCorner((float(x), float(y)), reach_of(turn, size), of_tooth=True)
+    sizes = np.minimum(lengths, np.append(lengths[1:], np.inf)).clip(max=rim)
+    for s, kink, size in zip(profile.breaks[1:], kinks, sizes, strict=True):
+        x, y = profile.point(s)[0]
+        reach = reach_of(float(kink), float(size))
+        yield SharpCorner((float(x), float(y)), reach, of_tooth=True)

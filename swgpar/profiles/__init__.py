@@ -42,7 +42,6 @@ from swgpar.profiles.s_shaped import RackPath, s_shaped
 from swgpar.profiles.teeth import Teeth
 from swgpar.profiles.tooth_motion import ToothMotion
 from swgpar.profiles.trapezoid import trapezoid
-from swgpar.profiles.turned import thinned
 
 
 @lru_cache(maxsize=32)
@@ -130,37 +129,23 @@ def _build(
     """Flank of a gear; raises InputError with the reason where there is none."""
     name = f"{gear}.profile"
     _refuse_other_keys(keys, c_P, c_l, gear)
-    if isinstance(keys, QuadrupleArc):
-        frame = PitchPointFrame(**asdict(teeth), c_P=c_P)
-        profile = quadruple_arc(
-            frame,
-            c_l,
-            keys.r_tip,
-            keys.r_addendum,
-            keys.straight_l,
-            keys.r_dedendum,
-            keys.r_root,
-            name,
-        )
-    elif isinstance(keys, DoubleArc):
-        profile = double_arc(
-            PitchPointFrame(**asdict(teeth), c_P=c_P), c_l, keys.r_addendum, keys.r_dedendum, name
-        )
+    frame = PitchPointFrame(**asdict(teeth), c_P=c_P)
+    if isinstance(keys, QuadrupleArc | DoubleArc):
+        build = quadruple_arc if isinstance(keys, QuadrupleArc) else double_arc
+        profile = build(frame, c_l, **keys.model_dump(exclude={"type"}), name=name)
     elif isinstance(keys, Trapezoid):
-        frame = PitchPointFrame(**asdict(teeth), c_P=c_P)
         if keys.flank_angle is not None:
             at_pitch = np.radians(keys.flank_angle) + frame.sign * frame.half_thickness
             frame = replace(frame, pressure_angle=float(at_pitch))
         profile = trapezoid(frame, keys.r_tip, keys.r_root, name)
     elif isinstance(keys, CommonTangent):
-        frame = PitchPointFrame(**asdict(teeth), c_P=1.0)
-        profile = thinned(common_tangent(keys, frame, name), c_P)
+        profile = common_tangent(keys, frame, name).thinned(c_P)
     elif isinstance(keys, Points):
-        profile = thinned(fitted_flank(keys, teeth, name).profile, c_P)
+        profile = fitted_flank(keys, teeth, name).profile.thinned(c_P)
     elif isinstance(keys, SShaped):
-        profile = thinned(s_shaped(keys, teeth, path, name), c_P)
+        profile = s_shaped(keys, teeth, path, name).thinned(c_P)
     elif isinstance(keys, Cycloid):
-        profile = thinned(cycloid(keys, teeth, name), c_P)
+        profile = cycloid(keys, teeth, name).thinned(c_P)
     elif isinstance(keys, Conjugate):
         profile = conjugate(keys, teeth, *partner, name)
     else:
@@ -191,19 +176,11 @@ def _refuse_other_keys(
     keys: ExternalProfile | InternalProfile, c_P: float, c_l: float, gear: str
 ) -> None:
     """Refuse values of keys of the gear that do not shape such a profile."""
-    thickness = f"whose tooth thickness follows from {gear}.profile.{keys.thickness_key}"
-    for key, value, counts, allowed, reason in (
-        ("c_P", c_P, not keys.thickness_key, 1.0, thickness),
-        (
-            "c_l",
-            c_l,
-            keys.divides_straight and not keys.thickness_key,
-            0.5,
-            "which does not use it",
-        ),
-    ):
-        profile = f'{allowed:g} with {gear}.profile.type = "{keys.type}"'
-        require(counts or value == allowed, f"{gear}.{key}", value, f"{profile}, {reason}")
+    profile, thickness = f'with {gear}.profile.type = "{keys.type}"', keys.thickness_key
+    allowed = f"1 {profile}, whose tooth thickness follows from {gear}.profile.{thickness}"
+    require(not thickness or c_P == 1.0, f"{gear}.c_P", c_P, allowed)
+    divides, allowed = keys.divides_straight, f"0.5 {profile}, which does not use it"
+    require((divides and not thickness) or c_l == 0.5, f"{gear}.c_l", c_l, allowed)
 
 
 def _cutter(keys: RackInvolute | ShaperInvolute, teeth: Teeth, c_P: float) -> Cutter:

@@ -11,6 +11,7 @@ import numpy as np
 import scipy
 
 from swgpar.geometry.arrays import Complex, Floats
+from swgpar.geometry.rotation import rotated
 from swgpar.profiles.flank import FlankPoints, NearestPoints
 
 PANELS, ORDER = 64, 6
@@ -71,13 +72,23 @@ class CurvedSegment:
     name: str
     evaluate: Callable[[Floats], CurvePoints]
 
-    def between(self, begin: float, end: float) -> CurvedSegment:
-        """The part between two parameters."""
+    def part(self, first: float, last: float) -> CurvedSegment:
+        """The part between two local arc lengths, mm."""
+        begin, end = self.parameter(np.array([first, last])).tolist()
         share = end - begin
 
         def evaluate(t: Floats) -> CurvePoints:
             curve = self.evaluate(begin + share * t)
             return replace(curve, speed=share * curve.speed, angle_rate=share * curve.angle_rate)
+
+        return CurvedSegment(self.name, evaluate)
+
+    def turned(self, angle: float) -> CurvedSegment:
+        """The curve turned about the axis by `angle`, rad."""
+
+        def evaluate(t: Floats) -> CurvePoints:
+            curve = self.evaluate(t)
+            return replace(curve, point=rotated(curve.point, angle), angle=curve.angle + angle)
 
         return CurvedSegment(self.name, evaluate)
 
@@ -128,18 +139,6 @@ class CurvedSegment:
             if np.max(np.abs(step), initial=0.0) < 1e-8:  # the next step would be its square
                 break
         return t
-
-    def point(self, s: Floats) -> Floats:
-        """Return the points (n, 2), mm, at the local arc lengths `s` : (n,) mm."""
-        return self.evaluate(self.parameter(s)).point
-
-    def angle(self, s: Floats) -> Floats:
-        """Return the angles of the tangents (n,), rad, at the local arc lengths `s` : (n,) mm."""
-        return self.evaluate(self.parameter(s)).angle
-
-    def signed_curvature(self, s: Floats) -> Floats:
-        """Return the change of the tangents' angle per arc length (n,), 1/mm, at `s` : (n,) mm."""
-        return self.at(s).curvature
 
     def at(self, s: Floats) -> FlankPoints:
         """Return points, angles and curvatures at the local arc lengths `s` : (n,) mm."""

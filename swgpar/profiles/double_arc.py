@@ -22,18 +22,13 @@ def straight_length(
     """Length l of the straight segment, mm; refuses radii that leave none."""
     key = f"{name.rpartition('.')[0]}.c_l"
     require(c_l < 1.0, key, c_l, "0 to below 1 with a double_arc profile")
-    s = frame.sign
     center = frame.pitch_point + r_dedendum * frame.normal(frame.base_angle)
-    along = float(center @ frame.towards_tip)
-    target = frame.r_root_circle + s * r_dedendum
-    # |center - depth t| = target, the root nearer to the pitch point
-    square = along**2 - float(center @ center) + target**2
-    depth = along - s * np.sqrt(square) if square >= 0.0 and target > 0.0 else -1.0
-    if depth < 0.0:
+    depth = -frame.reach(center, frame.r_root_circle + frame.sign * r_dedendum)
+    if not depth >= 0.0:
         raise InputError(
             f"{name}.r_dedendum = {r_dedendum:g} leaves no straight segment between the arcs"
         )
-    return float(depth / (1.0 - c_l))
+    return depth / (1.0 - c_l)
 
 
 def double_arc(
@@ -42,17 +37,15 @@ def double_arc(
     """Build the flank; mm, `c_l` is the share of the straight segment above the pitch point."""
     length = straight_length(frame, c_l, r_dedendum, name)
     s, star, n = frame.sign, frame.base_angle, frame.normal
-    top = frame.pitch_point + c_l * length * frame.towards_tip
-    bottom = frame.pitch_point - (1.0 - c_l) * length * frame.towards_tip
+    top, bottom = frame.straight(c_l, length)
     o_a, o_d = top - r_addendum * n(star), bottom + r_dedendum * n(star)
     beta_r = frame.inclination(o_d)
     root = ("dedendum", bottom, star, -1.0 / r_dedendum, r_dedendum * (beta_r - star))
     if s * (float(np.hypot(*top)) - frame.r_tip_circle) >= -1e-12 * frame.module:
         # the straight segment reaches the addendum circle, and ends there
-        along = float(top @ frame.towards_tip)
-        beyond = along - s * np.sqrt(along**2 - float(top @ top) + frame.r_tip_circle**2)
-        edge = top - beyond * frame.towards_tip
-        return frame.profile([("straight", edge, star, 0.0, length - beyond), root], name)
+        beyond = frame.reach(top, frame.r_tip_circle)
+        edge = top + beyond * frame.towards_tip
+        return frame.profile([("straight", edge, star, 0.0, length + beyond), root], name)
     beta_t = frame.tip_inclination(o_a, r_addendum, f"{name}.r_addendum")
     tip = o_a + r_addendum * n(beta_t)
     pieces = [

@@ -15,7 +15,6 @@ import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.geometry.bracketed_root import root_between
-from swgpar.profiles.curved_segment import CurvedSegment
 from swgpar.profiles.flank import FlankSegment, Segment, ToothProfile
 
 SAMPLES = 257
@@ -54,22 +53,8 @@ def _cut(curve: ToothProfile, begin: float, end: float, least: float) -> list[Fl
         first, last = max(begin - start, 0.0), min(end - start, segment.length)
         if last - first > least:
             whole = first == 0.0 and last == segment.length
-            parts.append(segment if whole else part_of(segment, first, last))
+            parts.append(segment if whole else segment.part(first, last))
     return parts
-
-
-def part_of(segment: FlankSegment, first: float, last: float) -> FlankSegment:
-    """The part of a segment between two of its local arc lengths, mm."""
-    if isinstance(segment, Segment):
-        x, y = segment.point(np.array([first]))[0]
-        direction = segment.direction + segment.curvature * first
-        return replace(
-            segment, start=(float(x), float(y)), direction=direction, length=last - first
-        )
-    if not isinstance(segment, CurvedSegment):
-        raise TypeError(f"no part of a {type(segment).__name__}")
-    begin, end = segment.parameter(np.array([first, last]))
-    return segment.between(float(begin), float(end))
 
 
 @dataclass(frozen=True)
@@ -80,11 +65,6 @@ class _Ends:
     module: float
     name: str
 
-    @property
-    def sign(self) -> float:
-        """+1 for external teeth, -1 for internal ones."""
-        return 1.0 if self.curve.external else -1.0
-
     def at(self, s: float) -> tuple[complex, complex]:
         """Point, mm, and unit normal out of the tooth, at the arc length s, mm."""
         return complex(*self.curve.point(s)[0]), complex(*self.curve.normal(s)[0])
@@ -93,14 +73,14 @@ class _Ends:
         """How far (mm) towards the tip the point `offset` mm along the normal lies from the circle
         of `radius`, mm."""
         point, normal = self.at(s)
-        return self.sign * (abs(point + offset * normal) - radius)
+        return self.curve.sign * (abs(point + offset * normal) - radius)
 
     def passing(self, offset: float, radius: float) -> float | None:
         """First arc length, mm, at which that point passes the circle towards the root; None where
         it never does."""
         s = np.unique(np.append(np.linspace(0.0, self.curve.length, SAMPLES), self.curve.breaks))
         places = self.curve.point(s) + offset * self.curve.normal(s)
-        above = self.sign * (np.hypot(*places.T) - radius)
+        above = self.curve.sign * (np.hypot(*places.T) - radius)
         if abs(above[0]) < SAME * self.module:
             return 0.0
         passed = np.flatnonzero((above[:-1] > 0.0) & (above[1:] <= 0.0))
@@ -116,14 +96,14 @@ class _Ends:
         """
         begin, end = normals
         out = -1.0 if name == "root" else 1.0
-        start, curvature = centre + out * radius * begin, -out * self.sign / radius
+        start, curvature = centre + out * radius * begin, -out * self.curve.sign / radius
         length = float(np.angle(end / begin)) / curvature
         if length < -SAME * self.module:
             raise InputError(
                 f"{self.name}.r_{name} = {radius:g}: the {name} arc would run backwards: allowed "
                 "are other radii"
             )
-        direction = float(np.angle(begin / (1j * self.sign)))
+        direction = float(np.angle(begin / (1j * self.curve.sign)))
         return Segment(name, (start.real, start.imag), direction, curvature, length)
 
     def tip(self, radius: float) -> tuple[float, list[FlankSegment]]:
@@ -135,7 +115,7 @@ class _Ends:
                 f"{self.name}: the flank ends at a radius of {reached:.6g} mm, the addendum circle "
                 f"has {circle:.6g} mm: allowed are smaller addenda"
             )
-        begin = self.passing(-radius, circle - self.sign * radius)
+        begin = self.passing(-radius, circle - self.curve.sign * radius)
         if begin is None:
             raise InputError(
                 f"{self.name}.r_tip = {radius:g} is out of range: allowed are smaller radii, whose "
@@ -145,28 +125,28 @@ class _Ends:
             return begin, []
         point, normal = self.at(begin)
         centre = point - radius * normal
-        along = self.sign * centre / abs(centre)
+        along = self.curve.sign * centre / abs(centre)
         return begin, [self.arc("tip", radius, centre, (along, normal))]
 
     def root(self, radius: float) -> tuple[float, list[FlankSegment]]:
         """Where the curve ends, mm, and what leads from there to the dedendum circle."""
-        reach = self.curve.r_root_circle + self.sign * radius
+        reach = self.curve.r_root_circle + self.curve.sign * radius
         if self.above(0.0, radius, reach) <= 0.0:
             self.refuse_root(radius)
         end = self.passing(radius, reach)
         point, normal = self.at(self.curve.length if end is None else end)
-        line, centre, parts = normal / (1j * self.sign), point + radius * normal, []
+        line, centre, parts = normal / (1j * self.curve.sign), point + radius * normal, []
         if end is None:
             end = self.curve.length
             along = (np.conj(line) * centre).real
             rest = along**2 - abs(centre) ** 2 + reach**2
-            length = -along - self.sign * float(np.sqrt(rest)) if rest >= 0.0 else -1.0
+            length = -along - self.curve.sign * float(np.sqrt(rest)) if rest >= 0.0 else -1.0
             if length < 0.0:
                 self.refuse_root(radius)
             start, direction = (point.real, point.imag), float(np.angle(line))
             parts = [Segment("tangent", start, direction, 0.0, length)]
             centre += length * line
-        along = self.sign * centre / abs(centre)
+        along = self.curve.sign * centre / abs(centre)
         return end, [*parts, self.arc("root", radius, centre, (normal, along))]
 
     def refuse_root(self, radius: float) -> NoReturn:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import scipy
@@ -29,30 +30,25 @@ CLOSE, TURNED = 1e-10, 0.25 * MISMATCH
 ends and in the middles of its intervals, at most: so that pieces still join."""
 
 
-@dataclass(frozen=True)
-class _Spline:
-    """pieces : of x, y (mm) and their first and second derivatives by the parameter, (n, 6)
-    angle : rad, of the middle tangent"""
+def _spline(t: Floats, points: Floats, angle: float) -> Callable[[Floats], CurvePoints]:
+    """Spline through points (n, 2) mm at the parameters t (n,), for `CurvedSegment`.
 
-    pieces: scipy.interpolate.PPoly
-    angle: float
+    angle : rad, of its middle tangent
+    """
+    pieces = by_pieces(scipy.interpolate.make_interp_spline(t, points, DEGREE))
+    kinds = [pieces, pieces.derivative(1), pieces.derivative(2)]
+    # derivatives have fewer coefficients
+    c = [np.pad(one.c, ((k, 0), (0, 0), (0, 0))) for k, one in enumerate(kinds)]
+    every = scipy.interpolate.PPoly(np.concatenate(c, axis=2), pieces.x)
+    back = np.exp(-1j * angle)
 
-    @classmethod
-    def through(cls, t: Floats, points: Floats, angle: float) -> _Spline:
-        """points : (n, 2) mm at the parameters t (n,)"""
-        pieces = by_pieces(scipy.interpolate.make_interp_spline(t, points, DEGREE))
-        kinds = [pieces, pieces.derivative(1), pieces.derivative(2)]
-        # derivatives have fewer coefficients
-        c = [np.pad(one.c, ((k, 0), (0, 0), (0, 0))) for k, one in enumerate(kinds)]
-        return cls(scipy.interpolate.PPoly(np.concatenate(c, axis=2), pieces.x), angle)
-
-    def evaluate(self, t: Floats) -> CurvePoints:
-        """Curve at the parameters t (n,), for `CurvedSegment`."""
-        z, first, second = np.ascontiguousarray(self.pieces(t)).view(np.complex128).T
-        back = np.exp(-1j * self.angle)
+    def evaluate(t: Floats) -> CurvePoints:
+        z, first, second = np.ascontiguousarray(every(t)).view(np.complex128).T
         curve = points_of(z, back * first, back * second)
         # counted from the middle tangent, the angle does not jump by a turn
-        return replace(curve, angle=curve.angle + self.angle)
+        return replace(curve, angle=curve.angle + angle)
+
+    return evaluate
 
 
 def fitted(curve: CurvedSegment) -> CurvedSegment:
@@ -64,14 +60,14 @@ def fitted(curve: CurvedSegment) -> CurvedSegment:
         points = curve.evaluate(t).point
         if not np.isfinite(points).all():
             return curve
-        known = _Spline.through(t, points, angle)
+        known = CurvedSegment(curve.name, _spline(t, points, angle))
         between = np.array([0.0, *(t[:-1] + 0.5 * (t[1] - t[0])), 1.0])
         exact, found = (of.evaluate(between) for of in (curve, known))
         length = float(exact.speed.mean())
         distance = np.linalg.norm(found.point - exact.point, axis=1).max()
         turned = np.abs(found.angle - exact.angle).max()
         if distance < CLOSE * length and turned < TURNED:
-            return CurvedSegment(curve.name, known.evaluate)
+            return known
         if turned > before:  # round-off, which grows with their number
             return curve
         before = turned

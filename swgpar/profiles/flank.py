@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats
 from swgpar.geometry.bracketed_root import root_between
+from swgpar.geometry.rotation import rotated
 
 MISMATCH = 1e-9
 """Of points, over the tip radius, and of tangents (rad) where segments join."""
@@ -56,23 +58,20 @@ class FlankSegment(Protocol):
     def length(self) -> float:
         """Arc length, mm."""
 
-    def point(self, s: Floats) -> Floats:
-        """Points (n, 2), mm, at `s` : (n,)."""
-
-    def angle(self, s: Floats) -> Floats:
-        """Angles (n,), rad, of the unit tangents from +x, counter-clockwise, at `s` : (n,)."""
-
-    def signed_curvature(self, s: Floats) -> Floats:
-        """Change of that angle per arc length (n,), 1/mm, at `s` : (n,)."""
-
     def at(self, s: Floats) -> FlankPoints:
-        """All three at `s` : (n,), in less time than one by one."""
+        """Points, angles and curvatures at `s` : (n,)."""
 
     def nearest(self, points: Floats) -> NearestPoints:
         """The nearest points to `points` (n, 2), mm."""
 
     def arc_length(self, place: Floats) -> Floats:
         """Local arc lengths (n,), mm, of the places (n,) of nearest points."""
+
+    def part(self, first: float, last: float) -> FlankSegment:
+        """The part between two arc lengths."""
+
+    def turned(self, angle: float) -> FlankSegment:
+        """The segment turned about the axis by `angle`, rad."""
 
 
 @dataclass(frozen=True)
@@ -91,31 +90,34 @@ class Segment:
     curvature: float
     length: float
 
-    def angle(self, s: Floats) -> Floats:
-        """Return the angles of the tangents (n,), rad, at the local arc lengths `s` : (n,) mm."""
-        return self.direction + self.curvature * s
-
-    def signed_curvature(self, s: Floats) -> Floats:
-        """Return `curvature` at each of the local arc lengths `s` : (n,) mm."""
-        return np.full_like(s, self.curvature)
-
     def at(self, s: Floats) -> FlankPoints:
         """Return points, angles and curvatures at the local arc lengths `s` : (n,) mm."""
-        return FlankPoints(self.point(s), self.angle(s), self.signed_curvature(s))
-
-    def point(self, s: Floats) -> Floats:
-        """Return the points at the local arc lengths `s` : (n,) mm, as (n, 2) mm."""
         half = 0.5 * self.curvature * s
         # chord of an arc: exact for any curvature, the straight line included
         chord = s * np.sinc(half / np.pi)
         middle = self.direction + half
         x, y = self.start
-        return np.stack((x + chord * np.cos(middle), y + chord * np.sin(middle)), axis=-1)
+        points = np.stack((x + chord * np.cos(middle), y + chord * np.sin(middle)), axis=-1)
+        return FlankPoints(
+            points, self.direction + self.curvature * s, np.full_like(s, self.curvature)
+        )
+
+    def part(self, first: float, last: float) -> Segment:
+        """The part between two local arc lengths, mm."""
+        begin = self.at(np.array([first]))
+        x, y = begin.point[0].tolist()
+        return replace(self, start=(x, y), direction=float(begin.angle[0]), length=last - first)
+
+    def turned(self, angle: float) -> Segment:
+        """The segment turned about the axis by `angle`, rad."""
+        x, y = rotated(np.array(self.start), angle).tolist()
+        return replace(self, start=(x, y), direction=self.direction + angle)
 
     def nearest(self, points: Floats) -> NearestPoints:
         """The nearest points to `points` (n, 2), mm; their places are local arc lengths."""
         s = self._nearest(points)
-        return NearestPoints(s, self.point(s), self.angle(s))
+        foot = self.at(s)
+        return NearestPoints(s, foot.point, foot.angle)
 
     def arc_length(self, place: Floats) -> Floats:
         """Local arc lengths (n,), mm, of the places (n,) of nearest points: these."""
@@ -185,10 +187,25 @@ class ToothProfile:
         return float(self.breaks[1]) if self.segments[0].name == "tip" else 0.0
 
     @property
-    def _side(self) -> float:
-        # the outward normal is the tangent rotated by +90 degrees on external teeth, by -90 degrees
-        # on internal ones
+    def sign(self) -> float:
+        """+1 for external, -1 for internal teeth: the outward normal is the tangent rotated by +90
+        degrees on external teeth, by -90 degrees on internal ones."""
         return 1.0 if self.external else -1.0
+
+    @property
+    def kinks(self) -> Floats:
+        """Angles (k - 2,), rad, by which tangents turn counter-clockwise where segments meet."""
+        begins = [float(segment.at(np.zeros(1)).angle[0]) for segment in self.segments]
+        ends = [float(one.at(np.array([one.length])).angle[0]) for one in self.segments]
+        return np.angle(np.exp(1j * np.subtract(begins[1:], ends[:-1])))
+
+    def thinned(self, c_P: float) -> ToothProfile:
+        """The flank of a tooth that is thinner by (1 - c_P) of half a pitch (eq. 3.22): turned
+        about the axis, towards the centre line of its tooth."""
+        if c_P == 1.0:
+            return self
+        angle = 0.5 * (1.0 - c_P) * np.pi / self.n_teeth
+        return replace(self, segments=tuple(one.turned(angle) for one in self.segments))
 
     def _split(self, s: ArrayLike) -> tuple[Floats, NDArray[np.intp], Floats]:
         s = np.atleast_1d(np.asarray(s, dtype=np.float64))
@@ -198,13 +215,13 @@ class ToothProfile:
         return s, index, s - self.breaks[index]
 
     def _gather(self, quantity: str, s: ArrayLike, *shape: int) -> Floats:
-        """Values (n, *shape) of the segments' method `quantity` at the arc lengths `s` (n,)."""
+        """Values (n, *shape) of a quantity of `FlankPoints` at the arc lengths `s` (n,)."""
         s, index, local = self._split(s)
         values = np.empty((s.size, *shape))
         for k, segment in enumerate(self.segments):
             inside = index == k
             if inside.any():
-                values[inside] = getattr(segment, quantity)(local[inside])
+                values[inside] = getattr(segment.at(local[inside]), quantity)
         return values
 
     def point(self, s: ArrayLike) -> Floats:
@@ -219,11 +236,11 @@ class ToothProfile:
     def normal(self, s: ArrayLike) -> Floats:
         """Return the unit normals (n, 2), out of the material, at the arc lengths `s` : (n,) mm."""
         direction = self._gather("angle", s)
-        return self._side * np.stack((-np.sin(direction), np.cos(direction)), axis=-1)
+        return self.sign * np.stack((-np.sin(direction), np.cos(direction)), axis=-1)
 
     def curvature(self, s: ArrayLike) -> Floats:
         """Curvature (n,), 1/mm: d tangent / d s = curvature * normal; negative where convex."""
-        return self._side * self._gather("signed_curvature", s)
+        return self.sign * self._gather("curvature", s)
 
     def crowning_weight(self, s: ArrayLike) -> Floats:
         """Return the share (n,) of the crowning that is applied at the arc lengths `s` : (n,) mm.
@@ -262,11 +279,11 @@ class ToothProfile:
                 foot[here] = begin + segment.arc_length(found[k].place[here])
                 angle[here] = found[k].angle[here]
         every = np.arange(len(points))
-        normal = self._side * np.stack((-np.sin(angle), np.cos(angle)), axis=-1)
+        normal = self.sign * np.stack((-np.sin(angle), np.cos(angle)), axis=-1)
         side = np.einsum("ij,ij->i", offsets[nearest, every], normal)
         # the normal of a sharp tip end does not tell a point in the tooth from one over its top
         # land
-        beyond = self._side * (np.linalg.norm(points, axis=1) - self.r_tip_circle) >= 0.0
+        beyond = self.sign * (np.linalg.norm(points, axis=1) - self.r_tip_circle) >= 0.0
         side[(foot == 0.0) & beyond] = 1.0
         return np.copysign(gaps[nearest, every], side), foot
 
@@ -304,10 +321,8 @@ def check_flank(profile: ToothProfile, *, corners: bool = False) -> None:
 
     corners : whether segments may join with an angle, and tangents be off by `OF_POINTS`
     """
-    for before, after in zip(profile.segments, profile.segments[1:], strict=False):
-        end, start = np.array([before.length]), np.zeros(1)
-        jump = before.point(end)[0] - after.point(start)[0]
-        kink = np.angle(np.exp(1j * (before.angle(end)[0] - after.angle(start)[0])))
+    for (before, after), kink in zip(pairwise(profile.segments), profile.kinks, strict=True):
+        jump = before.at(np.array([before.length])).point[0] - after.at(np.zeros(1)).point[0]
         bent = abs(kink) > MISMATCH and not corners
         if np.hypot(*jump) > MISMATCH * profile.r_tip_circle or bent:
             raise InputError(f"the {before.name} and {after.name} segments do not join smoothly")
@@ -331,5 +346,5 @@ def check_flank(profile: ToothProfile, *, corners: bool = False) -> None:
         raise InputError("the flank leaves its half of the tooth sector")
     outward = np.einsum("ij,ij->i", profile.tangent(s), profile.point(s))
     back = OF_POINTS if corners else MISMATCH
-    if np.any((outward if profile.external else -outward) > back * profile.r_tip_circle):
+    if np.any(profile.sign * outward > back * profile.r_tip_circle):
         raise InputError("the flank folds back between tip and root")

@@ -54,7 +54,8 @@ class _Gear:
         return InputError(f"{self.name}.points {what}: allowed {allowed}")
 
 
-def _place(point: complex) -> str:
+def place(point: complex) -> str:
+    """A point x + i y, mm, in words."""
     return f"({point.real:.6g}, {point.imag:.6g}) mm"
 
 
@@ -102,7 +103,7 @@ def _in_order(gear: _Gear) -> Complex:
     crossing = first_crossing(points)
     if crossing is not None:
         raise gear.refuse(
-            f"cross themselves at {_place(crossing)}", "are points in their order along the flank"
+            f"cross themselves at {place(crossing)}", "are points in their order along the flank"
         )
     return points
 
@@ -139,7 +140,7 @@ def _half(gear: _Gear, points: Complex, share: Floats, space: bool) -> Complex:
     apart, at = largest_distance(flank, mirrored)
     if apart > allowed:
         raise gear.refuse(
-            f"have two flanks of the {noun} that differ by {apart:.3g} mm at {_place(at)}",
+            f"have two flanks of the {noun} that differ by {apart:.3g} mm at {place(at)}",
             f"up to {allowed:.3g} mm, mirror images about the middle of the {noun}",
         )
     return flank
@@ -162,7 +163,7 @@ def _check_course(gear: _Gear, flank: Complex) -> None:
     at = int(inwards.argmin())
     if inwards[at] < -(1e-9 * np.abs(flank[0]) + gear.keys.tolerance):
         raise gear.refuse(
-            f"go back towards the tip at {_place(flank[at])}",
+            f"go back towards the tip at {place(flank[at])}",
             "are points in their order from tip to root, each nearer to the root than the last",
         )
     angle = clockwise_from_y(flank)
@@ -170,7 +171,7 @@ def _check_course(gear: _Gear, flank: Complex) -> None:
         if not 0.0 < angle[at] < gear.half_pitch:
             raise gear.refuse(
                 f"reach {np.degrees(angle[at]):.4g} degrees from the middle of the tooth at "
-                f"{_place(flank[at])}",
+                f"{place(flank[at])}",
                 f"above 0 to below {np.degrees(gear.half_pitch):.4g} (half a pitch), with the "
                 "tooth of a single flank on +y",
             )

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Complex, Floats
 from swgpar.input.quantities import show
-from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints
+from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints, points_of
 from swgpar.profiles.flank import ToothProfile
-from swgpar.profiles.flank_points import flank_points
+from swgpar.profiles.flank_points import flank_points, place
 from swgpar.profiles.keys import Points
 from swgpar.profiles.teeth import Teeth
 
@@ -81,7 +81,7 @@ class FittedFlank:
 
 @dataclass(frozen=True)
 class _Piece:
-    """The part of a spline over arc lengths (point x, y in mm) between `begin` and `end`, mm."""
+    """The part of a spline over arc lengths (points x + i y, mm) between `begin` and `end`, mm."""
 
     spline: scipy.interpolate.CubicSpline
     begin: float
@@ -91,16 +91,12 @@ class _Piece:
         """Curve at the parameters t (n,), for `CurvedSegment`."""
         span = self.end - self.begin
         u = self.begin + span * t
-        first, second = self.spline(u, 1), self.spline(u, 2)
-        square = (first**2).sum(axis=1)
-        bend = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
-        angle = np.arctan2(first[:, 1], first[:, 0])
-        return CurvePoints(self.spline(u), angle, span * np.sqrt(square), span * bend / square)
+        return points_of(self.spline(u), span * self.spline(u, 1), span**2 * self.spline(u, 2))
 
     def tangent(self, u: float) -> complex:
         """Unit tangent at the arc length u, mm."""
-        x, y = self.spline(u, 1)
-        return complex(x, y) / abs(complex(x, y))
+        along = complex(self.spline(u, 1))
+        return along / abs(along)
 
     def cut(self, at: float) -> tuple[_Piece, _Piece]:
         """The parts before and behind an arc length, mm."""
@@ -109,19 +105,15 @@ class _Piece:
 
 def _fit(points: Complex, first: complex | None = None, last: complex | None = None) -> _Piece:
     """Spline by arc length through points x + i y (n,), with given unit tangents at its ends."""
-    xy = np.column_stack([points.real, points.imag])
     gauss, weight = np.polynomial.legendre.leggauss(4)
     lengths = np.abs(np.diff(points))
     free = "not-a-knot" if len(points) > 3 else "natural"
-    ends = tuple(
-        free if tangent is None else (1, [tangent.real, tangent.imag]) for tangent in (first, last)
-    )
+    ends = tuple(free if tangent is None else (1, tangent) for tangent in (first, last))
     for _ in range(ROUNDS):
         u = np.append(0.0, np.cumsum(lengths))
-        spline = scipy.interpolate.CubicSpline(u, xy, bc_type=ends)
+        spline = scipy.interpolate.CubicSpline(u, points, bc_type=ends)
         at = u[:-1, None] + 0.5 * np.diff(u)[:, None] * (1.0 + gauss)
-        speed = np.linalg.norm(spline(at, 1), axis=-1)
-        lengths = 0.5 * np.diff(u) * (speed @ weight)
+        lengths = 0.5 * np.diff(u) * (np.abs(spline(at, 1)) @ weight)
     return _Piece(spline, 0.0, float(u[-1]))
 
 
@@ -225,14 +217,11 @@ def fitted_flank(keys: Points, teeth: Teeth, name: str = "profile") -> FittedFla
     segments = tuple(
         CurvedSegment(noun, piece.evaluate) for noun, piece in zip(names, pieces, strict=True)
     )
-    tip, root = (
-        float(np.abs(points[0])),
-        float(np.hypot(*segments[-1].evaluate(np.ones(1)).point[0])),
-    )
+    tip, root = float(abs(points[0])), float(abs(pieces[-1].spline(pieces[-1].end)))
     profile = ToothProfile(segments, teeth.external, tip, root, teeth.n_teeth)
     ends = [(one.tangent(one.end), two.tangent(two.begin)) for one, two in pairwise(pieces)]
     kinks = [abs(np.angle(two / one)) > SAME for one, two in ends]
-    radii = np.abs([complex(*piece.spline(piece.end)) for piece in pieces[:-1]])
+    radii = np.abs([piece.spline(piece.end) for piece in pieces[:-1]])
     return FittedFlank(profile, deviation, between, tuple(radii[kinks].tolist()))
 
 
@@ -286,10 +275,9 @@ def _check_scatter(pieces: list[_Piece], teeth: Teeth, name: str) -> None:
         at = np.flatnonzero(side)
         changes = at[1:][np.diff(side[at]) != 0.0]
         if len(changes) > TURNS:
-            x, y = piece.spline(u[changes[0]])
             raise InputError(
                 f"{name}.points scatter: the curve through them winds {len(changes)} times, first "
-                f"at ({x:.6g}, {y:.6g}) mm: allowed are smoother points or a larger "
+                f"at {place(piece.spline(u[changes[0]]))}: allowed are smoother points or a larger "
                 f"{name}.tolerance, the mean distance of the points from a smooth curve"
             )
 
@@ -299,10 +287,9 @@ def _with_root(piece: _Piece, teeth: Teeth, name: str) -> list[_Piece]:
     u, bends = _bends(piece, teeth)
     sharp = bends >= ROOT_CURVATURE
     if not sharp[-SAMPLES // 8 :].any():
-        x, y = piece.spline(piece.end)
         raise InputError(
-            f"{name}.points have no fillet at the root, ({x:.6g}, {y:.6g}) mm: allowed is a "
-            f"concave end with a radius below {teeth.module / ROOT_CURVATURE:g} mm, or "
+            f"{name}.points have no fillet at the root, {place(piece.spline(piece.end))}: allowed "
+            f"is a concave end with a radius below {teeth.module / ROOT_CURVATURE:g} mm, or "
             f"{name}.joints with the radius from the axis at which the root begins"
         )
     # from the end: up to where the curve is no longer bent so much

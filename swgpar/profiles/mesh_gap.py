@@ -131,7 +131,6 @@ class Outline:
 def outline(profile: ToothProfile) -> Outline:
     """Sampled outline of a gear; kept, because every search of a design asks for it."""
     top, bottom = profile.polar_angle([0.0, profile.length])
-    side = 1.0 if profile.external else -1.0
     segments: list[FlankSegment] = [
         _land("top land", profile.r_tip_circle, 0.0, float(top)),
         *profile.segments,
@@ -154,8 +153,8 @@ def outline(profile: ToothProfile) -> Outline:
         pitch=2.0 * np.pi / profile.n_teeth,
         place=np.concatenate([begin + s for begin, s in zip(begins, local, strict=True)]),
         point=np.concatenate([each.point for each in at]) @ (1.0, 1j),
-        normal=side * 1j * np.exp(1j * angle),
-        curvature=side * np.concatenate([each.curvature for each in at]),
+        normal=profile.sign * 1j * np.exp(1j * angle),
+        curvature=profile.sign * np.concatenate([each.curvature for each in at]),
         flank=slice(LAND_STEPS + 1, -LAND_STEPS - 1),
     )
 

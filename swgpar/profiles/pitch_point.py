@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,6 +66,19 @@ class PitchPointFrame(Teeth):
             raise InputError(f"{key} = {radius:g}: its arc does not reach the addendum circle")
         at = float(np.arctan2(self.sign * center[1], center[0]))
         return at - self.sign * float(np.arccos(cosine))
+
+    def straight(self, c_l: float, length: float) -> tuple[np.ndarray, np.ndarray]:
+        """Upper and lower end (2,), mm, of a straight segment through the pitch point, of which
+        the share c_l is above it."""
+        top = self.pitch_point + c_l * length * self.towards_tip
+        return top, self.pitch_point - (1.0 - c_l) * length * self.towards_tip
+
+    def reach(self, start: np.ndarray, radius: float) -> float:
+        """How far, mm, the circle of `radius`, mm, is from `start` (2,), mm, along `towards_tip`;
+        NaN where the line does not meet it."""
+        along = float(start @ self.towards_tip)
+        square = along**2 - float(start @ start) + radius**2
+        return -along + self.sign * math.sqrt(square) if radius > 0.0 <= square else math.nan
 
     def segment(
         self, name: str, start: np.ndarray, beta: float, convexity: float, length: float

@@ -76,8 +76,7 @@ def quadruple_arc(
 ) -> ToothProfile:
     """Build the flank; mm, `c_l` is the share of the straight segment above the pitch point."""
     s, star, n = frame.sign, frame.base_angle, frame.normal
-    top = frame.pitch_point + c_l * straight_l * frame.towards_tip
-    bottom = frame.pitch_point - (1.0 - c_l) * straight_l * frame.towards_tip
+    top, bottom = frame.straight(c_l, straight_l)
     o_a = top - r_addendum * n(star)
 
     def tip_center(angle: float) -> np.ndarray:

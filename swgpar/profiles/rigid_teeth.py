@@ -41,15 +41,12 @@ class RigidMesh:
 class RigidTeeth:
     """Undeformed teeth of the flexible spline and of a ring gear in the deflected position.
 
-    spline, ring : flanks;  motion : of the spline's tooth in its slot
-    lobes : of the cam;  teeth : of the flexible spline;  module : mm
+    spline, ring : flanks;  motion : of the spline's tooth in its slot;  module : mm
     """
 
     spline: ToothProfile
     ring: ToothProfile
     motion: ToothMotion
-    lobes: int
-    teeth: int
     module: float
 
     @cached_property
@@ -85,7 +82,8 @@ class RigidTeeth:
         touching, gaps = self._touching(phases)
         if not np.isfinite(touching).all():
             return RigidMesh(np.inf, 0.0)
-        share = np.count_nonzero(gaps < NEAR) / phases * self.lobes / self.teeth
+        near = np.count_nonzero(gaps < NEAR) / phases
+        share = near * self.motion.line.lobes / self.motion.teeth_fs
         return RigidMesh(float(np.degrees(np.ptp(touching))) * 3600.0, share)
 
     def touching_rotation(self) -> float:
@@ -103,8 +101,8 @@ class RigidTeeth:
 
         -inf where the teeth do not reach each other, or overlap at every rotation.
         """
-        pitch = 2.0 * np.pi / self.teeth
-        reach = self.teeth // (2 * self.lobes)
+        pitch = 2.0 * np.pi / self.motion.teeth_fs
+        reach = self.motion.teeth_fs // (2 * self.motion.line.lobes)
         psi = pitch * (np.arange(-reach, reach + 1) + np.arange(phases)[:, None] / phases)
 
         near = np.ones(psi.shape, dtype=bool)

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -78,21 +78,6 @@ class Places(NamedTuple):
     angle: Floats
 
 
-class Passing(Protocol):
-    """A part of the moving flank, between the arc lengths `span`, mm, that may be on the
-    boundary."""
-
-    @property
-    def span(self) -> tuple[float, float]:
-        """Ends of the part."""
-
-    def at_radius(self, radius: Floats, s: Floats, psi: Floats) -> Places:
-        """Places at radii (n,) mm by Newton's method from s (n,) mm and psi (n,) rad."""
-
-    def curve(self, radii: Floats, places: Places) -> CurvedSegment:
-        """Exact curve through places at radii (n,) mm, from the first to the last."""
-
-
 @dataclass(frozen=True)
 class _SegmentEnvelope:
     """Envelope of the segment `index` of the moving flank."""
@@ -102,7 +87,7 @@ class _SegmentEnvelope:
 
     @property
     def span(self) -> tuple[float, float]:
-        """See `Passing`."""
+        """Ends of the part of the moving flank, arc lengths in mm."""
         begin, end = self.envelope.given.breaks[self.index : self.index + 2]
         return float(begin), float(end)
 
@@ -139,7 +124,7 @@ class _SegmentEnvelope:
         return s, psi, last
 
     def at_radius(self, radius: Floats, s: Floats, psi: Floats) -> Places:
-        """See `Passing`."""
+        """Places at radii (n,) mm by Newton's method from s (n,) mm and psi (n,) rad."""
         with np.errstate(divide="ignore", invalid="ignore"):
             s, psi, turn = self._solved(radius, s, psi)
             contacts, outwards, square = self._contacts(s, psi)
@@ -154,7 +139,7 @@ class _SegmentEnvelope:
             )
 
     def curve(self, radii: Floats, places: Places) -> CurvedSegment:
-        """See `Passing`."""
+        """Exact curve through places at radii (n,) mm, from the first to the last."""
         order = np.argsort(radii)
         s_of, psi_of = (
             scipy.interpolate.CubicHermiteSpline(radii[order], value[order], rate[order])
@@ -182,11 +167,11 @@ class _EdgePath:
 
     @property
     def span(self) -> tuple[float, float]:
-        """See `Passing`."""
+        """See `_SegmentEnvelope`."""
         return self.place, self.place
 
     def at_radius(self, radius: Floats, s: Floats, psi: Floats) -> Places:
-        """See `Passing`."""
+        """See `_SegmentEnvelope`."""
         s = np.full_like(psi, self.place)
         with np.errstate(divide="ignore", invalid="ignore"):
             for _ in range(20):
@@ -200,7 +185,7 @@ class _EdgePath:
         return Places(s, psi, np.zeros_like(s), 1.0 / rate, clockwise_from_y(point))
 
     def curve(self, radii: Floats, places: Places) -> CurvedSegment:
-        """See `Passing`."""
+        """See `_SegmentEnvelope`."""
         first, span = places.psi[0], places.psi[-1] - places.psi[0]
 
         def evaluate(t: Floats) -> CurvePoints:
@@ -216,7 +201,7 @@ class _EdgePath:
 class _Run:
     """Neighbouring radii (n,) mm, from tip to root, at which the same part is on the boundary."""
 
-    part: Passing
+    part: _SegmentEnvelope | _EdgePath
     radii: Floats
     places: Places
 
@@ -258,11 +243,7 @@ class SweptArea:
         """Edges of the moving flank: a sharp tip and convex corners."""
         given = self.envelope.given
         places = [] if given.tip_end else [0.0]
-        for at, (before, after) in zip(given.breaks[1:-1], pairwise(given.segments), strict=True):
-            ends = before.angle(np.array([before.length])), after.angle(np.zeros(1))
-            turn = float(np.angle(np.exp(1j * (ends[1] - ends[0])))[0])
-            if turn * (-1.0 if given.external else 1.0) > KINK:
-                places.append(float(at))
+        places += given.breaks[1:-1][-given.sign * given.kinks > KINK].tolist()
         return [_EdgePath(self.envelope, place) for place in places]
 
     def _seen(self) -> tuple[Floats, Floats, Floats]:
@@ -273,7 +254,7 @@ class SweptArea:
         along = np.abs(np.einsum("ij,ij->i", given.tangent(s), given.point(s)))
         s = s[along > STEEP * np.hypot(*given.point(s).T)]
         psi = np.linspace(-reach, reach, POSITIONS)
-        sign = 1.0 if self.envelope.external else -1.0
+        sign = -given.sign
         points = self.envelope.places(s, self.envelope.pose(psi))
         nearest = (sign * np.abs(points)).min(axis=1)
         farthest = sign * (float(nearest.min()) + EDGE * self.module)
@@ -300,10 +281,11 @@ class SweptArea:
     def _runs(self) -> list[_Run]:
         """What is on the boundary, from tip to root."""
         radii, s, psi = self._seen()
-        parts: list[Passing] = [
-            _SegmentEnvelope(self.envelope, k) for k in range(len(self.envelope.given.segments))
+        segments = range(len(self.envelope.given.segments))
+        parts: list[_SegmentEnvelope | _EdgePath] = [
+            *(_SegmentEnvelope(self.envelope, k) for k in segments),
+            *self._edges,
         ]
-        parts += self._edges
         found = [self._found(part, radii, s, psi) for part in parts]
         angle = np.array(
             [np.where(np.abs(each.psi - psi) < NEAR, each.angle, np.inf) for each in found]

@@ -20,7 +20,6 @@ from swgpar.geometry.arrays import Floats
 from swgpar.geometry.bracketed_root import root_between
 from swgpar.input.require import require
 from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints
-from swgpar.profiles.ends import part_of
 from swgpar.profiles.fitted_curve import fitted
 from swgpar.profiles.flank import FlankSegment, ToothProfile, check_flank
 
@@ -75,7 +74,7 @@ def relieved(profile: ToothProfile, relief: float, height: float, gear: str) -> 
     """
     if relief == 0.0:
         return profile
-    outwards = 1.0 if profile.external else -1.0
+    outwards = profile.sign
     base = profile.r_tip_circle - outwards * height
     above_fillet = outwards * (profile.r_tip_circle - _radius(profile, profile.root_start))
     allowed = f"above 0 to below {above_fillet:.4g} mm (above the root), here {height:.4g} mm"
@@ -93,7 +92,7 @@ def relieved(profile: ToothProfile, relief: float, height: float, gear: str) -> 
             segments.append(fitted(CurvedSegment(name, part.evaluate)))
         if segment.length - max(inside, 0.0) > 1e-9 * profile.length:
             whole = inside <= 0.0
-            segments.append(segment if whole else part_of(segment, inside, segment.length))
+            segments.append(segment if whole else segment.part(inside, segment.length))
     changed = replace(profile, segments=tuple(segments))
     try:
         check_flank(changed)

@@ -10,6 +10,7 @@ neutral line, a point Z of the tooth's frame (axis at 0, tooth on +i) is, in the
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +19,7 @@ from swgpar.geometry.arrays import Floats
 from swgpar.geometry.neutral_line import NeutralLine
 
 
-@dataclass(frozen=True)
-class Pose:
+class Pose(NamedTuple):
     """Positions of a moving frame: z = c + exp(i alpha) Z, with the derivatives by psi.
 
     c, c1, c2 : (n,) complex, mm;  angle, angle1, angle2 : (n,) rad
@@ -48,26 +48,14 @@ class Pose:
 
     def taken(self, index: NDArray[np.intp]) -> Pose:
         """The positions `index` of these."""
-        return Pose(
-            self.c[index],
-            self.c1[index],
-            self.c2[index],
-            self.angle[index],
-            self.angle1[index],
-            self.angle2[index],
-        )
+        return Pose(*(each[index] for each in self))
 
     def turned(self, angle: Floats) -> Pose:
         """These positions turned about the axis by `angle` (n,) rad, which does not depend on
         psi."""
         turn = np.exp(1j * angle)
-        return replace(
-            self,
-            c=turn * self.c,
-            c1=turn * self.c1,
-            c2=turn * self.c2,
-            angle=self.angle + angle,
-        )
+        c, c1, c2, own, *rates = self
+        return Pose(turn * c, turn * c1, turn * c2, own + angle, *rates)
 
     def moved(self, points: np.ndarray) -> np.ndarray:
         """Points of the moving frame (n,) complex, mm, in the fixed one."""

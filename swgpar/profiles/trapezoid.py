@@ -10,7 +10,7 @@ Both are quadratic equations for x. With r_t = 0 the line meets the addendum cir
 
 from __future__ import annotations
 
-import numpy as np
+import math
 
 from swgpar.errors import InputError
 from swgpar.profiles.flank import ToothProfile
@@ -27,18 +27,11 @@ def trapezoid(
     """
     s, star, t = frame.sign, frame.base_angle, frame.towards_tip
     normal = frame.normal(star)
-
-    def reached(offset: float, radius: float, key: str) -> float:
-        """Place x on the line whose point, `offset` along its normal, is at `radius`; mm."""
-        start = frame.pitch_point + offset * normal
-        along = float(start @ t)
-        square = along**2 - float(start @ start) + radius**2
-        if square < 0.0 or radius <= 0.0:
+    top = frame.reach(frame.pitch_point - r_tip * normal, frame.r_tip_circle - s * r_tip)
+    bottom = frame.reach(frame.pitch_point + r_root * normal, frame.r_root_circle + s * r_root)
+    for key, place in (("r_tip", top), ("r_root", bottom)):
+        if math.isnan(place):
             raise InputError(f"{name}.{key}: the straight flank does not reach its circle")
-        return -along + s * float(np.sqrt(square))
-
-    top = reached(-r_tip, frame.r_tip_circle - s * r_tip, "r_tip")
-    bottom = reached(r_root, frame.r_root_circle + s * r_root, "r_root")
     if top <= bottom:
         raise InputError(
             f"{name}.r_tip = {r_tip:g} with r_root = {r_root:g} leaves no straight flank between "

@@ -128,7 +128,7 @@ def test_the_boundary_is_the_envelope_where_that_is_not_undercut(gear: str) -> N
     envelope = Envelope(other, design.tooth_motion(), 0.0)
     area = SweptArea(envelope, flank.r_tip_circle, design.drive.module, "profile")
     for curve in area.boundary():
-        distance, _ = flank.distance(curve.point(np.linspace(0.0, curve.length, 40)))
+        distance, _ = flank.distance(curve.at(np.linspace(0.0, curve.length, 40)).point)
         assert np.abs(distance).max() < 1e-10
 
 
