@@ -14,13 +14,11 @@ import numpy as np
 import scipy
 
 from swgpar.geometry.cams import Cam, OffsetCam
+from swgpar.geometry.cams.curve import on_rays
 
 BallLines = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
 """Gives centres (n, 2) mm, groove normals (n, 2) in the cam's frame and curvatures (n,) 1/mm of the
 centres' curve at angles (n,) rad from the major axis."""
-
-MAX_STEPS = 50
-"""Newton steps along a ray to the curve of the balls; a few suffice."""
 
 OUTLINE_POINTS = 2000
 """Points of a cam at which its curvature and its hollows are looked at."""
@@ -93,14 +91,7 @@ def ball_lines(
     angle : (n,) rad, of the centres from the major axis, counter-clockwise
     """
     ray = np.column_stack([-np.sin(angle), np.cos(angle)])
-    radius = np.full(len(angle), float(np.linalg.norm(cam.outline(4), axis=1).max()))
-    for _ in range(MAX_STEPS):
-        distance, normal, _ = cam.evaluate(radius[:, None] * ray)
-        step = (distance + depth) / np.einsum("ni,ni->n", normal, ray)
-        radius = radius - step
-        if np.abs(step).max(initial=0.0) < 1e-14 * radius.max(initial=0.0):
-            break
-    centre = radius[:, None] * ray
+    centre = on_rays(cam, ray, float(np.linalg.norm(cam.outline(4), axis=1).max()), depth)
     _, normal, curvature = cam.evaluate(centre)
     return centre, normal, curvature
 

@@ -8,7 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from swgpar.geometry.cams import Cam, RollerCam, WaveGenerator
-from swgpar.geometry.micro_geometry import WaveGeneratorSurface, crowning
+from swgpar.geometry.cams.piecewise import Circle
+from swgpar.geometry.micro_geometry import Level, WaveGeneratorSurface, crowned, crowning
 
 APART = 1.0
 """Level (mm) of points beside a disc: nothing touches there."""
@@ -31,26 +32,21 @@ class TwoDiscSurface:
     crowning: float
     shape: str
 
-    def evaluate(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Level h (n,) mm, gradient (n, 3), Hessian (n, 3, 3) 1/mm at points (n, 3) of the cam.
+    def evaluate(self, xyz: np.ndarray) -> Level:
+        """Level, gradient and Hessian at points (n, 3) mm of the cam.
 
         Points between the discs are `APART`.
         """
-        x, y, z = np.asarray(xyz, dtype=float).T
+        z = xyz[:, 2]
         side = np.where(z < 0.0, -1.0, 1.0)
-        reach = np.hypot(x, y - side * self.cam.reach)
-        safe = np.maximum(reach, 1e-12 * self.cam.radius)
-        normal = np.column_stack([x, y - side * self.cam.reach]) / safe[:, None]
+        disc = Circle(self.cam.center, self.cam.radius)
+        distance, normal, k = disc.evaluate(xyz[:, :2] * side[:, None])
         along = z - 0.5 * side * self.distance
         half = 0.5 * self.width * (1.0 + 1e-9)
-        c, dc, ddc = crowning(self.crowning, np.clip(along, -half, half), self.width, self.shape)
-        gradient, hessian = np.zeros((len(x), 3)), np.zeros((len(x), 3, 3))
-        gradient[:, :2], gradient[:, 2] = normal, dc
-        tangent = np.column_stack([-normal[:, 1], normal[:, 0]])
-        hessian[:, :2, :2] = tangent[:, :, None] * tangent[:, None, :] / safe[:, None, None]
-        hessian[:, 2, 2] = ddc
-        beside = np.abs(along) > half
-        return np.where(beside, APART, reach - self.cam.radius + c), gradient, hessian
+        removed = crowning(self.crowning, np.clip(along, -half, half), self.width, self.shape)
+        curve = distance, normal * side[:, None], k
+        level, gradient, hessian = crowned(curve, removed)
+        return np.where(np.abs(along) > half, APART, level), gradient, hessian
 
 
 CamSurface = WaveGeneratorSurface | TwoDiscSurface
@@ -65,8 +61,8 @@ class GrownSurface:
     def __init__(self, surface: CamSurface, strain: float) -> None:
         self.surface, self.factor = surface, 1.0 + strain
 
-    def evaluate(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Level h (n,) mm, gradient (n, 3), Hessian (n, 3, 3) 1/mm at points (n, 3) mm."""
+    def evaluate(self, xyz: np.ndarray) -> Level:
+        """Level, gradient and Hessian at points (n, 3) mm."""
         level, gradient, hessian = self.surface.evaluate(xyz / self.factor)
         return level * self.factor, gradient, hessian / self.factor
 

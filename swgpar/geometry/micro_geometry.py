@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from swgpar.geometry.arrays import SignedDistance
 from swgpar.geometry.cams import Cam
 
 
@@ -33,41 +34,31 @@ def crowning(
     return radius - root, z / root, radius**2 / root**3
 
 
-Waves = tuple[np.ndarray, tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
-"""A function of x and y, (n,), its derivatives by x and y, and those by xx, xy and yy."""
+Level = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Level h (n,) mm, gradient (n, 3) and Hessian (n, 3, 3) 1/mm of a surface."""
 
 
-def _two_waves(x: np.ndarray, y: np.ndarray) -> Waves:
-    """cos 2 theta = (y^2 - x^2) / r^2."""
-    r2 = x * x + y * y
-    q = (y * y - x * x) / r2
-    qx, qy = -2.0 * x * (1.0 + q) / r2, 2.0 * y * (1.0 - q) / r2
-    qxx = (-2.0 * (1.0 + q) - 4.0 * x * qx) / r2
-    qyy = (2.0 * (1.0 - q) - 4.0 * y * qy) / r2
-    qxy = (-2.0 * x * qy - 2.0 * y * qx) / r2
-    return q, (qx, qy), (qxx, qxy, qyy)
+def crowned(curve: SignedDistance, removed: tuple[np.ndarray, np.ndarray, np.ndarray]) -> Level:
+    """Level function of a curve along z. removed : along z, see `crowning`"""
+    (distance, normal, k), (c, dc, ddc) = curve, removed
+    hessian = np.zeros((len(c), 3, 3))
+    tangent = np.column_stack([-normal[:, 1], normal[:, 0]])
+    hessian[:, :2, :2] = k[:, None, None] * tangent[:, :, None] * tangent[:, None, :]
+    hessian[:, 2, 2] = ddc
+    return distance + c, np.column_stack([normal, dc]), hessian
 
 
-def _three_waves(x: np.ndarray, y: np.ndarray) -> Waves:
-    """cos 3 theta = cos theta (2 cos 2 theta - 1), cos theta = y / r."""
-    q, (qx, qy), (qxx, qxy, qyy) = _two_waves(x, y)
-    r = np.hypot(x, y)
-    p, px, py = y / r, -x * y / r**3, x * x / r**3
-    pxx, pxy, pyy = (
-        y * (2.0 * x * x - y * y) / r**5,
-        x * (2.0 * y * y - x * x) / r**5,
-        -3.0 * x * x * y / r**5,
-    )
-    f = 2.0 * q - 1.0
-    return (
-        p * f,
-        (px * f + 2.0 * p * qx, py * f + 2.0 * p * qy),
-        (
-            pxx * f + 4.0 * px * qx + 2.0 * p * qxx,
-            pxy * f + 2.0 * (px * qy + py * qx + p * qxy),
-            pyy * f + 4.0 * py * qy + 2.0 * p * qyy,
-        ),
-    )
+def _waves(
+    x: np.ndarray, y: np.ndarray, lobes: int
+) -> tuple[np.ndarray, list[np.ndarray], list[np.ndarray]]:
+    """q = cos(lobes theta), (n,), its derivatives by x and y, and those by xx, yy and xy."""
+    r2, angle = x * x + y * y, lobes * np.arctan2(x, y)
+    q, rate = np.cos(angle), lobes * np.sin(angle)
+    # derivatives of the angle from +y, clockwise
+    ax, ay, axx, axy = y / r2, -x / r2, -2.0 * x * y / r2**2, (x * x - y * y) / r2**2
+    pairs = ((ax * ax, axx), (ay * ay, -axx), (ax * ay, axy))
+    second = [-(lobes**2) * q * squares - rate * bend for squares, bend in pairs]
+    return q, [-rate * ax, -rate * ay], second
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,26 +80,16 @@ class WaveGeneratorSurface:
     shape: str = "parabolic"
     lobes: int = 2
 
-    def evaluate(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Level h (n,) mm, gradient (n, 3), Hessian (n, 3, 3) 1/mm at points (n, 3) on the cam."""
+    def evaluate(self, xyz: np.ndarray) -> Level:
+        """Level, gradient and Hessian at points (n, 3) mm on the cam."""
         x, y, z = np.asarray(xyz, dtype=float).T
-        distance, normal, k = self.cam.evaluate(xyz[:, :2])
-        gradient = np.zeros((len(x), 3))
-        hessian = np.zeros((len(x), 3, 3))
-        gradient[:, :2] = normal
-        tangent = np.column_stack([-normal[:, 1], normal[:, 0]])
-        hessian[:, :2, :2] = k[:, None, None] * tangent[:, :, None] * tangent[:, None, :]
-        c, dc, ddc = crowning(self.crowning, z, self.width, self.shape)
-        level = distance + c
-        gradient[:, 2] += dc
-        hessian[:, 2, 2] += ddc
+        removed = crowning(self.crowning, z, self.width, self.shape)
+        level, gradient, hessian = crowned(self.cam.evaluate(xyz[:, :2]), removed)
         if self.slope:
-            q, (qx, qy), (qxx, qxy, qyy) = (_two_waves if self.lobes == 2 else _three_waves)(x, y)
+            q, (qx, qy), (qxx, qyy, qxy) = _waves(x, y, self.lobes)
             rate = 2.0 * self.slope / self.width
-            level = level + rate * z * q
-            gradient[:, 0] += rate * z * qx
-            gradient[:, 1] += rate * z * qy
-            gradient[:, 2] += rate * q
+            level += rate * z * q
+            gradient += rate * np.column_stack([z * qx, z * qy, q])
             hessian[:, 0, 0] += rate * z * qxx
             hessian[:, 1, 1] += rate * z * qyy
             for i, j, value in ((0, 1, rate * z * qxy), (0, 2, rate * qx), (1, 2, rate * qy)):

@@ -43,23 +43,20 @@ class WallPoint(NamedTuple):
 
 
 class Arc(NamedTuple):
-    """A rounded corner. start, end, center : (2,) distance and radius, mm"""
+    """A rounded corner.
+
+    start, end, center : (2,) distance and radius, mm;  angle : rad, by which the line turns
+    """
 
     start: Floats
     end: Floats
     center: Floats
+    angle: float
 
     @property
     def ends(self) -> Floats:
         """Distances (2,) mm of start and end."""
         return np.array([self.start[0], self.end[0]])
-
-    @property
-    def angle(self) -> float:
-        """By which the line turns, rad."""
-        one, other = self.start - self.center, self.end - self.center
-        cosine = float(one @ other / np.sqrt(one @ one * (other @ other)))
-        return float(np.arccos(np.clip(cosine, -1.0, 1.0)))
 
 
 class RoundedLine:
@@ -91,10 +88,11 @@ class RoundedLine:
         if radius == 0.0 or turning == 0.0:
             return None
         before, after = self._along[k - 1 : k + 1]
-        reach = radius * np.tan(0.5 * abs(turning))
+        angle = float(abs(turning))
+        reach = radius * np.tan(0.5 * angle)
         start = self.points[k] - reach * before
         normal = np.sign(turning) * np.array([-before[1], before[0]])
-        return Arc(start, self.points[k] + reach * after, start + radius * normal)
+        return Arc(start, self.points[k] + reach * after, start + radius * normal, angle)
 
     def arcs(self) -> list[Arc]:
         """The rounded corners."""
@@ -130,7 +128,7 @@ class RoundedLine:
     def radius(self, distance: Floats) -> Floats:
         """Radii (n,) mm at distances (n,) mm."""
         r = np.interp(distance, *self.points.T)
-        for start, end, center in self.arcs():
+        for start, end, center, _ in self.arcs():
             on = (distance > start[0]) & (distance < end[0])
             side = np.sign(start[1] - center[1])
             arm = np.hypot(*(start - center))

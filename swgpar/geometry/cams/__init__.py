@@ -5,14 +5,12 @@ To add a cam, see docs/developer/add_a_cam.md.
 
 from __future__ import annotations
 
-from typing import Protocol
-
 import numpy as np
 import scipy
 
-from swgpar.geometry.arrays import SignedDistance
 from swgpar.geometry.cams.arcs import arcs
 from swgpar.geometry.cams.bearing_keys import Bearing
+from swgpar.geometry.cams.curve import Cam
 from swgpar.geometry.cams.elliptical import EllipticalCam
 from swgpar.geometry.cams.from_expression import expression_cam
 from swgpar.geometry.cams.from_points import points_cam
@@ -39,23 +37,6 @@ from swgpar.geometry.cams.simplified import simplified
 
 OUTLINE_POINTS = 5760
 """Of a cam: arcs and lines that join with a jump of curvature need them."""
-
-
-class Cam(Protocol):
-    """A closed curve with two lobes or three, major axis along +y; all lengths in mm.
-
-    A turn by one lobe leaves it as it is.
-    """
-
-    def evaluate(self, xy: np.ndarray) -> SignedDistance:
-        """Signed distance, outward normal and Hessian factor at points (n, 2) mm near it."""
-
-    def outline(self, n: int) -> np.ndarray:
-        """About n points of the surface (n, 2), mm.
-
-        They lie all around the curve, with steps of about the same size. Neighbours follow each
-        other, in either direction; separate parts follow one after the other.
-        """
 
 
 def make_cam(

@@ -3,28 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from swgpar.geometry.arrays import SignedDistance
-
-
-class Curve(Protocol):
-    """A closed curve."""
-
-    def evaluate(self, xy: np.ndarray) -> SignedDistance:
-        """Signed distance, normal and Hessian factor at points (n, 2), mm."""
-
-    def outline(self, n: int) -> np.ndarray:
-        """About n points of the curve (n, 2), mm."""
+from swgpar.geometry.cams.curve import Cam
 
 
 @dataclass(frozen=True)
 class OffsetCam:
     """The curve at the distance `offset` (mm) outside of a cam; inside where it is below 0."""
 
-    cam: Curve
+    cam: Cam
     offset: float
 
     def evaluate(self, xy: np.ndarray) -> SignedDistance:

@@ -3,18 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from swgpar.geometry.arrays import SignedDistance
-
-
-class Piece(Protocol):
-    """A part of a circle, a line or a parabola."""
-
-    def evaluate(self, xy: np.ndarray) -> SignedDistance:
-        """Signed distance, normal and k at points (n, 2), mm, of the whole curve."""
+from swgpar.geometry.cams.curve import on_rays
 
 
 @dataclass(frozen=True)
@@ -105,7 +98,7 @@ class PiecewiseCam:
     joints, tangents : (len(pieces) - 1, 2) points between them, mm, and counter-clockwise tangents
     """
 
-    pieces: tuple[Piece, ...]
+    pieces: tuple[Circle | Line | Parabola, ...]
     joints: np.ndarray
     tangents: np.ndarray
 
@@ -131,13 +124,4 @@ class PiecewiseCam:
         """Points (n, 2), mm, of the curve at equal polar angles, counter-clockwise from +x."""
         angle = 2.0 * np.pi * np.arange(n) / n
         ray = np.column_stack([np.cos(angle), np.sin(angle)])
-        # Newton along the ray from outside: the distance is convex, so it stays outside and
-        # converges
-        radius = np.full(n, 2.0 * np.abs(self.joints).max())
-        for _ in range(50):
-            distance, normal, _ = self.evaluate(radius[:, None] * ray)
-            step = distance / np.einsum("ij,ij->i", normal, ray)
-            radius -= step
-            if np.abs(step).max() < 1e-13 * radius.max():
-                break
-        return radius[:, None] * ray
+        return on_rays(self, ray, 2.0 * float(np.abs(self.joints).max()))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,47 +15,50 @@ MOST_STEPS = 30
 CONVERGED = 1e-14
 """Step (rad) at which a foot point is found."""
 
-Radius = Callable[[Floats], tuple[Floats, Floats, Floats]]
-"""Radius (n,) mm and its first two derivatives at polar angles (n,) rad, counter-clockwise from
-+y."""
 
+class PolarCurve(ABC):
+    """A curve whose radius is a function of the polar angle."""
 
-def distance_from(radius: Radius, xy: np.ndarray) -> SignedDistance:
-    """Signed distance, outward normal and Hessian factor at points (n, 2) mm near a polar curve.
+    @abstractmethod
+    def radius(self, theta: Floats) -> tuple[Floats, Floats, Floats]:
+        """Radius (n,) mm and its first two derivatives at angles (n,) rad from the major axis,
+        counter-clockwise."""
 
-    The foot point X solves (X - p) . X' = 0 by Newton from the polar angle of p. Points inside
-    must be nearer to the curve than its radius of curvature.
-    """
-    x, y = np.asarray(xy, dtype=float).T
-    size, angle = np.hypot(x, y), np.arctan2(-x, y)
-    theta = angle
-    for _ in range(MOST_STEPS):
-        r, r1, r2 = radius(theta)
-        # the point in the radial and the circumferential direction of the foot point
-        along, across = size * np.cos(angle - theta), size * np.sin(angle - theta)
-        value = (r - along) * r1 - across * r
-        slope = r1 * r1 + r * along + (r - along) * r2 - 2.0 * across * r1
-        step = value / slope
-        theta = theta - step
-        if np.max(np.abs(step), initial=0.0) < CONVERGED:
-            break
-    r, r1, r2 = radius(theta)
-    speed = np.hypot(r, r1)
-    sine, cosine = np.sin(theta), np.cos(theta)
-    normal = np.column_stack([-r * sine + r1 * cosine, r * cosine + r1 * sine]) / speed[:, None]
-    distance = (x + r * sine) * normal[:, 0] + (y - r * cosine) * normal[:, 1]
-    curvature = (r * r + 2.0 * r1 * r1 - r * r2) / speed**3
-    return distance, normal, curvature / (1.0 + curvature * distance)
+    def evaluate(self, xy: np.ndarray) -> SignedDistance:
+        """Signed distance, outward normal and Hessian factor at points (n, 2) mm near the curve.
 
+        The foot point X solves (X - p) . X' = 0 by Newton from the polar angle of p. Points inside
+        must be nearer to the curve than its radius of curvature.
+        """
+        x, y = np.asarray(xy, dtype=float).T
+        size, angle = np.hypot(x, y), np.arctan2(-x, y)
+        theta = angle
+        for _ in range(MOST_STEPS):
+            r, r1, r2 = self.radius(theta)
+            # the point in the radial and the circumferential direction of the foot point
+            along, across = size * np.cos(angle - theta), size * np.sin(angle - theta)
+            value = (r - along) * r1 - across * r
+            slope = r1 * r1 + r * along + (r - along) * r2 - 2.0 * across * r1
+            step = value / slope
+            theta = theta - step
+            if np.max(np.abs(step), initial=0.0) < CONVERGED:
+                break
+        r, r1, r2 = self.radius(theta)
+        speed = np.hypot(r, r1)
+        sine, cosine = np.sin(theta), np.cos(theta)
+        normal = np.column_stack([-r * sine + r1 * cosine, r * cosine + r1 * sine]) / speed[:, None]
+        distance = (x + r * sine) * normal[:, 0] + (y - r * cosine) * normal[:, 1]
+        curvature = (r * r + 2.0 * r1 * r1 - r * r2) / speed**3
+        return distance, normal, curvature / (1.0 + curvature * distance)
 
-def polar_outline(radius: Radius, n: int) -> np.ndarray:
-    """Points (n, 2), mm, of a polar curve at equal angles, counter-clockwise from +y."""
-    theta = 2.0 * np.pi * np.arange(n) / n
-    return radius(theta)[0][:, None] * np.column_stack([-np.sin(theta), np.cos(theta)])
+    def outline(self, n: int) -> np.ndarray:
+        """Points (n, 2), mm, of the curve at equal polar angles, counter-clockwise from +y."""
+        theta = 2.0 * np.pi * np.arange(n) / n
+        return self.radius(theta)[0][:, None] * np.column_stack([-np.sin(theta), np.cos(theta)])
 
 
 @dataclass(frozen=True)
-class PolarCam:
+class PolarCam(PolarCurve):
     """A smooth curve through radii with their derivatives at equal angles around one lobe.
 
     Between two angles the radius is the polynomial of fifth degree that has all six values, so
@@ -72,8 +75,7 @@ class PolarCam:
     deviation: float
 
     def radius(self, theta: Floats) -> tuple[Floats, Floats, Floats]:
-        """Radius (n,) mm and its first two derivatives at angles (n,) rad from the major axis,
-        counter-clockwise."""
+        """See `PolarCurve`."""
         count = self.values.shape[1] - 1
         width = 2.0 * np.pi / (self.lobes * count)
         place = np.mod(theta / width, count)
@@ -92,14 +94,6 @@ class PolarCam:
         first = a1 + t * (2.0 * a2 + t * (3.0 * a3 + t * (4.0 * a4 + t * 5.0 * a5)))
         second = 2.0 * a2 + t * (6.0 * a3 + t * (12.0 * a4 + t * 20.0 * a5))
         return value, first / width, second / width**2
-
-    def evaluate(self, xy: np.ndarray) -> SignedDistance:
-        """Signed distance, outward normal and Hessian factor at points near the curve."""
-        return distance_from(self.radius, xy)
-
-    def outline(self, n: int) -> np.ndarray:
-        """Points (n, 2), mm, of the curve at equal polar angles, counter-clockwise from +y."""
-        return polar_outline(self.radius, n)
 
 
 def mirrored_lobe(half: Floats) -> Floats:
