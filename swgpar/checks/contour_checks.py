@@ -128,9 +128,9 @@ def check_contour(contour: Contour) -> None:
         else:
             _check_slopes(contour, k, STEEPEST)
             _check_outside(contour, k)
-    for k, (before, corner, after) in enumerate(_neighbours(points), 1):
-        if k <= len(contour.given) and contour.value(k, "outer_radius") is not None:
-            _check_lean(contour, k, before, corner, after)
+    for k in range(1, len(contour.given) + 1):
+        if contour.value(k, "outer_radius") is not None:
+            _check_lean(contour, k)
     _check_roundings(contour)
 
 
@@ -149,11 +149,6 @@ def _check_roundings(contour: Contour) -> None:
             allowed = f"0 to {limit:.4g} mm (half of the shorter side)"
             key = contour.key_of(k, name if own else "rounding")
             require(radius <= limit * ROUND_OFF, key, radius, allowed)
-
-
-def _neighbours(points: Sequence[WallPoint]) -> list[tuple[WallPoint, WallPoint, WallPoint]]:
-    """Every point behind the first one, between those beside it; the last one has itself."""
-    return list(zip(points, points[1:], [*points[2:], points[-1]], strict=False))
 
 
 def _check_slopes(contour: Contour, k: int, degrees: float) -> None:
@@ -199,10 +194,10 @@ def _check_outside(contour: Contour, k: int) -> None:
     require(fits, key, contour.radius(point.outer_radius), allowed)
 
 
-def _check_lean(
-    contour: Contour, k: int, before: WallPoint, point: WallPoint, after: WallPoint
-) -> None:
+def _check_lean(contour: Contour, k: int) -> None:
     """The line between both corners is about square to the wall on both sides of it."""
+    points = contour.points
+    before, point, after = points[k - 1], points[k], points[min(k + 1, len(points) - 1)]
     across, names = complex(*point.across), contour.names
     for other, way in ((before, 1.0), (after, -1.0)):
         for wall in (

@@ -7,14 +7,12 @@ from collections.abc import Iterator
 from typing import Any
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import SECTIONS
 from swgpar.errors import InputError
 from swgpar.input.require import require, require_available
 
 LARGEST = 0.01
 """Largest strain of a growth: strains are small."""
-
-SECTIONS = {"housing": "ring_gear.housing", "bearing": "wave_generator.bearing"}
-"""Sections of bodies that have another name than these."""
 
 PRESSED = 1e-4
 """Difference of the growths of a frame and of what it holds above which it is said: on steel a

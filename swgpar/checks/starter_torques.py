@@ -6,6 +6,8 @@ the diameter alone. docs/verification/starter.md has the runs behind the numbers
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from swgpar.checks.starter import Request, usual_profile
@@ -30,10 +32,9 @@ def carried_torque(request: Request, design: DriveDesign) -> float | None:
     design : of the request
     """
     usual = Request(request.ratio, request.torque, profile=usual_profile("cup", "elliptical", 2))
-    kinds = ("profile", "cam", "layout", "model", "shape", "lobes")
-    if any(getattr(request, kind) != getattr(usual, kind) for kind in kinds):
-        return None
-    if not min(CARRIED) <= request.ratio <= max(CARRIED):
+    if replace(request, diameter=None, bore=None) != usual or not min(
+        CARRIED
+    ) <= request.ratio <= max(CARRIED):
         return None
     if UNKNOWN[0] < request.ratio < UNKNOWN[1]:
         return None
@@ -53,10 +54,10 @@ def overload(request: Request, design: DriveDesign) -> str:
     if carried is None or request.torque <= carried:
         return ""
     needed = pitch_diameter(design) * (request.torque / carried) ** (1.0 / 3.0)
+    most, least = _rounded(carried, np.floor), _rounded(needed, np.ceil)
     return (
         f"torque = {request.torque:g} N·m is more than this start carries: allowed by its rating "
-        f"up to {_below(carried):g} N·m, or {request.torque:g} N·m with a pitch diameter of "
-        f"{_above(needed):g} mm"
+        f"up to {most:g} N·m, or {request.torque:g} N·m with a pitch diameter of {least:g} mm"
     )
 
 
@@ -65,19 +66,11 @@ def torque_text(request: Request, design: DriveDesign) -> str:
     carried = carried_torque(request, design)
     if carried is None:
         return "The torque that this start carries has not been computed: swgpar rate judges it."
-    return overload(request, design) or f"It carries up to {_below(carried):g} N·m."
-
-
-def _below(value: float) -> float:
-    """The value rounded down to `DIGITS` digits."""
-    return _rounded(value, np.floor)
-
-
-def _above(value: float) -> float:
-    """The value rounded up to `DIGITS` digits."""
-    return _rounded(value, np.ceil)
+    most = _rounded(carried, np.floor)
+    return overload(request, design) or f"It carries up to {most:g} N·m."
 
 
 def _rounded(value: float, to: np.ufunc) -> float:
+    """The value rounded to `DIGITS` digits. to : down or up"""
     unit = 10.0 ** (int(np.floor(np.log10(value))) + 1 - DIGITS)
     return float(to(value / unit) * unit)

@@ -110,14 +110,11 @@ class Supports:
                 self._ground(coupling, support)
 
     def _ground(self, coupling: Coupling, support: np.ndarray) -> None:
-        """Ground the coupling's nodes along their directions in `support` (n_local, 3)."""
-        vector = create_vector(self.partition)
-        array = vector.array.reshape(-1, 3)
-        for i in np.flatnonzero(np.abs(support).sum(axis=1)):
-            direction = np.sqrt(GROUNDING * self.scale) * support[i]
-            array[coupling.nodes[i]] += direction
-            self._grounded_nodes.append((int(coupling.nodes[i]), direction))
-        self._ground_vectors.append(vector)
+        """Ground the coupling's nodes along their directions in `support` (n, 3)."""
+        directions = np.sqrt(GROUNDING * self.scale) * support
+        self._ground_vectors.append(self._vector(coupling.nodes, directions))
+        for i in np.flatnonzero(support.any(axis=1)):
+            self._grounded_nodes.append((int(coupling.nodes[i]), directions[i]))
 
     def grounding(self, u: np.ndarray) -> list[PETSc.Vec]:
         """Vectors B of what the matrix holds too much, B B^T, at u (n_local, 3) mm; collective.

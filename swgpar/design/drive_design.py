@@ -11,7 +11,7 @@ import numpy as np
 from swgpar.design.cup_sizes import CupSizes
 from swgpar.design.drive_sections import DriveSections
 from swgpar.design.negligible_torque import negligible_torque
-from swgpar.design.sections import ExternalGear, GearName, InternalGear
+from swgpar.design.sections import SECTIONS, ExternalGear, GearName, InternalGear
 from swgpar.geometry.bearing import BallLines, BearingSizes, RigidParts, ball_lines
 from swgpar.geometry.cams import Cam, OffsetCam, make_cam
 from swgpar.geometry.cams.semi_axes import minor_semi_axis, radial_deflection
@@ -305,9 +305,8 @@ class DriveDesign(DriveSections):
         has refused temperatures of materials whose expansion is not known.
         """
         rises, every = self.temperature_rises, {}
-        sections = {"housing": "ring_gear.housing", "bearing": "wave_generator.bearing"}
         for body, material in self.materials.items():
-            every[body] = material.thermal_growth(rises[sections.get(body, body)]) or NO_GROWTH
+            every[body] = material.thermal_growth(rises[SECTIONS.get(body, body)]) or NO_GROWTH
         if self.housing is not None:
             fit = 2.0 * self.geometry.gears["ring_gear"].outer_radius
             every["housing"] += Growth(across=-self.housing.interference / fit)

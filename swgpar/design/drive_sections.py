@@ -9,7 +9,7 @@ from swgpar.design.cup_section import Cup
 from swgpar.design.deviations import Deviations
 from swgpar.design.frequency_section import Frequencies
 from swgpar.design.input_coupling import InputCoupling
-from swgpar.design.kinematics import Kinematics, make_kinematics
+from swgpar.design.kinematics import Kinematics
 from swgpar.design.losses_section import Losses
 from swgpar.design.output_bearing import OutputBearing
 from swgpar.design.program_sections import Ratcheting, Stiffness
@@ -81,13 +81,25 @@ class DriveSections(Design):
 
     @property
     def kinematics(self) -> Kinematics:
-        """Speeds and angles."""
-        wave, bearing = self.wave_generator, self.bearing
-        pancake, bolts = self.dynamic_spline is not None, self.cup.bolts if self.is_bolted else 0
-        balls = 0 if bearing is None else bearing.balls
-        passes = bearing is not None and bearing.cage_speed != 1.0
-        alike = wave.lobes_are_alike
-        return make_kinematics(self.drive, wave.lobes, alike, pancake, bolts, balls, passes)
+        """Speeds and angles. In a pancake drive the dynamic spline is the output or stands where
+        the flexible spline does in others."""
+        drive, bearing = self.drive, self.bearing
+        output: GearName = "flexible_spline" if self.dynamic_spline is None else "dynamic_spline"
+        standing: GearName = "ring_gear"
+        if drive.layout == "spline_fixed":
+            output, standing = standing, output
+        return Kinematics(
+            teeth_fs=drive.teeth_fs,
+            teeth_rg=drive.teeth_rg,
+            lobes=self.wave_generator.lobes,
+            lobes_are_alike=self.wave_generator.lobes_are_alike,
+            output_gear=output,
+            standing_gear=standing,
+            wave_generator_is_fixed=drive.layout == "wave_generator_fixed",
+            bolts=self.cup.bolts if self.is_bolted else 0,
+            balls=0 if bearing is None else bearing.balls,
+            balls_pass=bearing is not None and bearing.cage_speed != 1.0,
+        )
 
     @property
     def lobes_are_alike(self) -> bool:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.design.ball_phases import ball_passings
-from swgpar.design.sections import Drive, GearName
+from swgpar.design.sections import GearName
 
 
 @dataclass(frozen=True)
@@ -158,33 +158,3 @@ class Kinematics:
         wave_generator : its angle against the standing gear, in the unit of the angle
         """
         return angle - wave_generator if self.wave_generator_is_fixed else angle
-
-
-def make_kinematics(
-    drive: Drive,
-    lobes: int,
-    lobes_are_alike: bool,
-    pancake: bool,
-    bolts: int,
-    balls: int,
-    balls_pass: bool,
-) -> Kinematics:
-    """The motion of a drive. In a pancake drive the dynamic spline is the output or stands where
-    the flexible spline does in others."""
-    output: GearName = "dynamic_spline" if pancake else "flexible_spline"
-    standing: GearName = "ring_gear"
-    if drive.layout == "spline_fixed":
-        output, standing = standing, output
-    fixed = drive.layout == "wave_generator_fixed"
-    return Kinematics(
-        drive.teeth_fs,
-        drive.teeth_rg,
-        lobes,
-        lobes_are_alike,
-        output,
-        standing,
-        fixed,
-        bolts,
-        balls,
-        balls_pass,
-    )

@@ -21,6 +21,9 @@ GearName = Literal["flexible_spline", "ring_gear", "dynamic_spline"]
 DesignBody = Literal["flexible_spline", "ring_gear", "dynamic_spline", "housing", "bearing"]
 """Name of what may have a material of its own."""
 
+SECTIONS = {"housing": "ring_gear.housing", "bearing": "wave_generator.bearing"}
+"""Sections of bodies that have another name than these."""
+
 GEARS: tuple[GearName, GearName] = ("flexible_spline", "ring_gear")
 """The gears that every drive has, in the order of the bodies."""
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.input.curve_file import JOIN, dxf_entities, read_rows
+from swgpar.input.curve_file import chain_of, dxf_entities, read_rows
 
 STRAIGHT = 1e-6
 """Angle (rad) between two lines that make one."""
@@ -94,28 +94,8 @@ def _piece(part: Any, scale: float, path: Path) -> _Piece:
 
 def _in_order(pieces: list[_Piece], path: Path) -> list[_Piece]:
     """The pieces end to end, by increasing x."""
-    chain, left = pieces[:1], pieces[1:]
-    while left:
-        ends = chain[-1].end, chain[0].start
-        for k, piece in enumerate(left):
-            for one in (piece, piece.reversed()):
-                if abs(one.start - ends[0]) < JOIN:
-                    chain.append(one)
-                elif abs(one.end - ends[1]) < JOIN:
-                    chain.insert(0, one)
-                else:
-                    continue
-                break
-            else:
-                continue
-            left.pop(k)
-            break
-        else:
-            x, y = ends[0].real, ends[0].imag
-            raise InputError(
-                f"{path} has more than one line: nothing goes on within {JOIN:g} mm from "
-                f"({x:.6g}, {y:.6g}) mm; name one layer"
-            )
+    order = chain_of([(piece.start, piece.end) for piece in pieces], path)
+    chain = [pieces[k].reversed() if is_reversed else pieces[k] for k, is_reversed in order]
     if chain[0].start.real > chain[-1].end.real:
         chain = [piece.reversed() for piece in chain[::-1]]
     return chain

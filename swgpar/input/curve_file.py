@@ -10,7 +10,7 @@ without arcs are taken as points of the curve. Other straight lines are divided.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sized
+from collections.abc import Collection, Sequence, Sized
 from pathlib import Path
 from typing import Any
 
@@ -195,28 +195,38 @@ def _divided(curve: np.ndarray) -> np.ndarray:
     return np.concatenate([*pieces, curve[-1:]])
 
 
-def _joined(pieces: list[np.ndarray], path: Path) -> np.ndarray:
-    """One curve of pieces that meet end to end, in any order and direction."""
-    curve, left = pieces[0], pieces[1:]
+def chain_of(ends: Sequence[tuple[complex, complex]], path: Path) -> list[tuple[int, bool]]:
+    """Numbers of curves that meet end to end, in their order, and whether each is reversed.
+
+    ends : x + i y (mm) of each, in any order and direction;  path : of their file, for messages
+    """
+    chain, left, (begin, end) = [(0, False)], list(range(1, len(ends))), ends[0]
     while left:
-        gaps = np.array(
-            [
-                [np.hypot(*(end - tip)) for tip in (piece[0], piece[-1])]
-                for end in (curve[-1], curve[0])
-                for piece in left
-            ]
-        ).reshape(2, len(left), 2)
+        gaps = np.abs(np.array([end, begin])[:, None, None] - np.array([ends[k] for k in left]))
         at, k, side = np.unravel_index(gaps.argmin(), gaps.shape)
         if gaps[at, k, side] > JOIN:
-            x, y = (curve[-1], curve[0])[at]
+            tip = (end, begin)[at]
             raise InputError(
                 f"{path} has more than one curve: the nearest end of another one is "
-                f"{gaps[at, k, side]:.3g} mm away from the end at ({x:.5g}, {y:.5g}) mm, allowed "
-                f"up to {JOIN:g} mm; name one layer"
+                f"{gaps[at, k, side]:.3g} mm away from the end at ({tip.real:.5g}, {tip.imag:.5g}) "
+                f"mm, allowed up to {JOIN:g} mm; name one layer"
             )
-        piece = left.pop(k)
-        piece = piece if side == 0 else piece[::-1]
-        curve = (
-            np.concatenate([curve, piece[1:]]) if at == 0 else np.concatenate([piece[:0:-1], curve])
-        )
-    return curve
+        number = left.pop(k)
+        if at == 0:
+            chain.append((number, bool(side == 1)))
+            end = ends[number][1 - side]
+        else:
+            chain.insert(0, (number, bool(side == 0)))
+            begin = ends[number][1 - side]
+    return chain
+
+
+def _joined(pieces: list[np.ndarray], path: Path) -> np.ndarray:
+    """One curve of pieces that meet end to end; where two meet, it has the point of that which is
+    nearer to the first one of the file."""
+    chain = chain_of([(complex(*piece[0]), complex(*piece[-1])) for piece in pieces], path)
+    parts = [pieces[k][::-1] if is_reversed else pieces[k] for k, is_reversed in chain]
+    first = chain.index((0, False))
+    before, after = parts[:first], parts[first + 1 :]
+    joined = [*(part[:-1] for part in before), parts[first], *(part[1:] for part in after)]
+    return np.concatenate(joined)

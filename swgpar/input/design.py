@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
 from pydantic import PrivateAttr
 
 from swgpar.input.quantities import Section
-from swgpar.input.toml_file import FILE_KEYS, Overrides, apply_overrides
+from swgpar.input.toml_file import FILE_KEYS, Overrides, apply_overrides, flat
 
 
 class Design(Section):
@@ -31,7 +31,11 @@ class Design(Section):
     @property
     def files(self) -> list[Path]:
         """Files that the design is made of, beside its own."""
-        return list(_files(self.model_dump()))
+        return [
+            Path(value)
+            for key, value in flat(self.model_dump())
+            if key.split(".")[-1] in FILE_KEYS and isinstance(value, str)
+        ]
 
     def with_values(self, values: Overrides) -> Self:
         """A new, checked design with other values.
@@ -52,12 +56,3 @@ class Design(Section):
         >>> lighter = design.with_values({"load.torque": 5.0, "steps.rotation": 10.0})
         """
         return self._maker(apply_overrides(self.model_dump(exclude_unset=True), values))
-
-
-def _files(table: Mapping[str, Any]) -> Iterator[Path]:
-    """Values of `FILE_KEYS` in a table and the tables in it."""
-    for key, value in table.items():
-        if isinstance(value, Mapping):
-            yield from _files(value)
-        elif key in FILE_KEYS and isinstance(value, str):
-            yield Path(value)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from swgpar.input.design import Design
+from swgpar.input.toml_file import flat
 
 
 @dataclass(frozen=True)
@@ -23,7 +24,7 @@ def differences(first: Design, second: Design) -> list[Difference]:
 
     A section that one of both lacks is named by its keys.
     """
-    one, other = (dict(_flat(design.model_dump(), "")) for design in (first, second))
+    one, other = (dict(flat(design.model_dump())) for design in (first, second))
     return [
         Difference(key, one.get(key), other.get(key))
         for key in [*one, *(key for key in other if key not in one)]
@@ -45,11 +46,3 @@ def differ_little(first: Any, second: Any, share: float) -> bool:
     if isinstance(first, float) and isinstance(second, float):
         return abs(first - second) <= share * max(abs(first), abs(second))
     return bool(first == second)
-
-
-def _flat(table: Mapping[str, Any], path: str) -> Iterator[tuple[str, Any]]:
-    for name, value in table.items():
-        if isinstance(value, Mapping):
-            yield from _flat(value, f"{path}{name}.")
-        else:
-            yield f"{path}{name}", value

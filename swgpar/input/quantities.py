@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any, get_args
 
-import annotated_types
 from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, field_validator
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
@@ -27,6 +27,14 @@ class Section(BaseModel):
     only."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    def __hash__(self) -> int:
+        # curves are kept by their keys, which may be lists and tables
+        return self._digest
+
+    @cached_property
+    def _digest(self) -> int:
+        return hash(self.model_dump_json())
 
     @field_validator("*", mode="after")
     @classmethod
@@ -115,20 +123,14 @@ def plain_type(annotation: Any) -> Any:
 def limits_of(field: FieldInfo) -> dict[str, Any]:
     """Limits of the numbers of a field, as declared with `quantity`: any of ``gt``, ``ge``, ``lt``,
     ``le``."""
-    kinds = {
-        "ge": annotated_types.Ge,
-        "gt": annotated_types.Gt,
-        "le": annotated_types.Le,
-        "lt": annotated_types.Lt,
-    }
     of_items = [
         limit for item in get_args(field.annotation) for limit in getattr(item, "__metadata__", ())
     ]
     return {
         name: getattr(limit, name)
         for limit in [*field.metadata, *of_items]
-        for name, kind in kinds.items()
-        if isinstance(limit, kind)
+        for name in ("ge", "gt", "le", "lt")
+        if hasattr(limit, name)
     }
 
 

@@ -55,10 +55,3 @@ class Isotropic(Material):
         out = shear * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
         out[:3, :3] += self.E * self.nu / ((1.0 + self.nu) * (1.0 - 2.0 * self.nu))
         return out
-
-    def plane_stress(self) -> np.ndarray:
-        """Stresses xx, yy, xy by these strains in plane stress, (3, 3) MPa."""
-        direct = self.E / (1.0 - self.nu**2)
-        across = direct * self.nu
-        shear = 0.5 * self.E / (1.0 + self.nu)
-        return np.array([[direct, across, 0.0], [across, direct, 0.0], [0.0, 0.0, shear]])

@@ -5,22 +5,16 @@ The plane model is written as quadrilaterals at z = 0.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from typing import NamedTuple
 
 import meshio
 import numpy as np
 
-from swgpar.errors import InputError, OutputError
 from swgpar.geometry.arrays import Floats, Ints
-from swgpar.materials import Material
-from swgpar.meshing.inp import element_faces, write_inp
-from swgpar.meshing.quality import hex_volumes
+from swgpar.geometry.rotation import rotated
+from swgpar.meshing.inp import element_faces
 from swgpar.meshing.sector import SectorMesh
 from swgpar.meshing.sweep import grid_quads
-from swgpar.whole_files import whole_files
-
-FORMATS = ("vtu", "msh", "inp")
 
 HOUSING = "housing"
 """Name of the housing among the bodies of the files."""
@@ -41,17 +35,22 @@ def sector_numbers(mesh: SectorMesh) -> Ints:
     return numbers.astype(np.int32)
 
 
-def whole_body(mesh: SectorMesh) -> tuple[Floats, Ints]:
-    """Nodes (n, 3), mm, and elements (m, 8 or 4) of all sectors; numbers of `sector_numbers`."""
+class WholeBody(NamedTuple):
+    """A body with all its teeth. points : (n, 3) mm;  cells : (m, 8), plane (m, 4), VTK order"""
+
+    points: Floats
+    cells: Ints
+
+
+def whole_body(mesh: SectorMesh) -> WholeBody:
+    """Nodes and elements of all sectors; numbers of `sector_numbers`."""
     numbers = sector_numbers(mesh)
     angle = mesh.sector_angle(np.arange(mesh.n_sectors))[:, None]
-    x, y, z = mesh.coords.T
     coords = np.empty((int(numbers.max()) + 1, 3))
-    coords[numbers, 0] = x * np.cos(angle) - y * np.sin(angle)
-    coords[numbers, 1] = x * np.sin(angle) + y * np.cos(angle)
-    coords[numbers, 2] = z if not mesh.plane else 0.0
-    elements = mesh.elements
-    return coords, numbers[:, elements].reshape(-1, elements.shape[1])
+    coords[numbers] = rotated(mesh.coords, angle)
+    if mesh.plane:
+        coords[:, 2] = 0.0
+    return WholeBody(coords, numbers[:, mesh.elements].reshape(-1, mesh.elements.shape[1]))
 
 
 def named_nodes(mesh: SectorMesh) -> dict[str, Ints]:
@@ -126,7 +125,7 @@ def whole_drive(meshes: dict[str, SectorMesh]) -> meshio.Mesh:
     )
 
 
-def _as_vtu(drive: meshio.Mesh) -> meshio.Mesh:
+def as_vtu(drive: meshio.Mesh) -> meshio.Mesh:
     """Return the drive with its node sets as point data, since VTU has no sets."""
     marks = {}
     for name, nodes in drive.point_sets.items():
@@ -135,71 +134,10 @@ def _as_vtu(drive: meshio.Mesh) -> meshio.Mesh:
     return meshio.Mesh(drive.points, drive.cells, point_data=marks, cell_data=dict(drive.cell_data))
 
 
-def _as_msh(drive: meshio.Mesh) -> meshio.Mesh:
+def as_msh(drive: meshio.Mesh) -> meshio.Mesh:
     """Return the drive with its bodies as named physical volumes, or surfaces in the plane."""
     dimension = 3 if drive.cells[0].type == "hexahedron" else 2
     tags = [block + 1 for block in drive.cell_data["body"]]
     names = {body: np.array([number + 1, dimension]) for number, body in enumerate(drive.cell_sets)}
     data = {"gmsh:physical": tags, "gmsh:geometrical": [tag.copy() for tag in tags]}
     return meshio.Mesh(drive.points, drive.cells, cell_data=data, field_data=names)
-
-
-def write_mesh(
-    meshes: dict[str, SectorMesh],
-    materials: Mapping[str, Material],
-    thickness: float,
-    directory: str | Path,
-    formats: Sequence[str] = FORMATS,
-    *,
-    overwrite: bool = False,
-) -> list[Path]:
-    """Write all sectors of all bodies as ``drive_120_122.vtu``, ``.msh`` and ``.inp``.
-
-    meshes : by gear;  materials : of every body and of a housing
-    thickness : mm, of the plane model
-    directory : made when it does not exist;  formats : any of ``vtu``, ``msh``, ``inp``
-    overwrite : whether files that are there are replaced
-
-    Returns the files, in the order of `formats`.
-    """
-    for name in formats:
-        if name not in FORMATS:
-            raise InputError(
-                f'mesh format = "{name}" is not available: allowed {", ".join(FORMATS)}'
-            )
-    drive = whole_drive(meshes)
-    teeth = "_".join(str(meshes[gear].n_sectors) for gear in ("flexible_spline", "ring_gear"))
-    folder = Path(directory)
-    try:
-        with whole_files(folder, overwrite=overwrite) as made:
-            for name in formats:
-                path = made / f"drive_{teeth}.{name}"
-                if name == "vtu":
-                    meshio.vtu.write(path, _as_vtu(drive), compression="zlib")
-                elif name == "msh":
-                    meshio.gmsh.write(path, _as_msh(drive), fmt_version="2.2", binary=True)
-                else:
-                    write_inp(path, drive, named_surfaces(meshes), materials, thickness)
-    except OSError as error:
-        raise OutputError(
-            f"the mesh cannot be written to {folder}: {error.strerror or error}"
-        ) from None
-    return [folder / f"drive_{teeth}.{name}" for name in formats]
-
-
-def mesh_report(meshes: dict[str, SectorMesh]) -> dict[str, dict[str, float]]:
-    """Return counts and worst quality of every body.
-
-    ``nodes`` and ``elements`` (all sectors), ``sector_elements``, ``volume`` (mm³), the quality.
-    """
-    report = {}
-    for body, mesh in meshes.items():
-        own = (len(mesh.coords) - len(mesh.ccw_nodes)) // (1 if not mesh.plane else 2)
-        report[body] = {
-            "nodes": own * mesh.n_sectors,
-            "elements": len(mesh.hexes) * mesh.n_sectors,
-            "sector_elements": len(mesh.hexes),
-            "volume": float(hex_volumes(mesh.coords, mesh.hexes).sum()) * mesh.n_sectors,
-            **mesh.quality,
-        }
-    return report

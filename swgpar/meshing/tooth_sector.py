@@ -111,14 +111,10 @@ def build_sector(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> SectorM
     rows = np.arange(len(coords), dtype=np.int32).reshape(len(z), -1)
     hexes = sweep_quads(section.quads, rows)
     cw, ccw = rows[:, section.edge].ravel(), rows[:, section.mirror[section.edge]].ravel()
-    if spline:
-        faces = {"inner": sweep_line(section.free, rows)}
-        # in the plane the torque acts on the inner surface, of which the lower layer stands for
-        # both
-        node_sets = {"bore": np.unique(rows[:1, section.free] if plane else faces["inner"])}
-    else:
-        faces = {"outer": sweep_line(section.free[::-1], rows)}
-        node_sets = {"outer": np.unique(rows[:1, section.free] if plane else faces["outer"])}
+    surface, node_set = ("inner", "bore") if spline else ("outer", "outer")
+    faces = {surface: sweep_line(section.free[:: 1 if spline else -1], rows)}
+    # in the plane the torque acts on this surface, of which the lower layer stands for both
+    node_sets = {node_set: np.unique(rows[:1, section.free] if plane else faces[surface])}
     if spline and drive.cup is not None:
         cup = cup_slice(drive, recipe, section, rows[-1], len(coords))
         toothed[-1] = rounded_back(drive, section, toothed[-1])

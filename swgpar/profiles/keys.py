@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field
@@ -23,14 +22,6 @@ class ProfileKeys(Section):
     typical_lengths: ClassVar[Mapping[str, float]] = {}
     thickness_key: ClassVar[str] = ""
     divides_straight: ClassVar[bool] = True
-
-    def __hash__(self) -> int:
-        # profiles are kept by their keys, which may be lists
-        return self._digest
-
-    @cached_property
-    def _digest(self) -> int:
-        return hash(self.model_dump_json())
 
 
 def _root_arc() -> Any:

@@ -197,11 +197,15 @@ class _EdgePath:
         return fitted(CurvedSegment("swept", evaluate))
 
 
+Part = _SegmentEnvelope | _EdgePath
+"""A part of the moving flank that may be on the boundary."""
+
+
 @dataclass(frozen=True)
 class _Run:
     """Neighbouring radii (n,) mm, from tip to root, at which the same part is on the boundary."""
 
-    part: _SegmentEnvelope | _EdgePath
+    part: Part
     radii: Floats
     places: Places
 
@@ -282,7 +286,7 @@ class SweptArea:
         """What is on the boundary, from tip to root."""
         radii, s, psi = self._seen()
         segments = range(len(self.envelope.given.segments))
-        parts: list[_SegmentEnvelope | _EdgePath] = [
+        parts: list[Part] = [
             *(_SegmentEnvelope(self.envelope, k) for k in segments),
             *self._edges,
         ]
@@ -314,7 +318,7 @@ class SweptArea:
             for k in np.split(known, ends - known[0])
         ]
 
-    def _found(self, part: Passing, radii: Floats, s: Floats, psi: Floats) -> Places:
+    def _found(self, part: Part, radii: Floats, s: Floats, psi: Floats) -> Places:
         """Places of a part at radii (n,) mm where the boundary is about at s (n,) mm and psi (n,)
         rad; NaN where it is off the part."""
         (low, high), off = part.span, BESIDE * self.envelope.given.length

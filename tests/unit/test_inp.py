@@ -17,7 +17,8 @@ from support.small_drive import PLANE
 from swgpar import load_design
 from swgpar.materials import Isotropic
 from swgpar.meshing import SectorMesh, build_sector_meshes, load_recipe
-from swgpar.meshing.export import named_surfaces, whole_body, whole_drive, write_mesh
+from swgpar.meshing.drive_mesh import DriveMesh
+from swgpar.meshing.export import named_surfaces, whole_body, whole_drive
 from swgpar.meshing.inp import HEX_FACES, QUAD_FACES
 
 needs_calculix = pytest.mark.skipif(
@@ -37,9 +38,8 @@ def small(
     """Meshes of the small drive, and its file as `swgpar mesh` writes it."""
     design = load_design(DESIGN, [*(PLANE if model == "plane" else ()), *housing])
     meshes = build_sector_meshes(design.geometry, load_recipe(RECIPE))
-    return meshes, write_mesh(
-        meshes, design.materials, design.drive.face_width, directory, ("inp",)
-    )[0]
+    mesh = DriveMesh(meshes, design.materials, design.drive.face_width)
+    return meshes, mesh.write(directory, ("inp",))[0]
 
 
 def solved(path: Path, lines: list[str]) -> dict[int, np.ndarray]:

@@ -17,7 +17,8 @@ from swgpar.errors import InputError, OutputError
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes, load_recipe
 from swgpar.meshing.cross_section import cross_section
 from swgpar.meshing.cup import meridian
-from swgpar.meshing.export import mesh_report, whole_body, whole_drive, write_mesh
+from swgpar.meshing.drive_mesh import DriveMesh
+from swgpar.meshing.export import whole_body, whole_drive
 from swgpar.meshing.quality import element_quality, hex_volumes
 from swgpar.meshing.recipe import make_recipe
 from swgpar.meshing.sweep import axial_stations
@@ -554,7 +555,7 @@ def test_a_cup_that_does_not_close_is_refused(override: str) -> None:
 def test_exports_read_back(tmp_path: Path) -> None:
     both = meshes(RECIPE, *SMALL)
     drive = whole_drive(both)
-    files = write_mesh(both, design(*SMALL).materials, 10.0, tmp_path / "mesh")
+    files = DriveMesh(both, design(*SMALL).materials, 10.0).write(tmp_path / "mesh")
     assert [path.suffix for path in files] == [".vtu", ".msh", ".inp"]
     for path in files[:2]:
         back = meshio.read(path)
@@ -571,18 +572,18 @@ def test_exports_read_back(tmp_path: Path) -> None:
 
 
 def test_export_failures_are_clear(tmp_path: Path) -> None:
-    both = meshes(RECIPE, *SMALL)
+    mesh = DriveMesh(meshes(RECIPE, *SMALL), design(*SMALL).materials, 10.0)
     blocked = tmp_path / "file"
     blocked.write_text("")
     with pytest.raises(OutputError, match="cannot be written"):
-        write_mesh(both, design(*SMALL).materials, 10.0, blocked)
+        mesh.write(blocked)
     with pytest.raises(InputError, match='"stl"'):
-        write_mesh(both, design(*SMALL).materials, 10.0, tmp_path, ("stl",))
+        mesh.write(tmp_path, ("stl",))
 
 
 def test_report_counts_the_full_drive() -> None:
     both = meshes(RECIPE, *SMALL)
-    report = mesh_report(both)
+    report = DriveMesh(both, {}, 10.0).quality
     drive = whole_drive(both)
     assert sum(entry["nodes"] for entry in report.values()) == len(drive.points)
     assert sum(entry["elements"] for entry in report.values()) == sum(
@@ -714,7 +715,7 @@ def test_plane_exports_read_back(tmp_path: Path) -> None:
     both = plane_meshes(RECIPE, *SMALL)
     drive = whole_drive(both)
     assert set(drive.cells_dict) == {"quad"}
-    files = write_mesh(both, plane_design(*SMALL).materials, 10.0, tmp_path / "mesh")
+    files = DriveMesh(both, plane_design(*SMALL).materials, 10.0).write(tmp_path / "mesh")
     for path in files[:2]:
         back = meshio.read(path)
         assert np.allclose(back.points, drive.points, rtol=0.0, atol=1e-12)
@@ -736,7 +737,7 @@ def test_plane_exports_read_back(tmp_path: Path) -> None:
             f"*SOLID SECTION, ELSET={gear.upper()}, MATERIAL={gear.upper()}_MATERIAL"
         )
         assert lines[section + 1] == "10"
-    report = mesh_report(both)
+    report = DriveMesh(both, {}, 10.0).quality
     assert sum(entry["nodes"] for entry in report.values()) == len(drive.points)
     assert sum(entry["elements"] for entry in report.values()) == len(drive.cells_dict["quad"])
     for gear, entry in report.items():

@@ -90,7 +90,7 @@ def test_arcs_that_round_no_corner_are_refused(tmp_path: Path) -> None:
     space.add_line((0.0, 10.0), (4.0, 10.0))
     space.add_arc((4.0, 12.0), 2.0, 290.0, 330.0)
     document.saveas(tmp_path / "wall.dxf")
-    with pytest.raises(InputError, match="more than one line"):
+    with pytest.raises(InputError, match="more than one curve"):
         read_corners(tmp_path / "wall.dxf")
     space.delete_entity(list(space)[1])
     space.add_arc((4.0, 12.0), 2.0, 270.0, 330.0)

@@ -141,9 +141,6 @@ class Polar(Reduced):
     )
     parameters: dict[str, float] = quantity({}, text="names of the expression with their values")
 
-    def __hash__(self) -> int:
-        return hash(self.model_dump_json())
-
 
 class CamPoints(_WaveGenerator):
     """A curve through points of the whole cam, of a lobe or of half a lobe, with two lobes or
@@ -191,9 +188,6 @@ class CamPoints(_WaveGenerator):
     def is_mirror_symmetric(self) -> bool:
         """Whether both sides of a lobe are mirror images."""
         return self.symmetric
-
-    def __hash__(self) -> int:
-        return hash(self.model_dump_json())
 
 
 class _Rollers(_WaveGenerator):
