@@ -147,7 +147,8 @@ def _build(
     elif isinstance(keys, Cycloid):
         profile = cycloid(keys, teeth, name).thinned(c_P)
     elif isinstance(keys, Conjugate):
-        profile = conjugate(keys, teeth, *partner, name)
+        other, motion = partner
+        profile = conjugate(keys, teeth, other, motion, name)
     else:
         profile = involute(_cutter(keys, teeth, c_P), name)
     try:

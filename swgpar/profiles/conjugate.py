@@ -7,8 +7,6 @@ there to the circles.
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 
 from swgpar.errors import InputError
@@ -26,7 +24,6 @@ DEEPEST = 1e-6
 """Overlap of the flanks over the module that counts as interference."""
 
 
-@lru_cache(maxsize=16)
 def conjugate(
     keys: Conjugate, teeth: Teeth, given: ToothProfile, motion: ToothMotion, name: str = "profile"
 ) -> ToothProfile:

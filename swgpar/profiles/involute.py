@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -169,7 +168,6 @@ def _curve(
     return CurvedSegment(name, local)
 
 
-@lru_cache(maxsize=16)
 def involute(cut: Cutter, name: str = "profile") -> ToothProfile:
     """Build the flank: involute from the addendum circle, fillet down to the dedendum circle.
 

@@ -10,7 +10,7 @@ a flank that is tangent to the addendum circle remains so.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -24,33 +24,24 @@ from swgpar.profiles.fitted_curve import fitted
 from swgpar.profiles.flank import FlankSegment, ToothProfile, check_flank
 
 
-@dataclass(frozen=True)
-class _Part:
-    """The part of a segment between the local arc lengths `begin` and `end`, mm, turned about the
-    axis by turn (r - base)^2.
+def _turned(segment: FlankSegment, end: float, turn: float, base: float) -> CurvedSegment:
+    """A segment as far as the local arc length `end`, mm, turned about the axis by
+    turn (r - base)^2.
 
     turn : rad / mm^2;  base : mm
     """
 
-    segment: FlankSegment
-    begin: float
-    end: float
-    turn: float
-    base: float
-
-    def evaluate(self, t: Floats) -> CurvePoints:
-        """Curve at the parameters t (n,), for `CurvedSegment`."""
-        span = self.end - self.begin
-        point, angle, curvature = self.segment.at(self.begin + span * t)
+    def evaluate(t: Floats) -> CurvePoints:
+        point, angle, curvature = segment.at(end * t)
         z, tangent = point @ (1.0, 1j), np.exp(1j * angle)
         r = np.abs(z)
         # derivatives by arc length of the radius and of the angle of rotation
         slope = (np.conj(z) * tangent).real / r
         bend = (1.0 + (np.conj(z) * 1j * curvature * tangent).real - slope**2) / r
-        above = r - self.base
-        delta = self.turn * above**2
-        rate = 2.0 * self.turn * above * slope
-        change = 2.0 * self.turn * (slope**2 + above * bend)
+        above = r - base
+        delta = turn * above**2
+        rate = 2.0 * turn * above * slope
+        change = 2.0 * turn * (slope**2 + above * bend)
         # of the turned curve, over the tangent of the given one and its rotation
         stretch = 1.0 + 1j * rate * z / tangent
         growth = (1j * change * z + rate * (1j * tangent + curvature * z)) / tangent
@@ -58,9 +49,11 @@ class _Part:
         return CurvePoints(
             np.stack((turned.real, turned.imag), axis=-1),
             angle + delta + np.angle(stretch),
-            span * np.abs(stretch),
-            span * (curvature + rate + (growth / stretch).imag),
+            end * np.abs(stretch),
+            end * (curvature + rate + (growth / stretch).imag),
         )
+
+    return fitted(CurvedSegment("tip" if segment.name == "tip" else "relief", evaluate))
 
 
 @lru_cache(maxsize=32)
@@ -87,9 +80,7 @@ def relieved(profile: ToothProfile, relief: float, height: float, gear: str) -> 
     for begin, segment in zip(profile.breaks[:-1], profile.segments, strict=True):
         inside = min(end - begin, segment.length)
         if inside > 1e-9 * profile.length:
-            name = "tip" if segment.name == "tip" else "relief"
-            part = _Part(segment, 0.0, inside, turn, base)
-            segments.append(fitted(CurvedSegment(name, part.evaluate)))
+            segments.append(_turned(segment, inside, turn, base))
         if segment.length - max(inside, 0.0) > 1e-9 * profile.length:
             whole = inside <= 0.0
             segments.append(segment if whole else segment.part(inside, segment.length))

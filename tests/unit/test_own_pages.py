@@ -79,7 +79,7 @@ def test_own_cam(tmp_path: Path) -> None:
     insert(cams / "__init__.py", '    raise TypeError(f"no curve', branch)
     insert(cams / "__init__.py", "    WaveGenerator,\n)\n", "    Superelliptical,\n")
     imported = "from swgpar.geometry.cams.superelliptical import SuperellipticalCam\n"
-    insert(cams / "__init__.py", "\n\nclass Cam(Protocol):", imported)
+    insert(cams / "__init__.py", "\nOUTLINE_POINTS = ", imported)
     require_count(HOWTO / "own_cam_or_profile.md", package)
     execute(
         tmp_path,

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,8 +29,7 @@ LARGEST = 1e100
 """Largest number in a text."""
 
 
-@dataclass(frozen=True)
-class Jet:
+class Jet(NamedTuple):
     """A function of the angle at points: value (n,) and first two derivatives (n,)."""
 
     value: Floats
@@ -149,7 +148,7 @@ class PolarExpression:
             return known[node.id]
         if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
             x = self._value(node.operand, known)
-            return x if isinstance(node.op, ast.UAdd) else Jet(-x.value, -x.first, -x.second)
+            return x if isinstance(node.op, ast.UAdd) else Jet(*map(np.negative, x))
         if isinstance(node, ast.BinOp):
             return self._binary(node, known)
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
@@ -160,11 +159,7 @@ class PolarExpression:
         if isinstance(node, ast.IfExp):
             where = self._condition(node.test, known)
             here, there = self._value(node.body, known), self._value(node.orelse, known)
-            return Jet(
-                np.where(where, here.value, there.value),
-                np.where(where, here.first, there.first),
-                np.where(where, here.second, there.second),
-            )
+            return Jet(*(np.where(where, *each) for each in zip(here, there, strict=True)))
         raise self._refused(
             node, "numbers, names, + - * / **, if with else, and functions of one argument"
         )
@@ -172,9 +167,9 @@ class PolarExpression:
     def _binary(self, node: ast.BinOp, known: Mapping[str, Jet]) -> Jet:
         x, y = self._value(node.left, known), self._value(node.right, known)
         if isinstance(node.op, ast.Add):
-            return Jet(x.value + y.value, x.first + y.first, x.second + y.second)
+            return Jet(*map(np.add, x, y))
         if isinstance(node.op, ast.Sub):
-            return Jet(x.value - y.value, x.first - y.first, x.second - y.second)
+            return Jet(*map(np.subtract, x, y))
         if isinstance(node.op, ast.Pow):
             if not np.isfinite(y.value).all():
                 raise self._refused(node, "finite exponents")

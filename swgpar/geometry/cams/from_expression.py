@@ -39,8 +39,7 @@ def expression_cam(keys: Polar, a: float, b: float, name: str = "wave_generator"
     key = f"{name}.radius"
     expression = PolarExpression(keys.radius, {"a": a, "b": b, **keys.parameters}, key)
     theta = np.linspace(0.0, np.pi / keys.lobes, STEPS + 1)
-    jet = expression(theta)
-    half = np.stack([jet.value, jet.first, jet.second])
+    half = np.stack(expression(theta))
     good = np.isfinite(half).all(axis=0) & (half[0] > 0.0)
     if not good.all():
         at = int(np.argmin(good))
