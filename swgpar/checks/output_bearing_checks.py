@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.checks.repeat_checks import require_no_period
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.output_bearing import OutputBearing
 from swgpar.input.require import require, require_available
@@ -50,7 +49,20 @@ def check_output_bearing(design: DriveDesign, bearing: OutputBearing) -> None:
     require(fits, "output_bearing.position", bearing.position, allowed)
     _check_size(bearing, design.drive.module)
     if bearing.is_loaded_sideways:
-        require_no_period(design, SIDEWAYS, "without them")
+        _check_no_period(design)
+
+
+def _check_no_period(design: DriveDesign) -> None:
+    """Nothing that continues or needs one period, where forces keep the drive from repeating."""
+    samples, stiffness = design.steps.samples, design.stiffness
+    beside = f"{SIDEWAYS}, which does not repeat after a pitch"
+    require(samples == 0, "steps.samples", samples, f"only 0 with {beside}")
+    for section in ("fatigue", "losses"):
+        absent = getattr(design, section) is None
+        require_available(absent, f"[{section}]", beside, "without them")
+    if stiffness is not None:
+        positions = stiffness.positions
+        require(positions == 1, "stiffness.positions", positions, f"only 1 with {beside}")
 
 
 def _check_size(bearing: OutputBearing, module: float) -> None:

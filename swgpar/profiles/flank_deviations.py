@@ -94,12 +94,10 @@ class GearDeviations:
 
         side : +1 for the clockwise flank, -1 for the other;  angle : (n_teeth,) rad, of the teeth
         """
-        mirror = MIRROR if side < 0 else np.ones(2)
-        points, normal = profile.point(s) * mirror, profile.normal(s) * mirror
-        moved = self.moved(points, angle)
+        normal = profile.normal(s) * (MIRROR if side < 0 else np.ones(2))
         tilt = rotated(np.broadcast_to(self.tilt, (len(angle), 2)), -angle)
-        moved = moved + z[:, None] * tilt[:, None, :]
-        return np.einsum("tni,ni->tn", moved, normal) + self.profile_height(profile, s)[0]
+        moved = self.flank_shift(profile, s, angle, side)[0] + z[:, None] * tilt[:, None, :]
+        return np.einsum("tni,ni->tn", moved, normal)
 
     def flank_shift(
         self, profile: ToothProfile, s: np.ndarray, angle: np.ndarray, side: int
