@@ -29,7 +29,7 @@ KEY, OVERLAPS = "ring_gear.c_P", (0.99, 1.0, 1.01, 1.02, 1.03, 0.97)
 CLEARANCE = ".swgpar-section [role=status]"
 CHANGED = "([line, before]) => document.querySelector(line).innerText !== before"
 
-WHEEL = 4
+WHEEL = 8
 """Notches of the wheel."""
 
 COLOURS = 64
@@ -95,7 +95,7 @@ def zoom(page: Page, way: int) -> None:
     page.mouse.move(plot["x"] + 0.42 * plot["width"], plot["y"] + 0.47 * plot["height"])
     for _ in range(WHEEL):
         page.mouse.wheel(0, way * 300)
-        page.wait_for_timeout(200)
+        page.wait_for_timeout(400)
 
 
 def main() -> None:

@@ -113,12 +113,14 @@ class VerdictPanel:
             self.draw()
 
     def _last(self, variant: str, before: int = 0) -> AppJob | None:
-        """The last rating of a variant that has written a sheet, or one before it."""
-        jobs = [
-            job
+        """The last rating of a variant that has written a sheet, or one before it; a job that
+        continues another one is the same rating."""
+        found = {
+            job.out: job
             for job in self.state.queue.jobs
             if job.command == "rate" and job.variant == variant and self._written(job)
-        ]
+        }
+        jobs = list(found.values())
         return jobs[-1 - before] if len(jobs) > before else None
 
     def _written(self, job: AppJob) -> int:
