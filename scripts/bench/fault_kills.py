@@ -59,7 +59,7 @@ SECTIONS = {
 SEARCH = """[optimise]
 design = "{design}"
 set = ["monte_carlo.samples=2001", "time.end=1e-4", "time.rows=2"]
-evaluations = 12
+evaluations = 13
 first = [{first}]
 [[optimise.variable]]
 keys = ["mesh.stiffness"]
@@ -118,7 +118,8 @@ def commands(folder: Path, ranks: int) -> dict[str, Command]:
         run = ("run", *small, "--plain", "--set", *PLANE, *still, *overrides)
         found[name] = Command(run, "--restart", ranks)
     search = folder / "search.toml"
-    # all designs are given: a sampler begins anew after a restart
+    # all designs are given, and all are tried, that of the design file first: a sampler begins
+    # anew after a restart
     first = ", ".join(f'{{"mesh.stiffness" = {k}e9}}' for k in range(2, 14))
     text = SEARCH.format(design=DRIVERS / "gear_pair.toml", first=first)
     search.write_text(text, encoding="utf-8")
