@@ -5,8 +5,6 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from swgpar.gear_trains.drawing import axes
 from swgpar.gear_trains.planetary_parts.campbell import campbell
 from swgpar.gear_trains.result import TrainResult
@@ -74,8 +72,9 @@ def _sun_path(result: TrainResult) -> Figure:
 
 def _spectrum(result: TrainResult) -> Figure:
     """Of the planet with the largest mean load: another one may be without any."""
-    table, share = result.tables["spectrum"], result.summary.quantities["mean_share"]
-    most = 1 + int(np.argmax(share))
+    table = result.tables["spectrum"]
+    planets = range(1, result.summary.design.planet.count + 1)
+    most = max(planets, key=lambda k: table[f"sun_force_{k}_N"][0])
     labels = f"sun and planet {most} (N)", f"ring and planet {most} (N)"
     title = "amplitudes of mesh forces"
     figure, panels = axes(title, "cycles in a revolution of the carrier", *labels)
