@@ -92,7 +92,9 @@ def optimise(
 
     def searched(problem: Problem, end: str, first: list[dict[str, Any]], wanted: int) -> Search:
         name = f"{Path(spec.name).stem}{end}"
-        search = Search(problem, storage, name, comm, first, own=not section.storage)
+        # one that is interrupted is tried again after these: of more another one would be left out
+        begin_with = first[:wanted]
+        search = Search(problem, storage, name, comm, begin_with, own=not section.storage)
         receive = None
         if comm.rank == 0:
             known = search.evaluations()

@@ -68,13 +68,21 @@ def test_a_start_design_that_is_no_point_of_the_search(
     assert f"The start design is no point of the search: {words}." in page
 
 
-@pytest.mark.parametrize("where", ["swgpar.optimisation.problem.Problem.evaluate", "in ask"])
+@pytest.mark.parametrize(
+    ("where", "evaluations"),
+    [
+        ("swgpar.optimisation.problem.Problem.evaluate", 1),
+        ("swgpar.optimisation.problem.Problem.evaluate", 2),
+        ("in ask", 2),
+    ],
+)
 def test_a_start_design_that_was_interrupted_is_tried_after_a_restart(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, where: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, where: str, evaluations: int
 ) -> None:
-    """Also where it has no parameters yet."""
+    """Also where it has no parameters yet, and where more designs are given than are evaluated."""
     path, out = tmp_path / "search.toml", tmp_path / "out"
-    path.write_text(FROM_START.replace("evaluations = 12", "evaluations = 2"), encoding="utf-8")
+    text = FROM_START.replace("evaluations = 12", f"evaluations = {evaluations}")
+    path.write_text(text, encoding="utf-8")
 
     def killed(*_: object) -> None:
         raise KeyboardInterrupt
@@ -84,7 +92,7 @@ def test_a_start_design_that_was_interrupted_is_tried_after_a_restart(
         with pytest.raises(KeyboardInterrupt):
             swgpar.optimise(path, out)
     again = swgpar.optimise(path, out, restart=True)
-    assert again.start is not None and len(again.evaluations) == 2
+    assert again.start is not None and len(again.evaluations) == evaluations
     assert again.evaluations[again.start].values[MASS] == 181.6
 
 
