@@ -22,8 +22,10 @@ SOLVED = {"root.s1": 1e-5, "root.s1_on_mesh": 1e-6, "torque": 1e-6}
 """Relative differences that solves leave: Newton's iteration of the drive ends at 1e-6 of the
 contact force, that of windows at 1e-4, which changes stresses by up to 1e-5 (`RTOL` of
 `local_problem`)."""
-REPEATED = 1e-12
-"""The same of a run that shares nothing."""
+REPEATED = 1e-10
+"""The same of a run that shares nothing. Sums of a factor depend on where arrays lie in memory, and
+Newton's iteration of windows ends long before round-off: the same run gives one of two values of
+`root.s1`, 6e-12 apart."""
 
 
 @pytest.fixture
