@@ -59,7 +59,7 @@ SECTIONS = {
 SEARCH = """[optimise]
 design = "{design}"
 set = ["monte_carlo.samples=2001", "time.end=1e-4", "time.rows=2"]
-evaluations = 13
+evaluations = 12
 first = [{first}]
 [[optimise.variable]]
 keys = ["mesh.stiffness"]
