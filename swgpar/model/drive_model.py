@@ -11,7 +11,16 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.constraints.supports import RING_COUPLING, FixedRing, FloatingRing, Supports
+from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans
+from swgpar.constraints.race_coupling import RaceCoupling
+from swgpar.constraints.radial_guide import RadialGuide
+from swgpar.constraints.supports import (
+    RING_COUPLING,
+    SPLINE_COUPLING,
+    FixedRing,
+    FloatingRing,
+    Supports,
+)
 from swgpar.constraints.wave_inertia import WaveInertia
 from swgpar.contact.contact import largest
 from swgpar.contact.flanks import FlankContact
@@ -31,8 +40,8 @@ from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
 from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.model.bearing_model import build_bearing_contacts, build_race
 from swgpar.model.contact_distances import contact_search, foot_reach
-from swgpar.model.couplings import build_supports
-from swgpar.model.layouts import build_gear, build_layout
+from swgpar.model.couplings import output_springs, spline_attachment
+from swgpar.model.layouts import body_counts, build_gear, build_layout
 from swgpar.model.regions import sector_regions
 from swgpar.model.window_mesh import WindowMesh
 from swgpar.solve.discrete_problem import DiscreteProblem
@@ -173,20 +182,6 @@ class DriveModel:
         return values, fields
 
 
-def body_counts(layout: BodyLayout) -> dict[str, Any]:
-    """Nodes, elements and unknowns of a body, modelled and of the whole drive."""
-    plane = layout.mesh.plane
-    per_sector = (len(layout.mesh.coords) - len(layout.mesh.ccw_nodes)) // (2 if plane else 1)
-    return {
-        "nodes": per_sector * layout.count,
-        "elements": len(layout.mesh.hexes) * layout.count,
-        "dofs": (2 if plane else 3) * len(layout.numbering.owned_nodes) * layout.count,
-        "nodes_whole": per_sector * layout.mesh.n_sectors,
-        "elements_whole": len(layout.mesh.hexes) * layout.mesh.n_sectors,
-        "quality": layout.mesh.quality,
-    }
-
-
 def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm) -> DriveModel:
     """Mesh the drive and set up its discrete problem and solver; collective.
 
@@ -279,6 +274,63 @@ def build_layouts(design: DriveDesign, meshes: Mapping[str, SectorMesh]) -> list
         race = build_race(design, meshes[FLEXIBLE_SPLINE])
         layouts.append(build_layout(race, copies=design.copies))
     return layouts
+
+
+def build_supports(design: DriveDesign, partition: Partition, elements: Elements) -> Supports:
+    """Couplings of the spline, of a ring gear that is not clamped and of a bearing; the guide of a
+    rotating ring."""
+    spline, copies = elements.bodies[FLEXIBLE_SPLINE], design.copies
+    output_gear, bearing = design.kinematics.output_gear, design.output_bearing
+    rotates, guide = output_gear != "flexible_spline", None
+    couplings: list[NodeMeans] = []
+    if design.has_attachment:
+        attachment = spline_attachment(
+            partition,
+            spline,
+            design.cup,
+            design.penalty("flexible_spline"),
+            images=copies > 1,
+            moves=bearing is not None and not rotates,
+        )
+        couplings.append(attachment)
+    else:
+        # a plane section with deviations is centred by its cam alone: the wall of the cup gives way
+        centred = design.has_cup or (design.drive.model == "plane" and design.deviations is None)
+        couplings.append(DistributingCoupling(partition, spline, "bore", copies > 1, centred))
+    if rotates or not design.frame_is_rigid:
+        ring = elements.bodies[output_gear if rotates else RING_GEAR]
+        ring_coupling = DistributingCoupling(partition, ring, "outer", copies > 1)
+        couplings.append(ring_coupling)
+        if design.frame_is_rigid:
+            guide = ring_guide(design, ring_coupling)
+    spline_ratio = None
+    if design.dynamic_spline is not None:  # the flexible spline rotates with the dynamic one
+        spline_ratio = 1.0 if output_gear == "dynamic_spline" else 0.0
+    output, race = len(couplings) - 1 if rotates else SPLINE_COUPLING, None
+    if design.bearing is not None:
+        outer = DistributingCoupling(partition, elements.bodies[OUTER_RACE], "outer", copies > 1)
+        race = RaceCoupling(outer, couplings[0])
+    return Supports(
+        partition,
+        couplings,
+        output=output,
+        guide=guide,
+        scale=design.modulus_of("flexible_spline") * design.drive.module,
+        share=1.0 / copies,
+        race=race,
+        spline_ratio=spline_ratio,
+        bearing=None if bearing is None else output_springs(bearing, couplings[output], copies),
+    )
+
+
+def ring_guide(design: DriveDesign, coupling: NodeMeans) -> RadialGuide:
+    """Guide around a rotating ring gear, which it follows where a bearing carries the output."""
+    gear = design.kinematics.output_gear
+    first, last = design.axial_range(gear)
+    outer = float(np.hypot(*coupling.undeformed[:, :2].T).max(initial=0.0))
+    area = 2.0 * np.pi * outer * (last - first) / design.copies
+    follows = design.output_bearing is not None and design.copies == 1
+    return RadialGuide(coupling, area, design.penalty(gear), design.frame_growth, follows=follows)
 
 
 def inertia_terms(design: DriveDesign, elements: Elements) -> list[WaveInertia]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -68,3 +69,17 @@ def build_layout(
         condensed=condensed,
         tooth=tooth,
     )
+
+
+def body_counts(layout: BodyLayout) -> dict[str, Any]:
+    """Nodes, elements and unknowns of a body, modelled and of the whole drive."""
+    plane = layout.mesh.plane
+    per_sector = (len(layout.mesh.coords) - len(layout.mesh.ccw_nodes)) // (2 if plane else 1)
+    return {
+        "nodes": per_sector * layout.count,
+        "elements": len(layout.mesh.hexes) * layout.count,
+        "dofs": (2 if plane else 3) * len(layout.numbering.owned_nodes) * layout.count,
+        "nodes_whole": per_sector * layout.mesh.n_sectors,
+        "elements_whole": len(layout.mesh.hexes) * layout.mesh.n_sectors,
+        "quality": layout.mesh.quality,
+    }
