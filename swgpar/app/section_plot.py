@@ -75,17 +75,21 @@ def _body(name: str, curves: list[Floats]) -> dict[str, Any]:
         closed = np.vstack([curve, curve[:1]])
         turned = closed if _runs_left(curve) == (index == 0) else closed[::-1]
         drawn += [turned, BREAK]
-    points = np.vstack(drawn[:-1])
+    text, colour = name.replace("_", " "), COLOURS[name]
+    return _filled(np.vstack(drawn[:-1]), text, f"{colour}66", colour) | {"hoverinfo": "skip"}
+
+
+def _filled(points: Floats, name: str, inside: str, outline: str) -> dict[str, Any]:
+    """Areas within closed curves of points (n, 2), mm, and their outlines; two colours."""
     return {
         "type": "scatter",
         "mode": "lines",
-        "name": name.replace("_", " "),
+        "name": name,
         "x": _packed(points[:, 0]),
         "y": _packed(points[:, 1]),
         "fill": "toself",
-        "fillcolor": f"{COLOURS[name]}66",
-        "line": {"color": COLOURS[name], "width": 1},
-        "hoverinfo": "skip",
+        "fillcolor": inside,
+        "line": {"color": outline, "width": 1},
     }
 
 
@@ -107,19 +111,9 @@ def _overlaps(design: DriveDesign, angle: float) -> list[dict[str, Any]]:
 def _shade(curves: list[Floats], text: str, opacity: str) -> dict[str, Any]:
     """Areas inside of closed curves (n, 2), mm. opacity : two hexadecimal digits"""
     points = np.vstack([each for curve in curves for each in (curve, curve[:1], BREAK)] or [BREAK])
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "name": text,
-        "x": _packed(points[:, 0]),
-        "y": _packed(points[:, 1]),
-        "fill": "toself",
-        "fillcolor": f"{OVERLAP}{opacity}",
-        "line": {"color": f"{OVERLAP}{opacity}", "width": 1},
-        "hoveron": "fills",
-        "text": text,
-        "hoverinfo": "text",
-    }
+    colour = f"{OVERLAP}{opacity}"
+    hover = {"hoveron": "fills", "text": text, "hoverinfo": "text"}
+    return _filled(points, text, colour, colour) | hover
 
 
 def _packed(values: Floats) -> dict[str, str]:

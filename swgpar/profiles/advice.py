@@ -56,9 +56,9 @@ def advise(
     change_to = f"make {name}.{key} {'larger' if example > lengths[key] else 'smaller'}:"
     as_they_are = "with the other keys as they are"
     if show(low) == show(high):
-        return f"{change_to} {show(example)} mm fits {as_they_are}"
+        return f"{change_to} allowed {show(example)} mm {as_they_are}"
     return (
-        f"{change_to} values from {show(low)} to {show(high)} mm fit {as_they_are}, for example "
+        f"{change_to} allowed {show(low)} to {show(high)} mm {as_they_are}, for example "
         f"{show(example)}"
     )
 

@@ -39,7 +39,10 @@ VERDICTS = {
     "no number": "none is named",
 }
 
-SENTENCE = re.compile(r"^(?P<key>[\w.]+) = (?P<value>.+?) (?:is|are) .*?allowed (?P<allowed>.+)$")
+SENTENCE = re.compile(
+    r"^(?!.*with the other keys)"  # the length of a profile that is advised may be another key's
+    r"(?P<key>[\w.]+) = (?P<value>.+?) (?:is|are) .*?allowed (?P<allowed>.+)$"
+)
 
 
 @dataclass(frozen=True)

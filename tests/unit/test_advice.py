@@ -22,7 +22,7 @@ CASES: list[dict[str, Any]] = [
     {"flexible_spline.profile": {"type": "involute", "cutter_radius": 0.9}},
 ]
 SENTENCE = re.compile(
-    r"make (?P<key>\S+) (?P<way>larger|smaller): values from (?P<low>\S+) to (?P<high>\S+) mm "
+    r"make (?P<key>\S+) (?P<way>larger|smaller): allowed (?P<low>\S+) to (?P<high>\S+) mm "
     r".*example (?P<x>\S+)"
 )
 

@@ -74,7 +74,7 @@ OVERRIDES = [
         "strain of the growth of ring_gear.housing",
         "up to 0.01",
     ),
-    ("ring_gear.profile.r_root=5.0", "ring_gear.profile", "fit with the other keys"),
+    ("ring_gear.profile.r_root=5.0", "ring_gear.profile", "allowed"),
     ("ring_gear.profile.straight_l=-1", "ring_gear.profile.straight_l", "0"),
     ('ring_gear.profile.type="square"', "ring_gear.profile.type", "square"),
     ("ring_gear.profile.r_dedendum=0", "ring_gear.profile.r_dedendum", "above 0"),

@@ -431,8 +431,7 @@ def test_profiles_that_cannot_be_built_are_refused(
         load_design(design_file({f"{gear}.profile": section}), plain + overrides)
     message = str(caught.value)
     assert key in message and gear in message and "\n" not in message, message
-    words = ("allowed", "missing", "did you mean", "fit with the other keys")
-    assert any(word in message for word in words), message
+    assert any(word in message for word in ("allowed", "missing", "did you mean")), message
 
 
 @pytest.mark.parametrize("name", ["rack", "shaper"])
