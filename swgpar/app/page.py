@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import shlex
-from collections import defaultdict
 from functools import partial
 
-from nicegui import ui
+from nicegui import events, ui
 
 from swgpar.app.answers_panel import AnswersPanel
 from swgpar.app.drawings import drawings_of, show_drawings
-from swgpar.app.fields import FormField, form_fields, is_optional, missing_sections
+from swgpar.app.fields import form_fields, is_optional, missing_sections
 from swgpar.app.jobs_panel import JobsPanel
 from swgpar.app.key_control import KeyControl
 from swgpar.app.new_drive import NewDrive
@@ -18,15 +17,6 @@ from swgpar.app.section_form import SectionDialog
 from swgpar.app.section_panel import SectionPanel
 from swgpar.app.state import AppState
 from swgpar.errors import SwgparError
-
-LOOK = 0.1
-"""Seconds between two looks at the loaded states."""
-
-JOBS = 1.0
-"""Seconds between two looks at the jobs."""
-
-PLAY = 0.2
-"""Seconds between two pictures while the cam turns."""
 
 KEYS = "keys"
 PARTS = {KEYS: "swgpar-shows-keys", "answers and jobs": "swgpar-shows-answers"}
@@ -38,7 +28,9 @@ class Page:
 
     def __init__(self, state: AppState) -> None:
         self.state = state
-        self.controls: dict[str, KeyControl] = {}
+        self.keys: set[str] = set()  # those of the form
+        self.controls: dict[str, KeyControl] = {}  # of the sections that were opened
+        self.opened = {"drive"}
         with ui.header().classes("items-center gap-4 q-px-md q-py-xs swgpar-header"):
             ui.label("swgpar").classes("text-h6")
             self.variant = ui.select([], label="variant", on_change=self._choose)
@@ -56,9 +48,6 @@ class Page:
             with _region("swgpar-answers", "answers and jobs"):
                 self.jobs = JobsPanel(state)
                 self.answers = AnswersPanel(state)
-        ui.timer(LOOK, state.look_at_states)
-        ui.timer(JOBS, state.look_at_jobs)
-        ui.timer(PLAY, self.section.turn)
         state.windows.append(self)
         ui.context.client.on_delete(lambda: state.windows.remove(self))
 
@@ -151,28 +140,45 @@ class Page:
 
     @ui.refreshable_method
     def form(self) -> None:
-        """Fields of all keys in their sections, and the sections that can be added."""
+        """Sections of the design, and those that can be added."""
         design = self.state.variant.design
-        sections: dict[str, list[FormField]] = defaultdict(list)
-        for field in form_fields(design):
-            sections[field.section].append(field)
         self.controls.clear()
-        for name, fields in sections.items():
-            with ui.expansion(f"[{name}]", value=name == "drive").classes("w-full"):
-                if drawings := drawings_of(design, name):
-                    show = partial(show_drawings, name, drawings)
-                    button = ui.button("drawing", on_click=show).props("flat dense no-caps")
-                    button.props["aria-label"] = f"drawing of [{name}]"
-                for field in fields:
-                    self.controls[field.key] = KeyControl(field, self.state.set)
-                if is_optional(design, name):
-                    step = partial(self._without, name)
-                    ui.button("leave out this section", on_click=step).props("flat dense no-caps")
+        self.keys = {field.key for field in form_fields(design)}
+        for name in dict.fromkeys(field.section for field in form_fields(design)):
+            with ui.expansion(f"[{name}]", value=name in self.opened).classes("w-full") as folded:
+                if name in self.opened:
+                    self._draw_keys(name)
+            folded.on_value_change(partial(self._open, name))
         with ui.dropdown_button("add a section", auto_close=True).props("flat dense no-caps"):
             for section in missing_sections(design):
                 dialog = SectionDialog(self.state, section)
                 item = ui.item(f"[{section.name}]", on_click=dialog.open)
                 item.tooltip(section.text)
+
+    def _open(self, name: str, event: events.ValueChangeEventArguments) -> None:
+        """Unfold or fold a section. Its keys are drawn when it is unfolded first: the browser draws
+        everything anew at each change, also what is folded."""
+        if not event.value:
+            self.opened.discard(name)
+        elif name not in self.opened:
+            self.opened.add(name)
+            if not any(control.field.section == name for control in self.controls.values()):
+                with event.sender:
+                    self._draw_keys(name)
+
+    def _draw_keys(self, section: str) -> None:
+        """Fields of all keys of a section."""
+        design = self.state.variant.design
+        if drawings := drawings_of(design, section):
+            show = partial(show_drawings, section, drawings)
+            button = ui.button("drawing", on_click=show).props("flat dense no-caps")
+            button.props["aria-label"] = f"drawing of [{section}]"
+        for field in form_fields(design):
+            if field.section == section:
+                self.controls[field.key] = KeyControl(field, self.state.set)
+        if is_optional(design, section):
+            step = partial(self._without, section)
+            ui.button("leave out this section", on_click=step).props("flat dense no-caps")
 
     async def _without(self, section: str) -> None:
         refusal = await self.state.change(lambda variant: variant.change({section: None}))
@@ -190,7 +196,7 @@ class Page:
         self.section.clearance.refresh()
         fields = {field.key: field for field in form_fields(self.state.variant.design)}
         self._draw_names()
-        if fields.keys() != self.controls.keys():
+        if fields.keys() != self.keys:
             self.form.refresh()
         for key, control in self.controls.items():
             control.show(fields[key], self.state.refused.get(key))

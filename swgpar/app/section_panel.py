@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from nicegui import ui
 
@@ -11,9 +12,38 @@ from swgpar.app.slider import Slider
 from swgpar.app.state import AppState
 from swgpar.app.workspace import Variant
 from swgpar.checks.clearance import clearances
+from swgpar.design.drive_design import DriveDesign
+
+if TYPE_CHECKING:
+    from swgpar.presentation.loaded_outline import LoadedOutline
+
+SHAPES = "drive", "flexible_spline", "ring_gear", "dynamic_spline", "wave_generator", "cup"
+"""Sections of a design that the picture of undeformed teeth follows from."""
 
 VIEWS = {False: "gaps", True: "loaded"}
 """What the section shows: gaps of the rigid teeth, or stress and forces of the plane model."""
+
+
+@dataclass(frozen=True, eq=False)
+class TeethPicture:
+    """What a picture shows: see `section_figure`. loaded : whether it has no gaps"""
+
+    design: DriveDesign
+    angle_deg: float
+    outline: LoadedOutline | None = None
+    loaded: bool = False
+
+    def figure(self) -> dict[str, Any]:
+        """Figure of Plotly."""
+        return section_figure(self.design, self.angle_deg, self.outline)
+
+    def shows_the_same(self, other: TeethPicture) -> bool:
+        """Whether two pictures are alike, as those of a design under another torque."""
+        return (
+            (self.angle_deg, self.loaded) == (other.angle_deg, other.loaded)
+            and self.outline is other.outline
+            and all(getattr(self.design, one) == getattr(other.design, one) for one in SHAPES)
+        )
 
 
 class SectionPanel:
@@ -22,6 +52,7 @@ class SectionPanel:
     def __init__(self, state: AppState) -> None:
         self.state = state
         self.plots: list[ui.plotly] = []
+        self.drawn: list[TeethPicture] = []
         self._moves = False  # whether the slider does
         self.pictures()
         with ui.row().classes("w-full items-center no-wrap gap-3"):
@@ -43,30 +74,30 @@ class SectionPanel:
         if len(self.plots) != len(self.state.shown):
             self.pictures.refresh()
             return
-        for plot, variant in zip(self.plots, self.state.shown, strict=True):
-            plot.update_figure(self._figure(variant))
+        for k, (plot, variant) in enumerate(zip(self.plots, self.state.shown, strict=True)):
+            picture = self._picture(variant)
+            if picture.shows_the_same(self.drawn[k]):
+                continue
+            self.drawn[k], figure = picture, picture.figure()
+            plot.figure = figure
+            # an update of the element would draw all controls of the window anew before it
+            plot.run_plot_method("react", figure["data"], figure["layout"], figure["config"])
 
     def draw_states(self) -> None:
         """Draw loaded states."""
         if self.state.loaded:
             self.draw()
 
-    def turn(self) -> None:
-        """Turn the cam on while it plays."""
-        if self.state.plays and not self.state.loaded:
-            self.state.angle_deg = (self.state.angle_deg + 1.0) % 360.0
-            self.draw()
-
     @ui.refreshable_method
     def pictures(self) -> None:
         """A picture of each variant."""
-        self.plots = []
+        self.plots, self.drawn = [], [self._picture(one) for one in self.state.shown]
         two = len(self.state.shown) > 1
         with ui.column().classes("w-full gap-0"):
-            for variant in self.state.shown:
+            for variant, picture in zip(self.state.shown, self.drawn, strict=True):
                 if two:
                     ui.label(variant.name).classes("text-bold")
-                plot = ui.plotly(self._figure(variant))
+                plot = ui.plotly(picture.figure())
                 plot.classes("w-full swgpar-plot" + (" swgpar-half" if two else ""))
                 plot.props('role=img aria-label="section of the teeth"')
                 self.plots.append(plot)
@@ -81,24 +112,22 @@ class SectionPanel:
             text = f"{name}{word} {abs(1e3 * found.nearest.distance):.2f} µm, {found.place}"
             ui.label(text).classes("text-negative" if found.overlaps else "")
 
-    def _figure(self, variant: Variant) -> dict[str, Any]:
+    def _picture(self, variant: Variant) -> TeethPicture:
         design, state = variant.design, self.state
         if not state.loaded:
-            return section_figure(design, state.angle_deg)
+            return TeethPicture(design, state.angle_deg)
         found = state.worker.state(design)
-        return section_figure(design, loaded=found.outline if found is not None else None)
+        return TeethPicture(design, 0.0, found.outline if found is not None else None, loaded=True)
 
     async def _turned(self, angle: float, moves: bool) -> None:
         self.state.angle_deg, self._moves = angle, moves
-        for window in self.state.windows:
-            window.draw_section()
+        self.state.draw_sections()
 
     def _view(self) -> None:
         self.state.loaded = bool(self.view.value)
         self.slider.props["disabled"] = self.state.loaded
         self.slider.update()
-        for window in self.state.windows:
-            window.draw_section()
+        self.state.draw_sections()
 
     def _play(self) -> None:
         self.state.plays = not self.state.plays

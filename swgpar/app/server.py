@@ -22,6 +22,10 @@ from swgpar.errors import InputError
 RESULTS = "results"
 """Folder of the workspace with the results of the jobs."""
 
+LOOK, PLAY, JOBS = 0.1, 0.2, 1.0
+"""Seconds between two looks at the loaded states, two pictures while the cam turns, and two looks
+at the jobs."""
+
 RECONNECT = 60.0
 """s for which a window that has lost its connection can come back: while a job runs, this process
 has little of the machine."""
@@ -79,6 +83,10 @@ def serve(source: Path, port: int | None = None, *, show: bool = True) -> None:
     app.on_shutdown(worker.close)
     state = AppState(workspace, JobQueue(workspace.folder), worker)
     worker.want([state.variant.design])
+    # one for all windows, and without one
+    app.timer(LOOK, state.look_at_states)
+    app.timer(PLAY, state.turn)
+    app.timer(JOBS, state.look_at_jobs)
     results = workspace.folder / RESULTS
     results.mkdir(exist_ok=True)
     app.add_static_files(f"/{RESULTS}", results)

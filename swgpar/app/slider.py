@@ -27,20 +27,25 @@ class Slider(ui.element):
         moved: Callable[[float, bool], Awaitable[None]],
     ) -> None:
         super().__init__("input")
+        self._place = low  # in the browser
         self.props["type"], self.props["aria-label"] = "range", name
         self.props["min"], self.props["max"], self.props["step"] = low, high, step
+        self.props["value"] = low
         self.classes("swgpar-slider")
 
         async def moves(event: events.GenericEventArguments) -> None:
-            await moved(float(event.args), True)
+            self._place = float(event.args)
+            await moved(self._place, True)
 
         async def rests(event: events.GenericEventArguments) -> None:
-            await moved(float(event.args), False)
+            self._place = float(event.args)
+            await moved(self._place, False)
 
         self.on("input", moves, throttle=MOVING, js_handler=VALUE)
         self.on("change", rests, js_handler=VALUE)
 
     def show(self, value: float) -> None:
-        """Put it to a value."""
-        self.props["value"] = value
-        self.update()
+        """Put it to a value; nothing is sent where it stands there."""
+        if value != self._place:
+            self._place = self.props["value"] = value
+            self.update()

@@ -103,14 +103,24 @@ class AppState:
 
         keeps : whether the variant is written into its file
         """
-        for window in self.windows:
-            window.draw_section()
+        self.draw_sections()
         await asyncio.sleep(SENT)
         if keeps:
             self.workspace.keep()
         self.worker.want([variant.design for variant in self.shown])
         for window in self.windows:
             window.draw_design()
+
+    def turn(self) -> None:
+        """Turn the cam on while it plays."""
+        if self.plays and not self.loaded:
+            self.angle_deg = (self.angle_deg + 1.0) % 360.0
+            self.draw_sections()
+
+    def draw_sections(self) -> None:
+        """Draw the pictures of the teeth in all windows."""
+        for window in self.windows:
+            window.draw_section()
 
     def look_at_states(self) -> None:
         """Take over states that have been computed."""

@@ -26,6 +26,7 @@ from swgpar.app.flank_gaps import NEAR, flank_gaps
 from swgpar.app.jobs import AppJob, JobQueue, JobState, shell_environment
 from swgpar.app.plane_state import plane_table, solve_plane
 from swgpar.app.search_plot import EVALUATION, pair_figure, parallel_figure
+from swgpar.app.section_panel import TeethPicture
 from swgpar.app.section_plot import section_figure
 from swgpar.app.state import recipes_of
 from swgpar.app.workspace import Variant, Workspace, drive_of
@@ -161,6 +162,18 @@ def test_the_shade_of_an_overlap_is_as_deep_as_the_overlap(name: str) -> None:
     assert 1.001 * known < depths[1] < 0.9 * known
     names = [one["name"] for one in section_figure(drive(DRIVERS / name))["data"]]
     assert not any("overlap" in one for one in names)
+
+
+def test_a_picture_is_drawn_again_where_it_changes() -> None:
+    """Not under another torque; at another angle, of other teeth, and for a state."""
+    picture = TeethPicture(drive(), 3.0)
+    assert picture.shows_the_same(TeethPicture(drive().with_values({"load.torque": 1.0}), 3.0))
+    for other in (
+        TeethPicture(drive().with_values({ADDENDUM: 0.55}), 3.0),
+        TeethPicture(drive(), 4.0),
+        TeethPicture(drive(), 3.0, loaded=True),
+    ):
+        assert not picture.shows_the_same(other)
 
 
 def test_changes_are_undone_and_redone() -> None:
