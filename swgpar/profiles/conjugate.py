@@ -15,7 +15,7 @@ from swgpar.profiles.ends import with_ends
 from swgpar.profiles.envelope import STATIONS, Envelope
 from swgpar.profiles.flank import FlankSegment, ToothProfile
 from swgpar.profiles.keys import Conjugate
-from swgpar.profiles.mesh_gap import NearestPlace, nearest_place
+from swgpar.profiles.mesh_gap import NearestPlace, OutlinePair, outline
 from swgpar.profiles.swept import SweptArea
 from swgpar.profiles.teeth import Teeth
 from swgpar.profiles.tooth_motion import ToothMotion
@@ -42,7 +42,8 @@ def conjugate(
         curve = ToothProfile(tuple(segments), teeth.external, tip, root, teeth.n_teeth)
         flank = with_ends(curve, teeth.module, keys.r_tip, keys.r_root, name)
         external, internal = (flank, given) if teeth.external else (given, flank)
-        return flank, nearest_place(external, internal, motion)
+        pair = OutlinePair(outline(external), outline(internal), motion)
+        return flank, pair.nearest_place(below=-DEEPEST * teeth.module)
 
     pieces = _whole_envelope(envelope, tip)
     if pieces:

@@ -256,9 +256,12 @@ class OutlinePair:
         near = turned * intervals.rate + SPEED_MARGIN * intervals.slope * intervals.reach
         return intervals.feet.distance - np.minimum(far, near + self._bend * far**2)
 
-    def nearest_place(self) -> NearestPlace:
+    def nearest_place(self, below: float = np.inf) -> NearestPlace:
         """The nearest place of all while the cam turns by one lobe, to all parts of the ring
-        gear."""
+        gear.
+
+        below : mm; where no distance is smaller, some place that is no nearer, in less time
+        """
         step, stride = 2.0 * np.pi / self.motion.line.lobes / ANGLES, STRIDE
         psi, first = (
             grid.ravel()
@@ -268,10 +271,12 @@ class OutlinePair:
                 indexing="ij",
             )
         )
-        kept = self._reaching(psi, first, stride, step)
+        kept = self._reaching(psi, first, stride, step, below)
         psi, first = psi[kept], first[kept]
         nearest = NearestPlace(np.inf, 0.0, "", "")
         for _ in range(LEVELS):
+            if not psi.size:
+                break
             angles, index = np.unique(psi, return_inverse=True)
             pose = self.motion.pose(angles).taken(index)
             intervals = self._intervals(pose, first, stride, facing=False)
@@ -283,7 +288,7 @@ class OutlinePair:
                     self.spline.part(intervals.middle[k]),
                     self.ring.part(intervals.feet.sample[k]),
                 )
-            kept = self._lowest(intervals, step) < nearest.distance
+            kept = self._lowest(intervals, step) < min(nearest.distance, below)
             step /= DIVISION
             psi = (psi[kept][:, None] + step * SHIFTS).ravel()
             first = np.repeat(first[kept], DIVISION)
@@ -291,9 +296,11 @@ class OutlinePair:
             stride = max(stride // DIVISION, 1)
         return nearest
 
-    def _reaching(self, psi: Floats, first: Indices, stride: int, step: float) -> NDArray[np.bool_]:
+    def _reaching(
+        self, psi: Floats, first: Indices, stride: int, step: float, below: float
+    ) -> NDArray[np.bool_]:
         """Intervals that may come as near to the circle of the ring gear's tips as the tooth at the
-        major axis comes to the ring gear."""
+        major axis comes to the ring gear, and nearer than `below`, mm."""
         starts = np.arange(0, len(self.spline.place), stride)
         middle, _, reach = self._parts(first, stride)
         at_axis = self.motion.pose(np.zeros(1)).taken(np.zeros(len(starts), dtype=np.intp))
@@ -303,7 +310,7 @@ class OutlinePair:
         arm = np.exp(1j * pose.angle) * self.spline.point[middle]
         moved = 0.5 * step * SPEED_MARGIN * np.abs(pose.c1 + 1j * pose.angle1 * arm)
         apart = np.abs(self.ring.point).min() - np.abs(pose.c + arm)
-        return apart - moved - reach < known
+        return apart - moved - reach < min(known, below)
 
     def _divided(self, owner: Array, first: Indices, stride: int) -> tuple[Array, Indices]:
         """Parts of intervals of `stride` samples: what belongs to each, and their first samples."""

@@ -11,8 +11,9 @@ import pytest
 import swgpar
 from support.drive_groups import PLANE
 from support.paths import DATA, DRIVERS
-from swgpar.design.sections import GearName
+from swgpar.design.sections import GEARS, GearName
 from swgpar.profiles import ToothProfile
+from swgpar.profiles.mesh_gap import OutlinePair, outline
 
 INVOLUTES: dict[str, Any] = {
     "drive.teeth_fs": 160,
@@ -105,3 +106,15 @@ def test_no_place_is_nearer(path: Path, values: dict[str, Any], ring: GearName) 
     )
     every = np.linspace(-1.0, 1.0, 61) * np.pi / design.kinematics.lobes
     assert smallest(design, ring, every).min() > nearest.distance - allowed
+
+
+@pytest.mark.parametrize("path", [DRIVERS / "three_lobes.toml", DATA / "public" / "tip_clash.toml"])
+def test_a_place_below_a_limit_is_the_nearest_one(path: Path) -> None:
+    """Above it, some place that is no nearer than the limit."""
+    design = swgpar.load_design(path)
+    outlines = (outline(design.profile(gear)) for gear in GEARS)
+    pair = OutlinePair(*outlines, design.tooth_motion())
+    known = pair.nearest_place()
+    assert pair.nearest_place(below=known.distance + 1e-3) == known
+    for limit in (known.distance, known.distance - 1e-3):
+        assert pair.nearest_place(below=limit).distance >= limit

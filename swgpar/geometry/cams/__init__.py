@@ -90,9 +90,19 @@ def cam_outlines(cam: Cam, count: int = OUTLINE_POINTS) -> list[np.ndarray]:
     return list(cam.outline(count).reshape(parts, -1, 2))
 
 
+STRAIGHT = 1e-9
+"""Angle (rad) between sides of an outline that is round-off; the length changes by its square."""
+
+
 def taut_length(cam: Cam, n: int = 7200) -> float:
     """Length of a band drawn tight around the cam, mm: the perimeter of its convex hull."""
-    return float(scipy.spatial.ConvexHull(cam.outline(n)).area)
+    outline = cam.outline(n)
+    side = np.diff(outline, axis=0, append=outline[:1]) @ (1.0, 1j)
+    turned = np.angle(np.roll(side, -1) / side)
+    turned *= np.sign(turned.sum())
+    if (turned > -STRAIGHT).all() and turned.sum() < 3.0 * np.pi:  # it is its own hull
+        return float(np.abs(side).sum())
+    return float(scipy.spatial.ConvexHull(outline).area)
 
 
 def pin_travel(cam: Cam, radius: float, lobes: int = 2) -> float:
