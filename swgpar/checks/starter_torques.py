@@ -25,6 +25,10 @@ theirs."""
 DIGITS = 3
 """Digits of torques and diameters in sentences."""
 
+ROUNDING = 1e-3
+"""Share by which a torque may be larger than the one that is carried: the module of a design has
+four digits, and the torque goes with its third power."""
+
 
 def carried_torque(request: Request, design: DriveDesign) -> float | None:
     """The torque (N·m) that the start of a request carries; None where it has not been computed.
@@ -39,7 +43,7 @@ def carried_torque(request: Request, design: DriveDesign) -> float | None:
     if UNKNOWN[0] < request.ratio < UNKNOWN[1]:
         return None
     share = float(np.interp(request.ratio, list(CARRIED), list(CARRIED.values())))
-    return 1e-3 * share * pitch_diameter(design) ** 3
+    return 1e-3 * share * pitch_diameter(design) ** 3 * (1.0 + ROUNDING)
 
 
 def pitch_diameter(design: DriveDesign) -> float:

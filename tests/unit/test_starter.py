@@ -133,6 +133,10 @@ def test_a_torque_that_is_too_large_is_said_in_one_sentence(
     assert main([*words, "--torque", f"{0.9 * carried:.6f}", "--overwrite"]) == 0
     assert not caplog.records
     assert f"carries up to {named[1]} N·m" in (tmp_path / "d.toml").read_text(encoding="utf-8")
+    # module 0.8333 mm, so that the pitch diameter is 49.998 mm
+    words[-1] = "50"
+    assert main([*words, "--torque", f"{1e-3 * share * 50.0**3:g}", "--overwrite"]) == 0
+    assert not caplog.records
 
 
 def test_the_torque_of_other_starts_is_not_named() -> None:
