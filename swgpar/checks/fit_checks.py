@@ -9,6 +9,7 @@ from swgpar.checks.bearing_checks import check_bearing
 from swgpar.checks.cam_checks import check_cam, check_outline
 from swgpar.checks.cup_checks import check_cup
 from swgpar.checks.deviation_checks import check_deviations
+from swgpar.checks.fatigue_checks import check_fatigue
 from swgpar.checks.frequency_checks import check_frequencies
 from swgpar.checks.growth_checks import check_growth
 from swgpar.checks.inertia import check_inertia
@@ -23,23 +24,12 @@ from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.input.quantities import show
 from swgpar.input.require import require, require_available
-from swgpar.materials.pitting import STEEL_MODULUS
 from swgpar.profiles import Conjugate
 
 THINNEST_RIM, THICKEST_RIM = 0.01, 100.0
 """Thickness of a rim, or of a housing, in modules: thinner and thicker ones are slips."""
 
 PANCAKE = 'drive.model = "pancake"'
-
-OF_STEEL = (
-    "tensile_strength",
-    "yield_strength",
-    "fatigue_limit",
-    "shear_fatigue_limit",
-    "basquin_coefficient",
-    "basquin_exponent",
-)
-"""Keys of [fatigue] whose defaults are those of a steel."""
 
 
 def check_fit(design: DriveDesign) -> None:
@@ -51,7 +41,8 @@ def check_fit(design: DriveDesign) -> None:
     if design.has_cup and design.cup is None:
         raise InputError('cup is missing: allowed only with drive.model = "plane"')
     _check_steps(design)
-    _check_fatigue(design)
+    if design.fatigue is not None:
+        check_fatigue(design, design.fatigue)
     _check_linear_solver(design)
     if design.drive.model == "plane":
         _check_plane(design)
@@ -191,36 +182,6 @@ def _check_steps(design: DriveDesign) -> None:
     covers = not steps.samples or steps.rotation >= 0.999999 * least
     allowed = f"{least:.6g} deg (periods: {design.periods}) and more with steps.samples"
     require(covers, "steps.rotation", steps.rotation, allowed)
-
-
-def _check_fatigue(design: DriveDesign) -> None:
-    """Strengths in their order; Crossland's criterion needs a shear fatigue limit above that of von
-    Mises."""
-    fatigue = design.fatigue
-    if fatigue is None:
-        return
-    modulus, (low, high) = design.materials["flexible_spline"].modulus, STEEL_MODULUS
-    if not low <= modulus <= high:
-        for key in OF_STEEL:
-            if key not in fatigue.model_fields_set:
-                raise InputError(
-                    f"fatigue.{key} is missing: the default is that of a steel, and the flexible "
-                    f"spline has a modulus of elasticity of {modulus:g} MPa: allowed without it "
-                    f"only from {low:g} to {high:g} MPa"
-                )
-    limit, shear = fatigue.fatigue_limit, fatigue.shear_fatigue_limit
-    for key, larger in (
-        ("yield_strength", "tensile_strength"),
-        ("fatigue_limit", "tensile_strength"),
-        ("shear_fatigue_limit", "fatigue_limit"),
-    ):
-        value, most = getattr(fatigue, key), getattr(fatigue, larger)
-        require(
-            value <= most, f"fatigue.{key}", value, f"above 0 to {most:g} MPa (fatigue.{larger})"
-        )
-    least = limit / np.sqrt(3.0)
-    allowed = f"{least:.4g} (fatigue.fatigue_limit over the root of 3) to {limit:g} MPa"
-    require(shear >= least, "fatigue.shear_fatigue_limit", shear, allowed)
 
 
 def _check_plane(design: DriveDesign) -> None:

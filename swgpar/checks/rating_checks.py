@@ -1,10 +1,12 @@
-"""Checks of the torques of [rating], and of what it says of the flanks.
+"""Checks of the torques of [rating], of the strengths of its limits, and of what it says of the
+flanks.
 
 Each refusal names the key, its value and what is allowed.
 """
 
 from __future__ import annotations
 
+from swgpar.checks.fatigue_checks import check_fatigue
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.rating_section import RatingSection
 from swgpar.errors import InputError
@@ -27,7 +29,13 @@ def check_torques(section: RatingSection, rated: float, peak: float, average: fl
 
 
 def check_rating(design: DriveDesign) -> None:
-    """Raise InputError where treatment and hardness of the flanks give no limit."""
+    """Raise InputError where the strengths do not fit, or where treatment and hardness of the
+    flanks give no limit.
+
+    Strengths are checked here too: a run that leaves [fatigue] out has not seen them.
+    """
+    if design.fatigue is not None:
+        check_fatigue(design, design.fatigue)
     section = design.rating
     if section is None:
         return

@@ -56,7 +56,6 @@ NO_FLANK_PRESSURE = (
 )
 NO_RING_STRENGTH = "the strength of the ring gear is not known: rating.ring_yield_strength"
 NO_PRELOAD = "cup.bolt_preload and cup.joint_friction are not given"
-NO_WALL = 'drive.model = "plane" has no wall'
 
 
 @dataclass(frozen=True)
@@ -139,7 +138,8 @@ def _strength(
         source = "fatigue.yield_strength over rating.yield_safety"
         of_yield = Limit(strengths.yield_strength / safety, Sense.AT_MOST, source)
     for part, regions in (("teeth and rim", AT_TEETH), ("wall", BEHIND_TEETH)):
-        wall = NO_WALL if part == "wall" and not design.has_cup else ""
+        missing = part == "wall" and not design.has_cup
+        wall = f'drive.model = "{design.drive.model}" has no wall' if missing else ""
         yield RatingRow(
             f"yield of {part}",
             LoadCase.LARGEST,

@@ -346,6 +346,10 @@ def test_the_ring_gear_has_the_strength_of_its_own_material() -> None:
     assert row(name, rated(fatigue=None)).verdict(found, "").judgement == OPEN
 
 
+PRINTED: dict[str, Any] = {
+    "material": {"E": 3500.0, "nu": 0.36},
+    "fatigue": {"tensile_strength": 60.0},
+}
 UNKNOWN = {"flank_pressure": None, "flank_pressure_source": ""}
 TREATED = [
     ("through_hardened", 300.0, 1.313 * 300.0 + 373.0),
@@ -381,12 +385,14 @@ def test_pressure_by_treatment_and_hardness(treatment: str, hardness: float, lim
         ),
         (
             {"flank_treatment": "nitrided", "flank_hardness": 500.0},
-            {"material": {"name": "7075-T6"}},
+            {"material": {"name": "7075-T6"}, "fatigue": None},
             "is not available with a flexible spline of 71 GPa",
         ),
+        # a run that leaves [fatigue] out has not seen it, and its limits stay on the sheet
+        ({}, PRINTED, "fatigue.yield_strength is missing: the default is that of a steel"),
     ],
 )
-def test_refused_flanks(keys: dict[str, Any], changes: dict[str, Any], words: str) -> None:
+def test_refused_materials(keys: dict[str, Any], changes: dict[str, Any], words: str) -> None:
     with pytest.raises(InputError, match=words.replace("(", r"\(")):
         rated(rating=RATING | UNKNOWN | keys, **changes)
 
