@@ -62,7 +62,7 @@ class Film:
 
 def record(page: Page, film: Film) -> None:
     """What the film shows."""
-    page.wait_for_selector('[data-plane-state="computed"]', timeout=LONG)
+    page.wait_for_selector('[data-loaded-state="computed"]', timeout=LONG)
     page.get_by_role("button", name="play", exact=True).click()
     for _ in range(24):
         page.wait_for_timeout(150)
@@ -83,7 +83,7 @@ def record(page: Page, film: Film) -> None:
         film.take("change")
     zoom(page, 1)
     page.get_by_role("button", name="loaded", exact=True).click()
-    page.wait_for_selector('[data-plane-state="computed"]', timeout=LONG)
+    page.wait_for_selector('[data-loaded-state="computed"]', timeout=LONG)
     page.wait_for_timeout(2500)
     film.take("end")
 

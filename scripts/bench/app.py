@@ -32,7 +32,7 @@ OBSERVE = """
   const plot = document.querySelector('.js-plotly-plot');
   plot.on('plotly_afterplot', () => { window.seen.picture ||= performance.now(); });
   new MutationObserver(() => {
-    const busy = document.querySelector('[data-plane-state]')?.dataset.planeState;
+    const busy = document.querySelector('[data-loaded-state]')?.dataset.loadedState;
     if (busy === 'computed' && window.seen.begun) window.seen.answer ||= performance.now();
     if (busy === 'busy') window.seen.begun = true;
   }).observe(document.body, { subtree: true, childList: true, attributes: true });
@@ -85,7 +85,7 @@ def main() -> None:
                 page = browser.new_page(viewport={"width": 1300, "height": 850})
                 page.goto(address)
                 page.wait_for_selector(".js-plotly-plot", timeout=60_000)
-                page.wait_for_selector('[data-plane-state="computed"]', timeout=WARM)
+                page.wait_for_selector('[data-loaded-state="computed"]', timeout=WARM)
                 for section in {key.rpartition(".")[0] for key in KEYS} - {"drive"}:
                     page.get_by_text(f"[{section}]", exact=True).click()
                     page.wait_for_selector(f'input[data-key^="{section}."]')

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from nicegui import ui
 
-from swgpar.app.plane_state import PlaneState
+from swgpar.app.loaded_states import PLANE, SOLID, ShownState
 from swgpar.app.state import AppState
 from swgpar.app.tables import heading, live_label, say, table
 from swgpar.app.verdict_panel import VerdictPanel
@@ -19,9 +19,16 @@ class AnswersPanel:
 
     def __init__(self, state: AppState) -> None:
         self.state = state
-        heading("plane model, loaded")
+        heading("loaded state")
+        choices = {False: PLANE.name, True: SOLID.name}
+        self.model = ui.toggle(choices, value=state.is_solid, on_change=self._choose)
+        self.model.props("dense no-caps size=sm")
         self.said = live_label().classes("text-caption")
-        self.plane()
+        with ui.row().classes("items-center"):
+            self.cancel = ui.button("cancel", on_click=self._cancel).props("flat dense")
+            self.cancel.props["aria-label"] = "cancel the loaded state"
+            self.go_on = ui.button("compute", on_click=self._go_on).props("flat dense")
+        self.states()
         self.verdict = VerdictPanel(state)
         self.changes()
         with ui.expansion("derived geometry", on_value_change=self._opened) as self.folded:
@@ -30,29 +37,65 @@ class AnswersPanel:
 
     def draw(self) -> None:
         """Draw what depends on designs."""
-        self.plane.refresh()
+        self.states.refresh()
         self.verdict.draw()
         self.changes.refresh()
         if self.folded.value:
             self.geometry.refresh()
 
+    def draw_progress(self) -> None:
+        """Say where the computation of the state is, or how long it has taken."""
+        worker = self.state.worker
+        busy = "busy" if worker.is_busy else "computed"
+        if self.said.props.get("data-loaded-state") != busy:
+            self.said.props["data-loaded-state"] = busy
+            self.said.update()
+        self.cancel.set_visibility(worker.is_busy and worker.model is SOLID)
+        self.go_on.set_visibility(worker.is_cancelled)
+        if worker.is_busy:
+            say(self.said, f"is computed {worker.progress} …".replace("  ", " "))
+        elif worker.is_cancelled:
+            say(self.said, "cancelled")
+        else:
+            say(self.said, _computed(self.state.loaded_state(self.state.variant)))
+
     @ui.refreshable_method
-    def plane(self) -> None:
-        """Answers of the plane model under the torque of the design."""
-        worker, shown = self.state.worker, self.state.shown
-        states = [worker.state(variant.design) for variant in shown]
-        self.said.props["data-plane-state"] = "busy" if worker.is_busy else "computed"
-        self.said.update()
-        say(self.said, "is computed …" if worker.is_busy else _computed(states))
-        for found in states:
+    def states(self) -> None:
+        """Answers of loaded states under the torque of the design."""
+        state = self.state
+        self.model.set_visibility(state.variant.design.drive.model != "plane")
+        self.model.value = state.is_solid
+        self.draw_progress()
+        shown = [(one.name, state.loaded_state(one)) for one in state.shown]
+        if len(shown) == 1:
+            model = state.model_of(state.variant)
+            plane = state.workers[PLANE].state(state.variant.design)
+            shown = [(model.name, shown[0][1])]
+            shown = [(PLANE.name, plane), *shown] if model is SOLID else shown
+        for name, found in shown:
             if found is not None and found.reason:
-                ui.label(found.reason).classes("text-negative text-caption").props("role=alert")
-        texts = [_texts(found) for found in states]
+                text = f"{name}: {found.reason}" if len(shown) > 1 else found.reason
+                ui.label(text).classes("text-negative text-caption").props("role=alert")
+        texts = [_texts(found) for _, found in shown]
         names = list(dict.fromkeys(name for one in texts for name in one))
         if names:
-            headings = [variant.name for variant in shown] if len(shown) > 1 else ["value"]
             rows = [[name, *(one.get(name, "") for one in texts)] for name in names]
-            table(["answer", *headings], rows, "plane model").classes("swgpar-plane")
+            places = _places(state.loaded_state(state.variant))
+            notes = [places.get(name, "") for name in names]
+            headings = ["answer", *(name for name, _ in shown)]
+            table(headings, rows, "loaded state", notes).classes("swgpar-loaded")
+
+    def _choose(self) -> None:
+        if bool(self.model.value) != self.state.is_solid:
+            self.state.choose_model(bool(self.model.value))
+
+    def _cancel(self) -> None:
+        self.state.worker.cancel()
+        self.state.draw_states()
+
+    def _go_on(self) -> None:
+        self.state.worker.go_on()
+        self.state.draw_states()
 
     @ui.refreshable_method
     def changes(self) -> None:
@@ -83,14 +126,14 @@ class AnswersPanel:
         self.geometry.refresh()
 
 
-def _computed(states: list[PlaneState | None]) -> str:
-    """How long the first state has taken."""
-    if states[0] is None:
+def _computed(state: ShownState | None) -> str:
+    """How long a state has taken."""
+    if state is None:
         return ""
-    return f"computed in {states[0].seconds:.1f} s; no estimate of errors by the mesh"
+    return f"computed in {state.seconds:.1f} s; no estimate of errors by the mesh"
 
 
-def _texts(state: PlaneState | None) -> dict[str, str]:
+def _texts(state: ShownState | None) -> dict[str, str]:
     """Values of answers by their texts."""
     if state is None:
         return {}
@@ -99,6 +142,11 @@ def _texts(state: PlaneState | None) -> dict[str, str]:
         + ("" if one.error is None else f" ± {one.error:.2g}")
         for one in state.answers
     }
+
+
+def _places(state: ShownState | None) -> dict[str, str]:
+    """Places of answers by their texts."""
+    return {one.text: one.place for one in state.answers} if state is not None else {}
 
 
 def _value(value: object) -> str:

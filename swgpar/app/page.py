@@ -205,7 +205,11 @@ class Page:
     def draw_states(self) -> None:
         """Draw loaded states."""
         self.section.draw_states()
-        self.answers.plane.refresh()
+        self.answers.states.refresh()
+
+    def draw_progress(self) -> None:
+        """Draw where the computation of a loaded state is."""
+        self.answers.draw_progress()
 
     def draw_jobs(self) -> None:
         """Draw the queue, and the sheet that a job may have written."""

@@ -21,7 +21,7 @@ SHAPES = "drive", "flexible_spline", "ring_gear", "dynamic_spline", "wave_genera
 """Sections of a design that the picture of undeformed teeth follows from."""
 
 VIEWS = {False: "gaps", True: "loaded"}
-"""What the section shows: gaps of the rigid teeth, or stress and forces of the plane model."""
+"""What the section shows: gaps of the rigid teeth, or stress and forces of a loaded state."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +116,7 @@ class SectionPanel:
         design, state = variant.design, self.state
         if not state.loaded:
             return TeethPicture(design, state.angle_deg)
-        found = state.worker.state(design)
+        found = state.loaded_state(variant)
         return TeethPicture(design, 0.0, found.outline if found is not None else None, loaded=True)
 
     async def _turned(self, angle: float, moves: bool) -> None:

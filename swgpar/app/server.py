@@ -13,7 +13,6 @@ from swgpar.app.access import TokenGate
 from swgpar.app.drawings import ADDRESS, FOLDER
 from swgpar.app.jobs import JobQueue
 from swgpar.app.page import Page
-from swgpar.app.plane_state import PlaneWorker
 from swgpar.app.state import AppState
 from swgpar.app.style import PRIMARY, STYLE
 from swgpar.app.workspace import Workspace
@@ -22,7 +21,7 @@ from swgpar.errors import InputError
 RESULTS = "results"
 """Folder of the workspace with the results of the jobs."""
 
-LOOK, PLAY, JOBS = 0.1, 0.2, 1.0
+LOOK, PLAY, JOBS = 0.05, 0.2, 1.0
 """Seconds between two looks at the loaded states, two pictures while the cam turns, and two looks
 at the jobs."""
 
@@ -79,10 +78,10 @@ def serve(source: Path, port: int | None = None, *, show: bool = True) -> None:
     show : whether to open a browser
     """
     workspace = open_workspace(source)
-    worker = PlaneWorker()
-    app.on_shutdown(worker.close)
-    state = AppState(workspace, JobQueue(workspace.folder), worker)
-    worker.want([state.variant.design])
+    state = AppState(workspace, JobQueue(workspace.folder))
+    for worker in state.workers.values():
+        app.on_shutdown(worker.close)
+    state.want_states()
     # one for all windows, and without one
     app.timer(LOOK, state.look_at_states)
     app.timer(PLAY, state.turn)

@@ -12,7 +12,8 @@ from typing import Any, Protocol
 from swgpar.api.runs import load_mesh
 from swgpar.app.fields import FormField
 from swgpar.app.jobs import AppJob, JobQueue
-from swgpar.app.plane_state import PlaneWorker
+from swgpar.app.loaded_states import PLANE, SOLID, ShownState, StateModel
+from swgpar.app.state_worker import StateWorker
 from swgpar.app.workspace import Variant, Workspace
 from swgpar.errors import SwgparError
 from swgpar.results.atomic import write_file
@@ -33,6 +34,9 @@ class Window(Protocol):
     def draw_states(self) -> None:
         """Draw loaded states."""
 
+    def draw_progress(self) -> None:
+        """Draw where the computation of a loaded state is."""
+
     def draw_jobs(self) -> None:
         """Draw the queue, and what follows from its results."""
 
@@ -43,19 +47,22 @@ class Window(Protocol):
 class AppState:
     """What all windows of the app show.
 
-    workspace : variants;  queue : jobs;  worker : of plane states
+    workspace : variants;  queue : jobs;  workers : of loaded states, by their models
+    is_solid : whether the loaded states of drives in 3D are wanted, beside those of plane models
     angle_deg : of the cam;  plays : whether it turns;  loaded : whether the section shows the
     loaded state in place of gaps
     refused : entries that were refused and their sentences, by their keys
     windows : that are open;  was_busy : whether they show that a state is computed
     """
 
-    def __init__(self, workspace: Workspace, queue: JobQueue, worker: PlaneWorker) -> None:
-        self.workspace, self.queue, self.worker = workspace, queue, worker
+    def __init__(self, workspace: Workspace, queue: JobQueue) -> None:
+        self.workspace, self.queue = workspace, queue
+        self.workers = {model: StateWorker(model) for model in (PLANE, SOLID)}
+        self.is_solid = False
         self.angle_deg, self.plays, self.loaded = 0.0, False, False
         self.refused: dict[str, tuple[Any, str]] = {}
         self.windows: list[Window] = []
-        self.was_busy = False
+        self.was_busy = [False, False]
 
     @property
     def variant(self) -> Variant:
@@ -67,6 +74,32 @@ class AppState:
         """The one that is shown, and the one beside it."""
         other = self.workspace.other
         return [self.variant, *([other] if other is not None else [])]
+
+    def model_of(self, variant: Variant) -> StateModel:
+        """Model whose loaded state is shown of a variant; a plane drive has no other."""
+        return SOLID if self.is_solid and variant.design.drive.model != "plane" else PLANE
+
+    @property
+    def worker(self) -> StateWorker:
+        """Of the states that are shown of the variant."""
+        return self.workers[self.model_of(self.variant)]
+
+    def loaded_state(self, variant: Variant) -> ShownState | None:
+        """The loaded state that is shown of a variant; None before it is computed."""
+        return self.workers[self.model_of(variant)].state(variant.design)
+
+    def want_states(self) -> None:
+        """Ask for the loaded states of the variants that are shown."""
+        shown = self.shown
+        self.workers[PLANE].want([variant.design for variant in shown])
+        solid = [one.design for one in shown if self.model_of(one) is SOLID]
+        self.workers[SOLID].want(solid)
+
+    def choose_model(self, is_solid: bool) -> None:
+        """Show loaded states of drives in 3D, or of plane models."""
+        self.is_solid = is_solid
+        self.want_states()
+        self.draw_states()
 
     async def set(self, field: FormField, entry: Any, moves: bool = False) -> None:
         """Take over an entry of the form; a refused one stays with its sentence.
@@ -107,7 +140,7 @@ class AppState:
         await asyncio.sleep(SENT)
         if keeps:
             self.workspace.keep()
-        self.worker.want([variant.design for variant in self.shown])
+        self.want_states()
         for window in self.windows:
             window.draw_design()
 
@@ -124,10 +157,19 @@ class AppState:
 
     def look_at_states(self) -> None:
         """Take over states that have been computed."""
-        if self.worker.look() or self.was_busy != self.worker.is_busy:
-            self.was_busy = self.worker.is_busy
+        new = [worker.look() for worker in self.workers.values()]
+        busy = [worker.is_busy for worker in self.workers.values()]
+        if any(new) or busy != self.was_busy:
+            self.was_busy = busy
+            self.draw_states()
+        elif any(busy):
             for window in self.windows:
-                window.draw_states()
+                window.draw_progress()
+
+    def draw_states(self) -> None:
+        """Draw loaded states in all windows."""
+        for window in self.windows:
+            window.draw_states()
 
     def look_at_jobs(self) -> None:
         """Start and end jobs."""

@@ -24,10 +24,21 @@ def say(label: ui.label, text: str) -> None:
     label.set_visibility(bool(text))
 
 
-def table(headings: Sequence[str], rows: Sequence[Sequence[str]], name: str) -> ui.table:
+NOTED = """
+<q-td :props="props">{{ props.value }}
+  <div class="text-caption text-grey">{{ props.row.note }}</div>
+</q-td>
+"""
+"""A first cell with a note below its text, as Quasar draws it."""
+
+
+def table(
+    headings: Sequence[str], rows: Sequence[Sequence[str]], name: str, notes: Sequence[str] = ()
+) -> ui.table:
     """A table whose first column is text, and the others right.
 
     headings : of the columns;  rows : texts;  name : for screen readers
+    notes : below the texts of the first column, none or one for each row
     """
     columns = [
         {
@@ -39,7 +50,11 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[str]], name: str) -> 
         for k, heading in enumerate(headings)
     ]
     entries = [{str(k): text for k, text in enumerate(row)} for row in rows]
+    for entry, note in zip(entries, notes, strict=False):
+        entry["note"] = note
     made = ui.table(rows=entries, columns=columns, row_key="0")
     made.props("dense flat wrap-cells hide-pagination :rows-per-page-options=[0]")
     made.props["aria-label"] = name
+    if notes:
+        made.add_slot("body-cell-0", NOTED)
     return made.classes("w-full")

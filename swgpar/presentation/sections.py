@@ -120,14 +120,15 @@ class PlaneBody:
 
 def _joined(points: np.ndarray, quads: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Of nodes (n, 2) mm at one place the first, (k,), and the elements (m, 4) with these alone."""
-    _, first, same = np.unique(
-        np.rint(points / SAME_PLACE), axis=0, return_index=True, return_inverse=True
-    )
-    return first, same.ravel()[quads]
+    x, y = np.rint((points - points.min(axis=0)) / SAME_PLACE).astype(np.int64).T
+    # one number for a place: rows of two would be sorted in ten times the time
+    _, first, same = np.unique(x * (y.max() + 1) + y, return_index=True, return_inverse=True)
+    return first, same[quads]
 
 
 def _free_edges(quads: np.ndarray) -> np.ndarray:
     """Edges (k, 2) that one element alone has."""
-    sides = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2))
-    edges, count = np.unique(sides, axis=0, return_counts=True)
-    return edges[count == 1]
+    ends = np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2).astype(np.int64)
+    low, high, nodes = ends.min(axis=1), ends.max(axis=1), int(ends.max()) + 1
+    sides, count = np.unique(low * nodes + high, return_counts=True)
+    return np.column_stack(np.divmod(sides[count == 1], nodes))

@@ -19,7 +19,7 @@ import pytest
 
 import swgpar
 from support.paths import DESIGN, RECIPE
-from swgpar.app.plane_state import plane_table, solve_plane
+from swgpar.app.loaded_states import PLANE, solve_state
 from swgpar.design.drive_design import DriveDesign
 
 CHROMIUM = shutil.which("chromium")
@@ -137,8 +137,11 @@ def plane_answers(path: Path) -> set[str]:
     """Answers of the plane model of a design as the page shows them."""
     design = swgpar.load_design(path)
     assert isinstance(design, DriveDesign)
-    state = solve_plane(plane_table(design))
-    return {f"{one.text}\t{one.value:.4g} {one.unit}".strip() for one in state.answers}
+    state = solve_state(PLANE.table(design), PLANE.mesh)
+    return {
+        f"{one.text} {one.place} {one.value:.4g} {one.unit}".replace("  ", " ").strip()
+        for one in state.answers
+    }
 
 
 def change_keys(page: sync_api.Page, clearance: sync_api.Locator) -> None:
@@ -165,12 +168,19 @@ def change_keys(page: sync_api.Page, clearance: sync_api.Locator) -> None:
 
 
 def compare_variants(page: sync_api.Page, folder: Path) -> None:
-    """The plane state is that of the interface; a copy stands beside its source, and is saved."""
+    """The plane state is that of the interface, and that in 3D is cancelled; a copy stands beside
+    its source, and is saved."""
     expect = sync_api.expect
     expect(page.get_by_text("no estimate of errors by the mesh")).to_be_visible()
-    rows = page.locator(".swgpar-plane tbody tr").all_inner_texts()
+    rows = page.locator(".swgpar-loaded tbody tr").all_inner_texts()
     known = plane_answers(folder / "variants" / "one.toml")
-    assert known and {re.sub(r" ±.*", "", row) for row in rows} == known
+    assert known and {re.sub(r"\s+", " ", row).strip() for row in rows} == known
+    press(page, "3D model")
+    press(page, "cancel the loaded state")
+    press(page, "compute")
+    press(page, "cancel the loaded state")
+    expect(page.get_by_text("cancelled", exact=True)).to_be_visible()
+    press(page, "plane model")
     press(page, "copy")
     expect(page.get_by_label("variant")).to_have_value("one_2")
     expect(page.get_by_label("beside")).to_have_value("one")

@@ -24,7 +24,7 @@ from swgpar.app.drawings import DRAWINGS, FOLDER, drawings_of
 from swgpar.app.fields import FormField, form_fields, is_optional, missing_sections
 from swgpar.app.flank_gaps import NEAR, flank_gaps
 from swgpar.app.jobs import AppJob, JobQueue, JobState, shell_environment
-from swgpar.app.plane_state import plane_table, solve_plane
+from swgpar.app.loaded_states import PLANE, SOLID, ShownState, plane_table, solve_state
 from swgpar.app.search_plot import EVALUATION, pair_figure, parallel_figure
 from swgpar.app.section_panel import TeethPicture
 from swgpar.app.section_plot import section_figure
@@ -445,10 +445,18 @@ def test_tried_designs_of_a_search(tmp_path: Path) -> None:
     assert lines[1]["y"][:2] == pytest.approx([0.3, 0.2])  # between the bounds
 
 
+def largest_distance(state: ShownState, design: DriveDesign) -> float:
+    """Of the contacts that are drawn from the flanks of the rigid ring gear, mm."""
+    ring, half_pitch = outline(design.profile("ring_gear")), np.pi / design.drive.teeth_rg
+    assert state.outline is not None
+    points = state.outline.pairs.place @ (1.0, 1j) * np.exp(1j * half_pitch)
+    return float(np.abs(ring.distance(ring.folded(points)[0]).distance).max())
+
+
 def test_the_loaded_state_is_that_of_the_interface() -> None:
     """Largest tension, balance of shares, and forces of the pairs, in the whole drive."""
     table = plane_table(drive(DESIGN))
-    state = solve_plane(table)
+    state = solve_state(table, PLANE.mesh)
     assert state.reason == "" and state.outline is not None
     values = {one.name: one.value for one in state.answers}
     outline = state.outline
@@ -458,10 +466,30 @@ def test_the_loaded_state_is_that_of_the_interface() -> None:
     assert outline.pairs.share.sum() == pytest.approx(1.0)
     assert len(outline.pairs.force) == values["sharing.pairs"]
     assert outline.pairs.share.max() == pytest.approx(values["sharing.largest_force_share"])
-    # what the state draws lies on the teeth
-    radius = np.hypot(*outline.pairs.place.T)
-    design = drive(DESIGN)
-    assert (np.abs(radius - design.teeth("ring_gear").r_pitch) < 3.0 * design.drive.module).all()
+    assert largest_distance(state, drive(DESIGN)) < 0.03
+
+
+def test_the_loaded_state_in_3d_is_that_of_the_interface() -> None:
+    """Answers and their places; the picture has the nodes at mid-width."""
+    table = SOLID.table(drive())
+    state, result = solve_state(table, RECIPE), swgpar.run(table, RECIPE)
+    assert state.reason == "" and state.outline is not None
+    known = {one.name: one for one in result.summary.answers()}
+    assert {"largest.fs_s1", "largest.fs_vm", "sharing.pairs"} <= {
+        one.name for one in state.answers
+    }
+    for one in state.answers:
+        assert one.value == pytest.approx(known[one.name].value, rel=1e-9)
+        assert one.place == known[one.name].place
+    largest = []
+    for gear in GEARS:
+        middle = np.abs(result.mesh(gear).points[:, 2]) < 1e-9
+        largest.append(result.field("s1", body=gear)[middle].max())
+    # the teeth are in tension at their surface
+    assert state.outline.s1.max() == pytest.approx(max(largest), rel=1e-9)
+    assert state.outline.pairs.share.sum() == pytest.approx(1.0)
+    # contacts lie beside mid-width, where the deflection is another one
+    assert largest_distance(state, drive()) < 0.1
 
 
 def test_a_folder_shows_its_designs(tmp_path: Path) -> None:

@@ -1,0 +1,190 @@
+"""A warm process that computes loaded states of the designs that are shown."""
+
+from __future__ import annotations
+
+import logging
+import os
+import threading
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from multiprocessing import get_context, parent_process
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
+from typing import Any
+
+from swgpar.app.loaded_states import ShownState, StateModel, solve_state
+from swgpar.design.drive_design import DriveDesign
+from swgpar.results.atomic import to_json
+
+KEPT = 50
+"""States that are kept: undo and a change of the variant show them at once."""
+
+NICE = 5
+"""Steps by which the priority of the process is below that of the server."""
+
+
+@dataclass
+class _Running:
+    """The state that is computed. begun : s of time.monotonic;  line : last one of the log"""
+
+    key: str
+    begun: float
+    line: str = ""
+
+
+class StateWorker:
+    """Computes states of one model of the designs that are shown, one at a time, and keeps the last
+    ones.
+
+    A design that is not shown any more when its turn comes is left out. The process begins with the
+    first design, and again after it was ended.
+    """
+
+    def __init__(self, model: StateModel) -> None:
+        self.model = model
+        self._process: BaseProcess | None = None
+        self._pipe: Connection | None = None
+        self._running: _Running | None = None
+        self._wanted: dict[str, dict[str, Any]] = {}
+        self._cancelled: set[str] = set()
+        self._states: dict[str, ShownState] = {}
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a state of the designs that are shown is missing."""
+        return bool(self._missing)
+
+    @property
+    def is_cancelled(self) -> bool:
+        """Whether a state of the designs that are shown was cancelled."""
+        return any(key in self._cancelled for key in self._wanted)
+
+    @property
+    def progress(self) -> str:
+        """For how long the state is computed, and where the run is; empty without one."""
+        if self._running is None:
+            return ""
+        seconds = f"for {time.monotonic() - self._running.begun:.0f} s"
+        return f"{seconds}: {self._running.line}" if self._running.line else seconds
+
+    @property
+    def _missing(self) -> list[str]:
+        known = self._states.keys() | self._cancelled
+        return [key for key in self._wanted if key not in known]
+
+    def state(self, design: DriveDesign) -> ShownState | None:
+        """Of a design; None before it is computed."""
+        return self._states.get(_key(self.model.table(design)))
+
+    def want(self, designs: Sequence[DriveDesign]) -> None:
+        """Ask for the states of the designs that are shown, the most important one first."""
+        tables = [self.model.table(design) for design in designs]
+        self._wanted = {_key(table): table for table in tables}
+        self._cancelled &= self._wanted.keys()
+        self.look()
+
+    def cancel(self) -> None:
+        """End the process; the designs that are shown are computed after a change or `go_on`."""
+        self._cancelled.update(self._missing)
+        self.close()
+
+    def go_on(self) -> None:
+        """Compute what was cancelled."""
+        self._cancelled.clear()
+        self.look()
+
+    def look(self) -> bool:
+        """Take over what has been computed, and begin what is asked for; whether there is a new
+        state."""
+        new = self._receive()
+        missing = self._missing
+        if self._running is None and missing:
+            self._begin(missing[0])
+        return new
+
+    def close(self) -> None:
+        """End the process."""
+        if self._process is not None and self._pipe is not None:
+            self._pipe.close()
+            self._process.kill()
+            self._process.join()
+        self._process = self._pipe = self._running = None
+
+    def _begin(self, key: str) -> None:
+        if self._pipe is None:
+            context = get_context("spawn")
+            self._pipe, theirs = context.Pipe()
+            self._process = context.Process(
+                target=_compute, args=(theirs, self.model.mesh), daemon=True
+            )
+            self._process.start()
+            theirs.close()
+        self._pipe.send(self._wanted[key])
+        self._running = _Running(key, time.monotonic())
+
+    def _receive(self) -> bool:
+        """Take over lines of the log and states; whether there is a state."""
+        new = False
+        try:
+            while self._pipe is not None and self._running is not None and self._pipe.poll():
+                found = self._pipe.recv()
+                if isinstance(found, str):
+                    self._running.line = found
+                else:
+                    self._keep(self._running.key, found)
+                    self._running, new = None, True
+        except (EOFError, OSError):
+            if self._running is not None:
+                self._keep(self._running.key, ShownState((), 0.0, "the computation has ended"))
+            self.close()
+            new = True
+        return new
+
+    def _keep(self, key: str, state: ShownState) -> None:
+        self._states.pop(key, None)
+        self._states[key] = state
+        while len(self._states) > KEPT:
+            self._states.pop(next(iter(self._states)))
+
+
+class _Lines(logging.Handler):
+    """Sends the lines of a run's log."""
+
+    def __init__(self, pipe: Connection) -> None:
+        super().__init__(logging.INFO)
+        self._pipe = pipe
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Send a line."""
+        self._pipe.send(record.getMessage().strip())
+
+
+def _compute(pipe: Connection, mesh: str) -> None:
+    """Compute the states that are asked for, until the server ends."""
+    os.nice(NICE)  # pictures of the server come first
+    threading.Thread(target=_end_with_the_server, daemon=True).start()
+    logger = logging.getLogger("swgpar")
+    logger.addHandler(_Lines(pipe))
+    while True:
+        try:
+            table = pipe.recv()
+        except EOFError:
+            return
+        try:
+            state = solve_state(table, mesh)
+        except Exception as error:  # a fault of the program must not cost the next state
+            state = ShownState((), 0.0, f"{type(error).__name__}: {error}")
+        pipe.send(state)
+
+
+def _end_with_the_server() -> None:
+    """End when the server does, also where it is killed."""
+    parent = parent_process()
+    if parent is not None:
+        wait([parent.sentinel])
+        os._exit(1)
+
+
+def _key(table: dict[str, Any]) -> str:
+    return to_json(table).decode()
