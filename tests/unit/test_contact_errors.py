@@ -9,6 +9,7 @@ from dataclasses import replace
 import pytest
 
 from swgpar.analysis.contact_errors import (
+    LAW,
     LEAST_FORCE,
     LEAST_FORCE_WITH_EDGES,
     LEAST_PRESSURE,
@@ -63,7 +64,7 @@ def errors(*meshes: Sequence[PairContact]) -> ContactErrorShares:
 
 def test_changes_of_both_groups_are_added() -> None:
     found = errors([pair(1, 500.0, force=90.0)], [pair(1, 530.0)], [pair(1, 520.0)])
-    assert found.pressure == pytest.approx(FACTOR * (30.0 + 10.0) / 520.0)
+    assert found.pressure == pytest.approx(math.hypot(FACTOR * (30.0 + 10.0) / 520.0, LAW))
     assert found.force == pytest.approx(FACTOR * 10.0 / 100.0)
 
 
@@ -79,7 +80,7 @@ def test_a_pressure_has_half_of_the_error_of_forces() -> None:
     """It goes with the root of the force, also where it is the same on all meshes by chance."""
     found = errors([pair(1, 520.0, force=90.0)], [pair(1, 520.0)], [pair(1, 520.0, force=110.0)])
     assert found.force == pytest.approx(FACTOR * (10.0 + 10.0) / 110.0)
-    assert found.pressure == pytest.approx(0.5 * found.force)
+    assert found.pressure == pytest.approx(math.hypot(0.5 * found.force, LAW))
 
 
 def test_the_pair_with_the_largest_value_is_compared_as_well() -> None:
@@ -87,19 +88,18 @@ def test_the_pair_with_the_largest_value_is_compared_as_well() -> None:
     found = errors(
         [pair(1, 500.0), pair(2, 600.0)], [pair(1, 500.0), pair(2, 600.0)], [pair(1, 600.0)]
     )
-    assert found.pressure == pytest.approx(FACTOR * 100.0 / 600.0)
+    assert found.pressure == pytest.approx(math.hypot(FACTOR * 100.0 / 600.0, LAW))
     # a pair that one mesh does not have
     found = errors([pair(2, 600.0)], [pair(1, 598.0)], [pair(1, 600.0)])
-    assert found.pressure == pytest.approx(max(FACTOR * 4.0 / 600.0, LEAST_PRESSURE))
+    assert found.pressure == pytest.approx(math.hypot(FACTOR * 4.0 / 600.0, LAW))
 
 
 def test_pairs_on_edges_do_not_count_among_those_off_edges() -> None:
     edge, fine = pair(2, 900.0, edge=1), [pair(1, 600.0), pair(2, 1500.0, edge=1)]
     found = errors([pair(1, 560.0), edge], [pair(1, 580.0), edge], fine)
-    assert found.pressure_off_edges == pytest.approx(FACTOR * 40.0 / 600.0)
-    assert found.pressure == pytest.approx(FACTOR * 600.0 / 1500.0)
-    found = errors([edge], [edge], [edge])
-    assert found.pressure_off_edges is None and found.pressure == LEAST_PRESSURE
+    assert found.pressure_off_edges == pytest.approx(math.hypot(FACTOR * 40.0 / 600.0, LAW))
+    assert found.pressure == pytest.approx(math.hypot(FACTOR * 600.0 / 1500.0, LAW))
+    assert errors([edge], [edge], [edge]).pressure_off_edges is None
 
 
 def test_in_space_one_mesh_with_fewer_elements_in_all_directions_shows_the_errors() -> None:
@@ -125,7 +125,7 @@ def test_the_force_of_a_pair_that_carries_alone_has_no_estimate() -> None:
     """It follows from the torque, until another pair touches."""
     alone = [replace(pair(1, 600.0), force_share=0.5)]
     found = errors(alone, alone, alone)
-    assert found.force is found.force_share is None and found.pressure == LEAST_PRESSURE
+    assert found.force is found.force_share is None and found.pressure == LAW
 
 
 def test_every_other_increment_shows_what_lies_between() -> None:
@@ -164,7 +164,7 @@ def test_pressures_of_cups_are_less_certain_beside_an_edge() -> None:
     (coarse,) = coarser_recipes(cup)
     pairs = [pair(1, 600.0), pair(2, 900.0, edge=1)]
     found = contact_errors([CoarserMesh(coarse, {}, pairs)], cup, pairs, 2)
-    assert found.pressure_off_edges == LEAST_PRESSURE_WITH_EDGES["cup"] > LEAST_PRESSURE
+    assert found.pressure_off_edges == LEAST_PRESSURE_WITH_EDGES > LEAST_PRESSURE
 
 
 def test_a_peak_as_narrow_as_the_cells_has_an_error_of_its_own() -> None:
