@@ -15,7 +15,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.coarse_start import MeshedDrive
-from swgpar.analysis.deviation_guess import DeviationGuess
+from swgpar.analysis.deviation_guess import DeviationGuess, ModelledState
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.constraints.distributing_coupling import TILT_X, TILT_Y, X, Y
@@ -50,6 +50,13 @@ thousandth of what deviations do."""
 WORTH_GUESSES = 40
 """States at one place of a period from which a linear model of the drive pays on two ranks: each
 makes it, and it takes as long as some ten states."""
+
+CHECKED, LEAST_CHECKED = 0.05, 50
+"""Share of the states at one place that Newton's iteration gives where a linear model gives the
+others, and their least number."""
+
+GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+"""Step between numbers in [0, 1) that are even, and have no period in common with teeth."""
 
 RTOL = 1e-5
 """Newton's tolerance on the coarse mesh, at least: it changes the output's angle by a millionth of
@@ -125,6 +132,7 @@ class DeviatingDrive:
     tables : deviations of all flanks;  periods : numbers of pitches after which those of each gear
     repeat
     per_period : angles of a period of the ideal drive;  angles : those of all turns
+    ideals : load state and x of the ideal drive at the angles of a period, once they are needed
     """
 
     def __init__(self, design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> None:
@@ -155,37 +163,49 @@ class DeviatingDrive:
         self.per_period = kinematics.pitches * per_pitch
         pitches = self.deviations.turns * kinematics.teeth(kinematics.standing_gear)
         self.angles = pitches * per_pitch
+        self.ideals: list[tuple[LoadState, PETSc.Vec]] = []
 
     def destroy(self) -> None:
         """Release the model."""
         self.model.destroy()
 
     def points(
-        self, known: Container[int] = (), share: tuple[int, int] = (0, 1)
+        self,
+        known: Container[int] = (),
+        share: tuple[int, int] = (0, 1),
+        *,
+        linear_model: bool = False,
     ) -> Iterator[TurnPoint]:
         """States at all angles but those whose indices, from 0 on, are `known`.
 
         share : number of a share of the states, from 0, which is computed, and how many there are
+        linear_model : where a linear model is made, take most states from it
 
         Raises ConvergenceError where a state cannot be reached.
         """
-        ideals = self._ideal_states()
-        self._displace_cam()
-        for place, (state, ideal) in enumerate(ideals):
+        if not self.ideals:
+            self.ideals = self._ideal_states()
+            self._displace_cam()
+        for place, (state, ideal) in enumerate(self.ideals):
             ideal.copy(self.model.problem.x)
             self.model.problem.search(state)  # all states of the place are near this one
             states: dict[tuple[int, ...], list[int]] = {}
+            different = set()
             for index in range(place, self.angles, self.per_period):
+                renamed = tuple(self._renamed(index) % period for period in self.periods)
+                different.add(renamed)
                 if index not in known:
-                    renamed = tuple(self._renamed(index) % period for period in self.periods)
                     states.setdefault(renamed, []).append(index)
+            checked = max(CHECKED, LEAST_CHECKED / len(different)) if linear_model else 1.0
             start = split(len(states), share[1])
             mine = list(states.values())[start[share[0]] : start[share[0] + 1]]
-            guess = self._guess(state) if len(states) >= WORTH_GUESSES else None
+            worth = mine and len(different) >= WORTH_GUESSES
+            guess = self._guess(state) if worth else None
             last = ideal
             try:
                 for first, *others in mine:
-                    found = self._point(first, state, ideal, guess or last)
+                    check = (first // self.per_period) * GOLDEN % 1.0 < checked
+                    found = self._point(first, state, ideal, guess or last, check=check)
                     last = self.model.problem.x.copy()
                     yield found
                     for index in others:
@@ -254,12 +274,20 @@ class DeviatingDrive:
         offsets[SPLINE_COUPLING, [TILT_X, TILT_Y]] = -lean[1], lean[0]
 
     def _point(
-        self, index: int, state: LoadState, ideal: PETSc.Vec, guess: PETSc.Vec | DeviationGuess
+        self,
+        index: int,
+        state: LoadState,
+        ideal: PETSc.Vec,
+        guess: PETSc.Vec | DeviationGuess,
+        *,
+        check: bool,
     ) -> TurnPoint:
         """The state at an angle, from a guess, or from the ideal one step by step.
 
         state, ideal : of the ideal drive at the same place of a period
+        check : whether a guess that is settled is not yet the state
         """
+        modelled: ModelledState | None = None
         problem, iterations, renamed = self.model.problem, 0, self._renamed(index)
         deviations, turned = (
             self.tables.rolled(renamed),
@@ -272,15 +300,24 @@ class DeviatingDrive:
                 self._displace_bore(renamed, state, share)
                 problem.flanks_of(RING_GEAR).deviate(deviations.scaled(share))
                 if isinstance(start, DeviationGuess):
-                    start.set_x()
+                    found = start.set_x()
+                    modelled = found if found.settled else None
+                    if modelled is not None and not check:
+                        output = found.output_rotation + turned / self.design.kinematics.ratio
+                        angle = state.angle + turned
+                        return TurnPoint(index, angle, output, found.torque, 0, True)
                 result = self.model.solver.solve(state, search=False)
                 iterations += result.iterations
                 if not result.converged:
                     break
             else:
-                output = problem.output_rotation() + turned / self.design.kinematics.ratio
-                torque = torques(problem, state).wave_generator
-                return TurnPoint(index, state.angle + turned, output, torque, iterations)
+                rotation, torque = problem.output_rotation(), torques(problem, state).wave_generator
+                output = rotation + turned / self.design.kinematics.ratio
+                difference = None
+                if modelled is not None:
+                    difference = modelled.output_rotation - rotation, modelled.torque - torque
+                angle = state.angle + turned
+                return TurnPoint(index, angle, output, torque, iterations, difference=difference)
         angle = np.degrees(state.angle + turned)
         raise ConvergenceError(
             f"the drive with [deviations] did not converge at a wave-generator angle of "
@@ -293,4 +330,5 @@ class DeviatingDrive:
         pitches = self._renamed(index) - self._renamed(point.index)
         turned = pitches * self.design.kinematics.pitch_angle
         output = point.output_angle + turned / self.design.kinematics.ratio
-        return TurnPoint(index, point.wg_angle + turned, output, point.wg_torque, 0)
+        angle, by_model = point.wg_angle + turned, point.by_linear_model
+        return TurnPoint(index, angle, output, point.wg_torque, 0, by_model)

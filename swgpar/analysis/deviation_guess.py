@@ -3,8 +3,9 @@
 Bodies and supports are linear in the forces of the pairs of flanks, in those of the cam on the
 faces of the bore, and in the rotation of the output. Pairs touch by the law of the flanks, faces by
 the penalty of the cam. Which pairs carry, and which faces lie on the cam, is found on these few
-unknowns. Newton's iteration begins there: it would move the end of the contact with the cam by half
-a tooth per iteration.
+unknowns. Gaps are then measured at the displacement that follows, and the model is solved again
+with them. Newton's iteration begins there: it would move the end of the contact with the cam by
+half a tooth per iteration. Output angle and torque of the model itself are close to its.
 
 One rank owns all of the drive.
 """
@@ -25,12 +26,17 @@ from swgpar.fem.body import RING_GEAR
 from swgpar.fem.vectors import create_vector
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
+from swgpar.model.torques import torques
 from swgpar.petsc import PETSc
 from swgpar.solve.bordered_system import BorderedSystem
 from swgpar.solve.linear_solvers import make_linear_solver
 
-LEAST, FACTOR, MOST = 1e-5, 2.0, 16
+LEAST, FACTOR, MOST = 1e-5, 1.4, 40
 """First approach of the law (modules), factor of the next ones, and how many there are at most."""
+
+PRESSED, HIGHEST = 0.3, 15.0
+"""Forces over the largest one of the ideal state: at which a pair has the shape of its pressure,
+and up to which the law is known, since deviations let few pairs carry."""
 
 RISE = 1e-6
 """Least rise of the law from one approach to the next, over the largest force."""
@@ -38,6 +44,14 @@ RISE = 1e-6
 ROUNDS = 40
 """Most changes of the faces on the cam; each comes with the stiffness of the pairs at the last
 forces. Usually there are some ten."""
+
+MEASURED, SETTLED = 8, 0.05
+"""Most measurements of the gaps, and the change of those that carry by the last one, over the
+largest approach, from which the model is taken for the state. Usually two suffice."""
+
+SAME_FORCE = 1e-6
+"""Change of a force over the largest one, in a round, below which the pairs are on their law. The
+solution does not depend on where the rounds began then."""
 
 DEFINITE = 1e-12
 """Least eigenvalue of a compliance over its largest entry."""
@@ -56,6 +70,11 @@ class PairLaw:
     approach: np.ndarray
     force: np.ndarray
 
+    def approaches(self, force: np.ndarray) -> np.ndarray:
+        """Approach (n_pair,) mm of each pair at forces (n_pair,) N."""
+        begin, soft = self.tangents(force)
+        return begin + soft * force
+
     def tangents(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Approach (n_pair,) mm at no force, and softness (n_pair,) mm/N, of the lines that touch
         the law at forces (n_pair,) N."""
@@ -73,12 +92,24 @@ class Balance:
     force : (n_pair,) N, of the pairs;  rotation : rad, of the output from the ideal state
     faces : numbers (n,) of the faces that are not on the cam as in the ideal state
     corrections : (n,) N, their correcting forces
+    settled : whether the faces are those that the corrections ask for
     """
 
     force: np.ndarray
     rotation: float
     faces: np.ndarray
     corrections: np.ndarray
+    settled: bool
+
+
+@dataclass(frozen=True)
+class ModelledState:
+    """What the linear model says of a state. torque : N mm, of the wave generator
+    output_rotation : rad;  settled : whether the model has found its own solution"""
+
+    output_rotation: float
+    torque: float
+    settled: bool
 
 
 class DeviationGuess:
@@ -98,7 +129,7 @@ class DeviationGuess:
         gap = self.flanks.least_gaps(self._displacement(), state)
         self.keys = self._nearest(gap)
         self.force = self._forces(self._cells())
-        vectors, self.law = self._laws(gap[self._numbers()], ideal)
+        self.vectors, self.law = self._laws(gap[self._numbers()], ideal)
         held = replace(
             state,
             flank_clearance=None,
@@ -109,7 +140,6 @@ class DeviationGuess:
         linear = model.solver.settings.linear, problem.blocks.linear.kind, "stiffness_"
         self.system = BorderedSystem(problem.partition, make_linear_solver(*linear), reuse=True)
         model.solver.factorise_tangent(held, self.system)
-        self.vectors = np.array([self._nodal(vector) for vector in vectors])
         columns = np.array([self._response(vector) for vector in self.vectors])
         self.turn = self._turned_output()
         n_own = problem.partition.n_own
@@ -118,6 +148,10 @@ class DeviationGuess:
         # motions of pairs by pairs, of faces by pairs, of both by the output
         self.compliance = self.vectors @ columns.T
         self.of_faces = (self.cam.motions @ columns.T).T
+        self.torque = torques(problem, state).wave_generator
+        place = (problem.positions() + problem.displacement())[:n_own]
+        about_axis = np.column_stack([-place[:, 1], place[:, 0], np.zeros(n_own)])
+        self.cam_arm = self.cam.motions @ about_axis.ravel() / problem.supports.share
         self.arm = self.vectors @ self._nodal(self.turn)
         self.face_arm = self.cam.motions @ self._nodal(self.turn)
         self.last_faces = np.zeros(0, dtype=np.int64)
@@ -189,71 +223,101 @@ class DeviationGuess:
         of_all = np.bincount(active.faces.patch, nodal, minlength=len(self.flanks.pairs))
         return of_all[self._numbers()]
 
-    def _laws(self, gap: np.ndarray, ideal: FlankDeviations) -> tuple[list[PETSc.Vec], PairLaw]:
-        """Nodal forces of the pairs by their force, and the law, by equal approaches of all pairs;
-        sets the deviations back. gap : (n_pair,) mm, of the ideal state"""
+    def _laws(self, gap: np.ndarray, ideal: FlankDeviations) -> tuple[np.ndarray, PairLaw]:
+        """Nodal forces (n_pair, n_own * 3) of the pairs by their force, and the law, by equal
+        approaches of all pairs; sets the deviations back. gap : (n_pair,) mm, of the ideal state"""
         sector = np.array([key[0] for key in self.keys])
         tooth = (self.flanks.spline.layout.first_tooth + sector) % len(ideal.heights)
         side = np.array([SIDES.index(key[1]) for key in self.keys])
         enough = self.force.max()
         approach, forces = [0.0], [np.zeros(len(self.keys))]
-        vectors: list[PETSc.Vec] = []
+        vectors = np.zeros((len(self.keys), 3 * self.problem.partition.n_own))
+        lacking = np.ones(len(self.keys), dtype=bool)
         for k in range(MOST):
             approach.append(LEAST * self.problem.module * FACTOR**k)
             heights = np.zeros_like(ideal.heights)
             heights[tooth, side] = (gap + approach[-1])[:, None, None, None]
             self.flanks.deviate(replace(ideal, heights=heights))
             active = self._cells()
-            forces.append(np.maximum(self._forces(active), 1.001 * forces[-1] + RISE * enough))
-            if not vectors and np.median(forces[-1]) > 0.3 * enough:
-                vectors = self._vectors(active)
-            if np.median(forces[-1]) > 3.0 * enough:
+            carried = self._forces(active)
+            forces.append(np.maximum(carried, 1.001 * forces[-1] + RISE * enough))
+            presses = lacking & (carried > PRESSED * enough)
+            vectors[presses] = self._vectors(active, presses)
+            lacking &= ~presses
+            if np.median(forces[-1]) > HIGHEST * enough:
                 break
-        vectors = vectors or self._vectors(active)
+        vectors[lacking] = self._vectors(active, lacking)
         self.flanks.deviate(ideal)
         return vectors, PairLaw(np.array(approach), np.array(forces))
 
-    def _vectors(self, active: ActiveCells) -> list[PETSc.Vec]:
-        """Nodal forces, of the residual, of each pair that has the force 1."""
-        partition, vectors = self.problem.partition, []
+    def _vectors(self, active: ActiveCells, of: np.ndarray) -> np.ndarray:
+        """Nodal forces (n, n_own * 3), of the residual, of chosen pairs that have the force 1.
+        of : (n_pair,) bool"""
+        n_own = self.problem.partition.n_own
         nodal = (active.pressure * active.faces.weight).sum(axis=1)
-        for number in self._numbers():
+        vectors = np.zeros((int(of.sum()), 3 * n_own))
+        for vector, number in zip(vectors, self._numbers()[of]):
             residual = np.zeros((len(self.problem.local_nodes), 3))
             chosen = np.flatnonzero((active.faces.patch == number) & (nodal > 0.0))
             self.flanks.add_forces(active, chosen, self._displacement(), self.state, residual)
-            vector = create_vector(partition)
-            vector.array.reshape(-1, 3)[: partition.n_own] = residual[: partition.n_own]
             if len(chosen):
-                vector.scale(1.0 / nodal[chosen].sum())
-            vectors.append(vector)
+                vector[:] = residual[:n_own].ravel() / nodal[chosen].sum()
         return vectors
 
     # -- guess -------------------------------------------------------------------------------------
 
-    def set_x(self) -> None:
+    def set_x(self) -> ModelledState:
         """Set the problem's x to the guess for the present deviations of the flanks."""
         x = self.problem.x
         self.ideal_x.copy(x)
-        found = self._found(self._gaps())
-        forces = -self.vectors.T @ (found.force - self.force)
-        forces += self.cam.motions[found.faces].T @ found.corrections
-        x.axpy(1.0, self._answer(forces))
-        x.axpy(found.rotation, self.turn)
+        gap, settled = self._gaps(), False
+        for _ in range(MEASURED):
+            found = self._found(gap)
+            forces = -self.vectors.T @ (found.force - self.force)
+            forces += self.cam.motions[found.faces].T @ found.corrections
+            self.ideal_x.copy(x)
+            x.axpy(1.0, self._answer(forces))
+            x.axpy(found.rotation, self.turn)
+            change = self._gaps() - self._modelled_gaps(gap, found)
+            gap = gap + change
+            approach = self.law.approaches(found.force)
+            most = np.abs(change[found.force > 0.0]).max(initial=0.0)
+            settled = found.settled and bool(most <= SETTLED * approach.max())
+            if settled:
+                break
+        torque = self.torque + float(self.cam_arm @ self._change_on_cam(found))
+        return ModelledState(self.problem.output_rotation(), torque, settled)
+
+    def _modelled_gaps(self, gap: np.ndarray, found: Balance) -> np.ndarray:
+        """Gaps (n_pair,) mm of the linear model. gap : (n_pair,) mm, as for `_balance`"""
+        change = self.compliance @ (found.force - self.force)
+        of_faces = self.of_faces[:, found.faces] @ found.corrections
+        return gap + change - of_faces - found.rotation * self.arm
+
+    def _change_on_cam(self, found: Balance) -> np.ndarray:
+        """Forces (n_face,) N of the cam on the faces less those of the ideal state."""
+        depth = self._depth(found.force, found.rotation)
+        depth = self.cam.corrected(depth, found.faces, found.corrections)
+        return self.cam.stiffness * (np.maximum(depth, 0.0) - np.maximum(self.cam.depth, 0.0))
+
+    def _depth(self, force: np.ndarray, rotation: float) -> np.ndarray:
+        """Depths (n_face,) mm of the faces without corrections."""
+        return self.cam.depth + (force - self.force) @ self.of_faces - rotation * self.face_arm
 
     def _found(self, gap: np.ndarray) -> Balance:
         """As `_balance`; the ideal forces where the small problems have no solution."""
         try:
             return self._balance(gap)
-        except (np.linalg.LinAlgError, RuntimeError):  # of nnls
+        except (np.linalg.LinAlgError, ValueError, RuntimeError):  # of nnls
             none = np.zeros(0, dtype=np.int64)
-            return Balance(self.force, 0.0, none, np.zeros(0))
+            return Balance(self.force, 0.0, none, np.zeros(0), settled=False)
 
     def _balance(self, gap: np.ndarray) -> Balance:
         """The unknowns of the linear model. gap : (n_pair,) mm, with the forces and the rotation of
         the ideal state"""
         force, rotation, left = self.force, 0.0, self.last_faces
         for _ in range(ROUNDS):
-            faces = left
+            faces, last = left, force
             of_faces, face_arm = self.of_faces[:, faces], self.face_arm[faces]
             sides = np.column_stack([self.cam.depth[faces], of_faces.T, face_arm])
             answers = np.linalg.solve(self.cam.softness(faces), sides)
@@ -266,12 +330,14 @@ class DeviationGuess:
             force, rotation = self._carried(compliance, begin, arm, torque, force)
             change = force - self.force
             corrections = alone + by_force @ change - rotation * by_turn
-            depth = self.cam.depth + change @ self.of_faces - rotation * self.face_arm
-            left = self.cam.left(self.cam.corrected(depth, faces, corrections))
-            if np.array_equal(left, faces):
+            depth = self.cam.corrected(self._depth(force, rotation), faces, corrections)
+            left = self.cam.left(depth)
+            same = bool((np.abs(force - last) <= SAME_FORCE * force.max()).all())
+            settled = same and np.array_equal(left, faces)
+            if settled:
                 break
         self.last_faces = faces
-        return Balance(force, rotation, faces, corrections)
+        return Balance(force, rotation, faces, corrections, settled)
 
     def _carried(
         self,

@@ -11,12 +11,13 @@ from mpi4py import MPI
 from swgpar.analysis.deviating_drive import DeviatingDrive
 from swgpar.analysis.recorder import Recorder
 from swgpar.errors import ConvergenceError
-from swgpar.evaluation.transmission_error import TurnPoint, turn_row
+from swgpar.evaluation.transmission_error import TurnPoint, doubtful_extremes, turn_row
 from swgpar.log import logger
 from swgpar.results.history import Row
 
-ROUND = 10
-"""States that a rank computes before the ranks exchange theirs."""
+ROUND, SHARED_ROUND = 10, 100
+"""States that a rank computes before the ranks exchange theirs: of a drive that they share, and of
+one of its own, so that it seldom waits for others."""
 
 SAVED = 50
 """Angles after which the rows so far are saved."""
@@ -29,7 +30,8 @@ def follow_turns(recorder: Recorder) -> None:
     """Let the recorder keep the angles of the turns that it does not know; collective.
 
     The states do not depend on each other. In the plane, where every rank has room for the whole
-    drive, the ranks share the states; they share the cup.
+    drive, the ranks share the states; they share the cup. Where a linear model gives most angles,
+    Newton's iteration then gives those that may be the largest or the smallest.
 
     Raises ConvergenceError; the rows up to then are kept.
     """
@@ -47,10 +49,12 @@ def follow_turns(recorder: Recorder) -> None:
             sum(body["dofs"] for body in drive.model.counts().values()),
             drive.model.part_remark,
         )
-        points = drive.points(set(known), (comm.rank, comm.size) if shared else (0, 1))
+        share = (comm.rank, comm.size) if shared else (0, 1)
+        most = SHARED_ROUND if shared else ROUND
         try:
             saved, reported, iterations = len(known), 0, 0
-            for found in _rounds(points, comm):
+            first = drive.points(set(known), share, linear_model=design.deviations.linear_model)
+            for found in _rounds(first, comm, most):
                 known |= {point.index: turn_row(point, design.kinematics) for point in found}
                 iterations += sum(point.iterations for point in found)
                 if len(known) >= saved + SAVED:
@@ -61,18 +65,31 @@ def follow_turns(recorder: Recorder) -> None:
                     logger.info(
                         "%6d of %d angles, %d Newton iterations", len(known), total, iterations
                     )
+            # all angles are known: the number of a row is the index of its angle
+            while doubtful := set(doubtful_extremes(_sorted(known))):
+                logger.info("%d angles by Newton's iteration that may be extreme", len(doubtful))
+                for found in _rounds(drive.points(set(known) - doubtful, share), comm, most):
+                    known |= {point.index: turn_row(point, design.kinematics) for point in found}
+            modelled = sum(row["by_linear_model"] for row in known.values())
+            if modelled:
+                logger.info(
+                    "%d angles by a linear model; --plain computes all by Newton's iteration",
+                    modelled,
+                )
         finally:
             recorder.keep_turns(_sorted(known))
             drive.destroy()
 
 
-def _rounds(points: Iterator[TurnPoint], comm: MPI.Comm) -> Iterator[list[TurnPoint]]:
+def _rounds(points: Iterator[TurnPoint], comm: MPI.Comm, most: int) -> Iterator[list[TurnPoint]]:
     """Points of all ranks, on all ranks, as they come; collective.
+
+    most : of a rank at once
 
     Raises the ConvergenceError of any rank on all of them, after the points up to then.
     """
     while True:
-        mine, failure = _next(points)
+        mine, failure = _next(points, most)
         parts = comm.allgather((mine, failure))
         found = list({point.index: point for part, _ in parts for point in part}.values())
         if found:
@@ -84,11 +101,11 @@ def _rounds(points: Iterator[TurnPoint], comm: MPI.Comm) -> Iterator[list[TurnPo
             return
 
 
-def _next(points: Iterator[TurnPoint]) -> tuple[list[TurnPoint], str]:
+def _next(points: Iterator[TurnPoint], most: int) -> tuple[list[TurnPoint], str]:
     """The next points of this rank, and why there are no more."""
     found: list[TurnPoint] = []
     try:
-        for point in islice(points, ROUND):
+        for point in islice(points, most):
             found.append(point)  # noqa: PERF402, one by one: those before an error count
     except ConvergenceError as error:
         return found, str(error)

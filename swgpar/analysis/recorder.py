@@ -290,7 +290,8 @@ class FolderRecorder(Recorder):
         with agreed(self.comm, path, "read"):
             columns = read_columns(path) if present else {}
         return [
-            {**row, "newton_iterations": int(row["newton_iterations"])} for row in as_rows(columns)
+            {**row, **{name: int(row[name]) for name in ("newton_iterations", "by_linear_model")}}
+            for row in as_rows(columns)
         ]
 
     def _write_tables(self) -> None:

@@ -68,6 +68,7 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
     levels : whether the run may start on coarser meshes; with `--accuracy` it has its own
     """
     steps, solver, stiffness = design.steps, design.solver, design.stiffness
+    deviations = design.deviations
     points, changes, left_out = program_points(design), {}, []
 
     # a load from one side stands still: no angle of another period has the same state. The period
@@ -106,11 +107,12 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
         if stiffness and "loop" not in stiffness.model_fields_set:
             stiffness = stiffness.model_copy(update={"loop": False})
             left_out.append("the way back of the stiffness loop and positions that mirror others")
-    if not left_out:
-        return Shortcuts(design, ())
+    if deviations is not None and "linear_model" not in deviations.model_fields_set:
+        # the whole turns say how many angles it gives
+        deviations = deviations.model_copy(update={"linear_model": True})
     content: dict[str, Any] = {**steps.model_dump(exclude_unset=True), **changes}
     steps = type(steps).model_validate(content)
-    update = {"steps": steps, "solver": solver, "stiffness": stiffness}
+    update = {"steps": steps, "solver": solver, "stiffness": stiffness, "deviations": deviations}
     return Shortcuts(design.model_copy(update=update), tuple(left_out))
 
 

@@ -125,6 +125,11 @@ class Deviations(Section):
         text="the coarsest mesh that finds the contacts, with fewer points on the cam, or that of "
         "the run",
     )
+    linear_model: bool = quantity(
+        False,
+        text="most angles of a plane drive by a linear model, where it pays. Newton's iteration "
+        "checks it at others; by default without --plain only",
+    )
     seed: int = quantity(
         1, text="of random pitch errors; another one is another drive of the same grade", ge=0
     )

@@ -25,8 +25,18 @@ COLUMNS = (
     "transmission_error_arcsec",
     "wg_torque_Nmm",
     "newton_iterations",
+    "by_linear_model",
+    "linear_model_arcsec",
+    "linear_model_Nmm",
 )
-"""Columns of transmission_error.csv."""
+"""Columns of transmission_error.csv. The last two: what a linear model differs by where Newton's
+iteration has checked it, else no number."""
+
+MODELLED = (
+    ("transmission_error_arcsec", "linear_model_arcsec"),
+    ("wg_torque_Nmm", "linear_model_Nmm"),
+)
+"""Columns of what a linear model gives, and of what it differs by."""
 
 LARGEST = 12
 """Orders of a spectrum that are named."""
@@ -43,7 +53,9 @@ class TurnPoint:
     """State at an angle of the wave generator.
 
     index : of the angle;  wg_angle, output_angle : rad;  wg_torque : N mm
-    iterations : of Newton, 0 where a state that is known repeats
+    iterations : of Newton, 0 where a state that is known repeats, and with a linear model
+    by_linear_model : whether the state is that of the linear model
+    difference : rad and N mm, by which the linear model differs from it, None where it is not known
     """
 
     index: int
@@ -51,6 +63,8 @@ class TurnPoint:
     output_angle: float
     wg_torque: float
     iterations: int
+    by_linear_model: bool = False
+    difference: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -67,6 +81,7 @@ class TorqueOverTurns:
     """Torque of the wave generator over the same angles.
 
     spectrum : its largest orders, N mm;  error_Nmm : of peak to peak, None where it is not known
+    linear_model_Nmm : as `TransmissionError.linear_model_arcsec`
     """
 
     mean: float = answer(
@@ -82,6 +97,7 @@ class TorqueOverTurns:
     )
     spectrum: tuple[SpectrumLine, ...]
     error_Nmm: float | None = None
+    linear_model_Nmm: float | None = None
 
 
 PEAK_TO_PEAK = AnswerKind(
@@ -101,6 +117,8 @@ class TransmissionError(AnswerGroup):
     spectrum : its largest orders, arc seconds
     error_arcsec : of peak to peak, None where it is not known
     without_friction : whether friction that the run has is left out
+    by_linear_model : angles by a linear model instead of Newton's iteration
+    linear_model_arcsec : its largest difference where it was compared; None without one
     """
 
     turns: float
@@ -119,6 +137,8 @@ class TransmissionError(AnswerGroup):
     torque: TorqueOverTurns
     error_arcsec: float | None = None
     without_friction: bool = False
+    by_linear_model: int = 0
+    linear_model_arcsec: float | None = None
 
     TITLE = "transmission error over a period, or with deviations over whole turns"
     ASKED_BY = "steps.samples or [deviations]"
@@ -135,6 +155,13 @@ class TransmissionError(AnswerGroup):
         yield self.covered
         if self.without_friction:
             yield "without contact.friction: over whole turns flanks have none"
+        if self.by_linear_model:
+            yield (
+                f"{self.by_linear_model} of {self.angles} angles by a linear model. At others it "
+                f"differs by up to {self.linear_model_arcsec or 0.0:.2g} arc seconds and "
+                f"{self.torque.linear_model_Nmm or 0.0:.2g} N·mm from Newton's iteration, which "
+                "gives all that may be the largest and the smallest"
+            )
         for line in self.spectrum[:SHOWN]:
             yield f"order {line.order:.3f}: {line.amplitude:.3g} arc seconds, {line.cause}"
 
@@ -142,7 +169,28 @@ class TransmissionError(AnswerGroup):
 def turn_row(point: TurnPoint, kinematics: Kinematics) -> Row:
     """Row of transmission_error.csv; the output's angle lies between -180 and 180 degrees."""
     angles = float(np.degrees(point.wg_angle)), float(np.degrees(point.output_angle))
-    return _row(kinematics, *angles, point.wg_torque, point.iterations)
+    row = _row(kinematics, *angles, point.wg_torque, point.iterations)
+    if point.difference is not None:
+        by = float(np.degrees(point.difference[0])) * 3600.0, point.difference[1]
+        row.update(zip((name for _, name in MODELLED), by))
+    return {**row, "by_linear_model": int(point.by_linear_model)}
+
+
+def doubtful_extremes(rows: Sequence[Row]) -> list[int]:
+    """Numbers of the rows by a linear model that may be the largest or the smallest of all, by how
+    much the model differs from Newton's iteration elsewhere."""
+    modelled = column(rows, "by_linear_model") > 0.0
+    doubtful = np.zeros(len(rows), dtype=bool)
+    for name, by in MODELLED:
+        values, difference = column(rows, name), column(rows, by)
+        known = difference[np.isfinite(difference)]
+        if not len(known):
+            doubtful |= modelled
+            continue
+        sure = values[~modelled]
+        doubtful |= modelled & (values - known.min() > sure.max(initial=-np.inf))
+        doubtful |= modelled & (values - known.max() < sure.min(initial=np.inf))
+    return [int(k) for k in np.flatnonzero(doubtful)]
 
 
 def period_rows(sequence: LoadSequence, rows: Sequence[Row]) -> list[Row]:
@@ -163,7 +211,16 @@ def _row(
     """Angles in degrees, in the frame in which the drive is computed; torque in N mm."""
     error = transmission_error(np.array(wg_angle), np.array(output_angle), kinematics.ratio)
     shown = shown_output(kinematics, wg_angle, output_angle)
-    return dict(zip(COLUMNS, (wg_angle, shown, float(error), wg_torque, iterations), strict=True))
+    by_model = (0, np.nan, np.nan)
+    values = (wg_angle, shown, float(error), wg_torque, iterations, *by_model)
+    return dict(zip(COLUMNS, values, strict=True))
+
+
+def _largest(rows: Sequence[Row], name: str) -> float | None:
+    """Largest number of a column, by its size; None without one, as in rows of earlier versions."""
+    values = np.array([row.get(name, np.nan) for row in rows], dtype=float)
+    known = np.abs(values[np.isfinite(values)])
+    return float(known.max()) if len(known) else None
 
 
 def spectrum(values: np.ndarray, turns: float) -> tuple[np.ndarray, np.ndarray]:
@@ -299,9 +356,12 @@ def evaluate_turns(
             peak_to_peak=float(np.ptp(torque)),
             spectrum=_named(torque, turns, causes),
             error_Nmm=known.torque if known else None,
+            linear_model_Nmm=_largest(rows, "linear_model_Nmm"),
         ),
         error_arcsec=known.transmission_error if known else None,
         without_friction=friction and deviations is not None,
+        by_linear_model=int(sum(row.get("by_linear_model", 0) for row in rows)),
+        linear_model_arcsec=_largest(rows, "linear_model_arcsec"),
     )
 
 

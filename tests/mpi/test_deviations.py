@@ -42,11 +42,13 @@ def deviating(*overrides: str, model: str = "plane", comm: MPI.Comm = WORLD) -> 
     )
 
 
-def points(drive: DeviatingDrive, indices: Iterable[int] | None = None) -> dict[int, TurnPoint]:
+def points(
+    drive: DeviatingDrive, indices: Iterable[int] | None = None, *, linear_model: bool = False
+) -> dict[int, TurnPoint]:
     """Points by index, at some indices or at all."""
     total = drive.angles
     known = set() if indices is None else set(range(total)).difference(indices)
-    found = {point.index: point for point in drive.points(known)}
+    found = {point.index: point for point in drive.points(known, linear_model=linear_model)}
     drive.destroy()
     return found
 
@@ -166,8 +168,9 @@ def test_an_eccentric_spline_is_seen_twice_per_turn_against_it() -> None:
 
 def test_a_linear_model_knows_the_contacts(monkeypatch: pytest.MonkeyPatch) -> None:
     """From its guess Newton's iteration reaches the same states in half of the iterations, also
-    where the cam is displaced."""
-    keys = (*PITCH, ONE_ANGLE, "deviations.wave_generator.eccentricity=0.005")
+    where the cam is displaced. Its own states are near."""
+    eccentric = [f"deviations.{part}.eccentricity" for part in ("wave_generator", "ring_gear")]
+    keys = (*PITCH, ONE_ANGLE, f"{eccentric[0]}=0.005", f"{eccentric[1]}=0.02", "load.torque=2")
     found = []
     for least in (1, 1000):
         monkeypatch.setattr(deviating_drive, "WORTH_GUESSES", least)
@@ -179,6 +182,18 @@ def test_a_linear_model_knows_the_contacts(monkeypatch: pytest.MonkeyPatch) -> N
     counts = [sum(point.iterations for point in some.values()) for some in found]
     print(counts)
     assert counts[0] <= 0.5 * counts[1]
+    # the states of the model itself, but for the first, which checks it
+    monkeypatch.setattr(deviating_drive, "WORTH_GUESSES", 1)
+    monkeypatch.setattr(deviating_drive, "LEAST_CHECKED", 1)
+    modelled = points(deviating(*keys), guessed, linear_model=True)
+    assert [point.by_linear_model for _, point in sorted(modelled.items())] == [False] + [True] * 3
+    assert modelled[0].output_angle == pytest.approx(guessed[0].output_angle, rel=1e-6)
+    apart = error(modelled) - error(guessed)
+    exact, torque = (np.array([of[k].wg_torque for k in sorted(of)]) for of in (guessed, modelled))
+    print(apart, np.ptp(error(guessed)), torque - exact, np.ptp(exact))
+    assert 0.0 < np.abs(apart[1:]).max() < 0.02 * np.ptp(error(guessed))
+    assert np.abs(torque - exact).max() < 0.1 * np.ptp(exact)
+    assert modelled[0].difference is not None and modelled[5].difference is None
 
 
 @pytest.mark.parallel([1, 2])

@@ -14,7 +14,7 @@ from swgpar import load_design
 from swgpar.design.deviations import gear_deviations
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
-from swgpar.evaluation.transmission_error import Causes, spectrum
+from swgpar.evaluation.transmission_error import COLUMNS, Causes, doubtful_extremes, spectrum
 from swgpar.geometry.pitch_deviations import pitch_tolerances, random_pitch_errors
 from swgpar.geometry.rotation import MIRROR, rotated
 from swgpar.profiles.flank_deviations import GearDeviations
@@ -192,3 +192,19 @@ def test_bad_deviations(override: str, reason: str) -> None:
 def test_deviations_need_a_torque() -> None:
     with pytest.raises(InputError, match="load.torque = 0 holds the output: allowed above 0"):
         plane("deviations.turns=1", "load.torque=0")
+
+
+def test_extremes_by_a_linear_model_are_doubtful() -> None:
+    """Newton's iteration gives 0 and 10, from which the model differed by -0.5 and 1."""
+    rows = [dict.fromkeys(COLUMNS, 0.0) | {"by_linear_model": 1} for _ in range(6)]
+    for row, value in zip(rows, (0.0, 10.0, 9.6, 9.4, 0.9, 1.1)):
+        row["transmission_error_arcsec"] = value
+        row["linear_model_arcsec"] = row["linear_model_Nmm"] = float("nan")
+    for row, differs in zip(rows[:2], (-0.5, 1.0)):
+        row |= {"by_linear_model": 0, "linear_model_arcsec": differs, "linear_model_Nmm": 0.0}
+    assert doubtful_extremes(rows) == [2, 4]
+    # nothing is known of a model that was not compared
+    for row in rows:
+        row["linear_model_Nmm"] = float("nan")
+    assert doubtful_extremes(rows) == [2, 3, 4, 5]
+    assert doubtful_extremes(rows[:2]) == []
