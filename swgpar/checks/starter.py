@@ -107,11 +107,6 @@ slope."""
 CROWNING, SLOPE, FLANK_CROWNING = 0.1, 0.09, 0.045
 """Micro-geometry of the reference drive (Table 7.4), modules."""
 
-CONJUGATE_CROWNING = 0.04
-"""Crowning of S-shaped flanks in a usual cup, modules, in proportion to its cone. The ring gear is
-conjugate at mid-width. The cone tilts the flanks most near the major axis: with this crowning
-contacts there end within the face width."""
-
 OPEN_END = 1.0
 """Radial deflection at the open end of a cup with S-shaped teeth, modules."""
 
@@ -332,7 +327,7 @@ def _cup(request: Request, sizes: ToothSizes, module: float, pitch: float) -> di
     rim = sizes.rim * module
     # the cone of the deflected wall is steeper the shorter the wall is
     cone = (LENGTH + 0.5 * FACE_WIDTH) / (length + 0.5 * FACE_WIDTH)
-    flanks = CONJUGATE_CROWNING * cone if request.profile == "s_shaped" else FLANK_CROWNING
+    flanks = sizes.crowning * cone if request.profile == "s_shaped" else FLANK_CROWNING
     micro = {"wg_crowning": CROWNING, "wg_slope": SLOPE * cone, "fs_crowning": flanks}
     cup = {
         "length": rounded(length * pitch),

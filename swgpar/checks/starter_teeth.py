@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
+import numpy as np
+
 from swgpar.checks.starter_cam import rounded
 from swgpar.profiles.keys import DoubleArc, ProfileKeys, QuadrupleArc, RackInvolute
 
@@ -55,6 +57,16 @@ tips, which would else carry where pairs come into mesh and leave it. The relief
 teeth of the flexible spline, and grows with the third root of their number up to the most: loads
 of one torque over D³ bend more teeth by more modules."""
 
+CROWNING = 0.04
+"""Crowning of S-shaped flanks in a usual cup, modules, in proportion to its cone. The ring gear is
+conjugate at mid-width. The cone tilts the flanks most near the major axis: with this crowning
+contacts there end within the face width."""
+
+CLOSE_TEETH, CLOSE_CROWNING, CLOSE_RELIEF = (60, 80, 100), 1.5, 1.38
+"""Around 80 teeth high teeth on a thin rim touch at the ends of the face width and at their tips:
+there crowning and relief of S-shaped flanks are larger by these factors, linear to none at the
+least and the most teeth (docs/verification/starter.md)."""
+
 CUTTER_TEETH = 2.0 / 3.0
 """Teeth of the shaper-cutter over those of the ring gear, as in section 6.3."""
 
@@ -65,6 +77,7 @@ class ToothSizes:
 
     scale : heights over those of thick rims
     tip_relief : of S-shaped teeth, whatever the scale: a load bends low teeth as much
+    crowning : of S-shaped flanks in a usual cup
     """
 
     rim: float
@@ -72,6 +85,7 @@ class ToothSizes:
     dedendum: float
     scale: float
     tip_relief: float = 0.0
+    crowning: float = 0.0
 
     @property
     def below_pitch_circle(self) -> float:
@@ -97,7 +111,18 @@ def tooth_sizes(profile: Profile, lobes: Literal[2, 3], teeth: int, *, coned: bo
     lower = min(1.0, rim / (RIM_OF_HEIGHT * (addendum + dedendum)))
     relief = TIP_RELIEF * (min(teeth, MOST_TEETH) / RELIEVED_TEETH) ** (1.0 / 3.0)
     heights = rounded(lower * addendum, 3), rounded(lower * dedendum, 3)
-    return ToothSizes(rim, *heights, lower, relief)
+    return ToothSizes(
+        rim,
+        *heights,
+        lower,
+        relief * _around_80(teeth, CLOSE_RELIEF),
+        CROWNING * _around_80(teeth, CLOSE_CROWNING),
+    )
+
+
+def _around_80(teeth: int, factor: float) -> float:
+    """The factor for a number of teeth, by that of the middle of `CLOSE_TEETH`."""
+    return float(np.interp(teeth, CLOSE_TEETH, (1.0, factor, 1.0)))
 
 
 def spline_section(profile: Profile, sizes: ToothSizes, module: float) -> dict[str, Any]:

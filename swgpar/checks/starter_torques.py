@@ -13,14 +13,10 @@ import numpy as np
 from swgpar.checks.starter import Request, usual_profile
 from swgpar.design.drive_design import DriveDesign
 
-CARRIED = {30.0: 0.04, 50.0: 0.14, 80.0: 0.112, 100.0: 0.1}
+CARRIED = {30.0: 0.04, 40.0: 0.064, 50.0: 0.14, 80.0: 0.112, 100.0: 0.1}
 """Ratio -> torque over the third power of the pitch diameter, N/mm². Cups with the default teeth,
 cam and bearing, ring gear fixed; the strengths are those that their files have. Linear between
-ratios, but for `UNKNOWN`."""
-
-UNKNOWN = 30.0, 50.0
-"""Ratios between which no torque is known: a start of ratio 40 has failed with a torque between
-theirs."""
+ratios."""
 
 DIGITS = 3
 """Digits of torques and diameters in sentences."""
@@ -39,8 +35,6 @@ def carried_torque(request: Request, design: DriveDesign) -> float | None:
     if replace(request, diameter=None, bore=None) != usual or not min(
         CARRIED
     ) <= request.ratio <= max(CARRIED):
-        return None
-    if UNKNOWN[0] < request.ratio < UNKNOWN[1]:
         return None
     share = float(np.interp(request.ratio, list(CARRIED), list(CARRIED.values())))
     return 1e-3 * share * pitch_diameter(design) ** 3 * (1.0 + ROUNDING)
