@@ -77,7 +77,8 @@ def contact_errors(
         return None if share is None else max(share, least)
 
     force = of_force(lambda pair: pair.force_N)
-    by_force = HERTZ * force if force is not None else 0.0
+    # the force of a pair that is alone changes where another one touches: that has no estimate
+    by_force = HERTZ * (least if force is None else force)
 
     def of_pressure(measure: Measure) -> float | None:
         share = _error_share(meshes, measure)
