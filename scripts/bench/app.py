@@ -1,6 +1,6 @@
-"""Seconds of the app on this machine, from a change of a key to the picture and to the loaded state
-of the plane model, in a headless browser. Processes are those that wanted a core, the app's
-included, on the average of the last minute."""
+"""Seconds of the app on this machine, from a change of a key to the picture and to the loaded
+states of the plane model and in 3D, in a headless browser. Processes are those that wanted a core,
+the app's included, on the average of the last minute."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ from pathlib import Path
 
 from playwright.sync_api import Page, sync_playwright
 
-CHANGES = 8
-"""Changes of each key; the first two warm up and are left out."""
+CHANGES, SOLID_CHANGES, WARMING = 8, 5, 2
+"""Changes of each key, for plane states and for those in 3D; the first ones warm up and are left
+out."""
 
 KEYS = {"load.torque": -0.004, "drive.addendum_coef": -0.002, "flexible_spline.rim": -0.002}
 """Keys that are changed, and the relative size of a change: the load, which leaves the picture of
@@ -60,7 +61,7 @@ def seconds(page: Page, key: str, text: str) -> tuple[float, float]:
         }""",
         [key, text],
     )
-    page.wait_for_function("window.seen.answer", timeout=60_000)
+    page.wait_for_function("window.seen.answer", timeout=WARM)
     seen = page.evaluate("window.seen")
     picture, answer = (
         1e-3 * (seen.get(name, math.nan) - seen["start"]) for name in ("picture", "answer")
@@ -68,11 +69,49 @@ def seconds(page: Page, key: str, text: str) -> tuple[float, float]:
     return picture, answer
 
 
+def medians(page: Page, key: str, changes: int) -> tuple[float, float]:
+    """Median seconds to the picture and to the answer, after changes of a key."""
+    first = float(page.locator(f'input[data-key="{key}"]').input_value() or 0.0)
+    if not first:
+        return math.nan, math.nan
+    values = [first * (1.0 + KEYS[key] * (k + 1)) for k in range(changes)]
+    found = [seconds(page, key, f"{value:.8g}") for value in values][WARMING:]
+    picture, answer = (statistics.median(one) for one in zip(*found, strict=True))
+    return picture, answer
+
+
+def measure(page: Page, name: str) -> None:
+    """Print the rows of a design whose page is shown."""
+    page.wait_for_selector(".js-plotly-plot", timeout=60_000)
+    page.wait_for_selector('[data-loaded-state="computed"]', timeout=WARM)
+    for section in {key.rpartition(".")[0] for key in KEYS} - {"drive"}:
+        page.get_by_text(f"[{section}]", exact=True).click()
+        page.wait_for_selector(f'input[data-key^="{section}."]')
+    page.evaluate(OBSERVE)
+    plane = {key: medians(page, key, CHANGES) for key in KEYS}
+    in_space = page.get_by_role("button", name="3D model", exact=True)
+    solid = dict.fromkeys(KEYS, math.nan)
+    if in_space.is_visible():
+        in_space.click()
+        page.wait_for_selector('[data-loaded-state="busy"]')
+        page.wait_for_selector('[data-loaded-state="computed"]', timeout=WARM)
+        solid = {key: medians(page, key, SOLID_CHANGES)[1] for key in KEYS}
+    for key, (picture, answer) in plane.items():
+        if not math.isnan(answer):
+            cells = (name, f"`{key}`", *map(_text, (picture, answer, solid[key])))
+            print(f"| {' | '.join(cells)} | {os.getloadavg()[0]:.1f} |", flush=True)
+
+
+def _text(seconds: float) -> str:
+    """Seconds; nothing where the picture stays, and of what is not computed."""
+    return "–" if math.isnan(seconds) else f"{seconds:.2g}"
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("designs", nargs="+", type=Path)
     given = parser.parse_args()
-    heads = ("design", "key", "change to picture, s", "to plane state, s", "processes")
+    heads = ("design", "key", "to picture, s", "to plane state, s", "to 3D state, s", "processes")
     print(f"| {' | '.join(heads)} |\n|{'---|' * len(heads)}")
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
         browser = playwright.chromium.launch(
@@ -84,22 +123,7 @@ def main() -> None:
             try:
                 page = browser.new_page(viewport={"width": 1300, "height": 850})
                 page.goto(address)
-                page.wait_for_selector(".js-plotly-plot", timeout=60_000)
-                page.wait_for_selector('[data-loaded-state="computed"]', timeout=WARM)
-                for section in {key.rpartition(".")[0] for key in KEYS} - {"drive"}:
-                    page.get_by_text(f"[{section}]", exact=True).click()
-                    page.wait_for_selector(f'input[data-key^="{section}."]')
-                page.evaluate(OBSERVE)
-                for key, step in KEYS.items():
-                    first = float(page.locator(f'input[data-key="{key}"]').input_value() or 0.0)
-                    if not first:
-                        continue
-                    values = [first * (1.0 + step * (k + 1)) for k in range(CHANGES)]
-                    found = [seconds(page, key, f"{value:.8g}") for value in values][2:]
-                    picture, answer = (statistics.median(one) for one in zip(*found, strict=True))
-                    shown = "stays" if math.isnan(picture) else f"{picture:.2f}"
-                    cells = (design.stem, f"`{key}`", shown, f"{answer:.2f}")
-                    print(f"| {' | '.join(cells)} | {os.getloadavg()[0]:.1f} |", flush=True)
+                measure(page, design.stem)
                 page.close()
             finally:
                 process.terminate()

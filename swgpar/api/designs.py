@@ -254,16 +254,20 @@ def check(
 
 def _needs(design: DriveDesign, recipe: MeshRecipe) -> dict[str, float]:
     from swgpar.analysis.forecast import forecast, require_memory
+    from swgpar.rating.forecast import rating_seconds
 
     needs = forecast(design, recipe)
     require_memory(needs, design.solver.memory_limit)
     build_sector_meshes(design.geometry, recipe)  # or the reason why the recipe gives no mesh
-    return {
+    values = {
         "elements of the drive": needs.elements,
         "unknowns modelled": needs.unknowns,
         "memory of all ranks, about (GB)": needs.memory,
         "time of a run on 2 cores, about (s)": needs.seconds,
     }
+    if design.rating is not None:
+        values["time of a rating on 2 cores, about (s)"] = rating_seconds(design, recipe)
+    return values
 
 
 def _drive(design: Design) -> DriveDesign:

@@ -53,7 +53,7 @@ class AnswersPanel:
         self.cancel.set_visibility(worker.is_busy and worker.model is SOLID)
         self.go_on.set_visibility(worker.is_cancelled)
         if worker.is_busy:
-            say(self.said, f"is computed {worker.progress} …".replace("  ", " "))
+            say(self.said, " ".join(filter(None, ("computing", worker.progress, "…"))))
         elif worker.is_cancelled:
             say(self.said, "cancelled")
         else:

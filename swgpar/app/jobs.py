@@ -38,7 +38,7 @@ LAST_FILES = {
     "run": results.SUMMARY,
     "rate": sheet.JSON,
     "study": study.TABLE,
-    "optimise": search.TABLE,
+    "optimise": search.REPORT,
 }
 """Pages of results, and files that are written last, by command."""
 

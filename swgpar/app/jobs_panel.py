@@ -6,6 +6,7 @@ from functools import partial
 
 from nicegui import ui
 
+from swgpar.app.durations import durations
 from swgpar.app.jobs import AppJob, JobState
 from swgpar.app.search_panel import show_search
 from swgpar.app.state import AppState, files_of, most_ranks, recipes_of
@@ -18,6 +19,9 @@ USUAL = "usual"
 
 MESHES = (USUAL, "coarse", "forces", "medium", "full", "plane_coarse", "plane")
 """Recipes of the package that are offered; those of the folder come after them."""
+
+ACCURACIES = {"": "of the mesh", "0.05": "5 %", "0.02": "2 %"}
+"""Relative errors of the largest tension at the teeth for which meshes are refined."""
 
 LAST = 8
 """Jobs that are shown."""
@@ -42,15 +46,28 @@ class JobsPanel:
                 for name in FORMATS:
                     item = ui.item(name.upper() if name != "teeth" else "points of the teeth")
                     item.on_click(lambda name=name: self._design("export", "--format", name))
+        with ui.row().classes("items-center no-wrap"):
             meshes = [*MESHES, *recipes_of(state.workspace.folder)]
-            self.mesh = ui.select(meshes, value=MESHES[0], label="mesh").props("dense")
+            self.mesh = ui.select(meshes, value=USUAL, label="mesh", on_change=self.draw_durations)
+            self.accuracy = ui.select(ACCURACIES, value="", label="accuracy")
+            self.accuracy.tooltip("error of the stress at the teeth for which meshes are refined")
+            for choice in (self.mesh, self.accuracy):
+                choice.props("dense").classes("min-w-24")
             self.ranks = ui.number("ranks", value=min(2, most_ranks()), min=1, max=most_ranks())
             self.ranks.props("dense").classes("w-16")
+        self.lasts = live_label().classes("text-caption")
+        self.draw_durations()
         self.files()
         self.said = live_label().classes("text-caption")
         with ui.column().classes("w-full swgpar-queue"):
             self.jobs()
         self.dialogs = ui.element("div")  # the queue is drawn anew while they are open
+
+    def draw_durations(self) -> None:
+        """Say how long commands take on the mesh that is chosen."""
+        mesh = "" if self.mesh.value == USUAL else str(self.mesh.value)
+        design, folder = self.state.variant.design, self.state.workspace.folder
+        say(self.lasts, durations(design, mesh, folder))
 
     @ui.refreshable_method
     def files(self) -> None:
@@ -123,13 +140,15 @@ class JobsPanel:
             show_search(self.state, job)
 
     def _run(self) -> None:
-        self._design("run", *self._mesh())
+        self._design("run", *self._options())
 
     def _rate(self) -> None:
-        self._design("rate", *self._mesh())
+        self._design("rate", *self._options())
 
-    def _mesh(self) -> list[str]:
-        return [] if self.mesh.value == USUAL else ["--mesh", self.mesh.value]
+    def _options(self) -> list[str]:
+        """Options of a run and of a rating."""
+        chosen = {"--mesh": self.mesh.value, "--accuracy": self.accuracy.value}
+        return [part for pair in chosen.items() if pair[1] not in (USUAL, "") for part in pair]
 
     def _ranks(self) -> int:
         return int(min(max(self.ranks.value or 1, 1), most_ranks()))

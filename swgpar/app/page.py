@@ -201,6 +201,7 @@ class Page:
         for key, control in self.controls.items():
             control.show(fields[key], self.state.refused.get(key))
         self.answers.draw()
+        self.jobs.draw_durations()
 
     def draw_states(self) -> None:
         """Draw loaded states."""

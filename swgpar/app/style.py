@@ -23,7 +23,9 @@ STYLE = """
 .swgpar-section { flex: 1 1 400px; min-width: 0 }
 .swgpar-plot { height: calc(100vh - 190px); min-height: 320px }
 .swgpar-half { height: calc(50vh - 115px); min-height: 240px }
-.swgpar-answers { width: 340px; flex: none }
+.swgpar-answers { width: 340px; max-height: calc(100vh - 80px); overflow-y: auto; flex: none;
+  flex-wrap: nowrap }
+.swgpar-answers > * { flex-shrink: 0 }
 .swgpar-slider { width: 100%; height: 4px; border-radius: 2px; appearance: none;
   background: #8c8c8c80; margin: 8px 0; cursor: pointer }
 .swgpar-slider::-webkit-slider-thumb { appearance: none; width: 16px; height: 16px;

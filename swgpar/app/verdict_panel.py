@@ -161,6 +161,8 @@ def _gauge(row: StoredRow) -> None:
             bar.props["aria-label"] = f"{row.row}: {100.0 * row.used:.0f} % of the limit"
         text = f"{judgement}: {row.reason}" if row.reason else str(judgement)
         ui.label(text).classes(f"text-{COLOURS[judgement]} text-caption")
+        if note := "; ".join(filter(None, (row.place, row.remark if row.remark != text else ""))):
+            ui.label(note).classes("text-grey text-caption")
 
 
 def _value(row: StoredRow | None) -> str:

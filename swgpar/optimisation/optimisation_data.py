@@ -27,6 +27,27 @@ class SearchedDesigns:
     best: list[int]
     start: int | None
 
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """Rows of optimise.csv: number, variables, status, quantities and verdicts, wall seconds,
+        reason."""
+        every = self.evaluations.values()
+        quantities = dict.fromkeys(name for each in every for name in each.quantities)
+        verdicts = dict.fromkeys(name for each in every for name in each.verdicts)
+        return [
+            {
+                "evaluation": number,
+                **each.values,
+                "status": each.status,
+                "best": int(number in self.best),
+                **{name: each.quantities.get(name) for name in quantities},
+                **{name: each.verdicts.get(name, "") for name in verdicts},
+                "wall_s": each.wall_s,
+                "reason": each.reason,
+            }
+            for number, each in sorted(self.evaluations.items())
+        ]
+
 
 def number_of(
     evaluations: Mapping[int, Evaluation], values: Mapping[str, Any] | None
@@ -80,24 +101,3 @@ class OptimisationData(SearchedDesigns):
         """Numbers of the start design and of the best ones."""
         start = [] if self.start is None else [self.start]
         return list(dict.fromkeys([*start, *self.best]))
-
-    @property
-    def rows(self) -> list[dict[str, Any]]:
-        """Rows of optimise.csv: number, variables, status, quantities and verdicts, wall seconds,
-        reason."""
-        every = self.evaluations.values()
-        quantities = dict.fromkeys(name for each in every for name in each.quantities)
-        verdicts = dict.fromkeys(name for each in every for name in each.verdicts)
-        return [
-            {
-                "evaluation": number,
-                **each.values,
-                "status": each.status,
-                "best": int(number in self.best),
-                **{name: each.quantities.get(name) for name in quantities},
-                **{name: each.verdicts.get(name, "") for name in verdicts},
-                "wall_s": each.wall_s,
-                "reason": each.reason,
-            }
-            for number, each in sorted(self.evaluations.items())
-        ]

@@ -4,25 +4,28 @@ and best designs."""
 from __future__ import annotations
 
 import time
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from mpi4py import MPI
 
 from swgpar import watch
+from swgpar.errors import OutputError
 from swgpar.input.arguments import given_path
 from swgpar.input.toml_file import to_toml
 from swgpar.optimisation.bounds import at_bounds
 from swgpar.optimisation.files import BEST, DESIGNS, REPORT, TABLE
-from swgpar.optimisation.optimisation_data import number_of
-from swgpar.optimisation.problem import Problem, make_problem
+from swgpar.optimisation.optimisation_data import SearchedDesigns, number_of
+from swgpar.optimisation.problem import Evaluation, Problem, make_problem
 from swgpar.optimisation.report import make_report
 from swgpar.optimisation.result import OptimisationResult
 from swgpar.optimisation.search import JOURNAL, Search, open_storage
 from swgpar.optimisation.spec import Specification, load_specification
 from swgpar.optimisation.terminal import OptimiseProgress
 from swgpar.results import made_files
-from swgpar.results.atomic import agreed, on_all, write_from_root
+from swgpar.results.atomic import agreed, on_all, write_file, write_from_root
 from swgpar.results.lock import releasing
 from swgpar.results.table import format_csv
 from swgpar.run_options import RunOptions
@@ -98,7 +101,8 @@ def optimise(
         receive = None
         if comm.rank == 0:
             known = search.evaluations()
-            receive = OptimiseProgress(name, section, known, wanted, options.terminal).receive
+            said = OptimiseProgress(name, section, known, wanted, options.terminal)
+            receive = said.receive if end else partial(_receive, said, search, folder)
         search.run(wanted, receive)
         comm.Barrier()
         if comm.rank == 0:
@@ -130,6 +134,23 @@ def optimise(
     result = comm.bcast(content)
     _write(spec, problem, result, comm)
     return result
+
+
+def _receive(
+    progress: OptimiseProgress, search: Search, folder: Path, message: tuple[int, Evaluation]
+) -> None:
+    """An evaluation has ended: write the table of all that are known. Not collective."""
+    progress.receive(message)
+    problem, evaluations = search.problem, search.evaluations()
+    tried = SearchedDesigns(
+        section=problem.section,
+        units=problem.units,
+        evaluations=evaluations,
+        best=search.best(),
+        start=number_of(evaluations, problem.start.values),
+    )
+    with suppress(OutputError):  # the end of the search says on all ranks what cannot be written
+        write_file(folder / TABLE, format_csv(tried.rows))
 
 
 def _write(

@@ -8,6 +8,7 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from swgpar.answers.answer import Answer, with_error, with_no_limit
+from swgpar.drive_results.report_checks import RESOLUTION
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.evaluation.bearing_loads import BALL_LOAD, BALL_PRESSURE
 from swgpar.evaluation.safety_and_life import CRITERIA, LIFE_HOURS, RegionSafety
@@ -119,10 +120,13 @@ def resolution(summary: DriveSummary) -> Answer | None:
     root = summary.root_stress
     if root is None or root.total_error is None or not root.s1:
         return None
+    error = root.total_error / abs(root.s1)
+    advice = f"--accuracy {RESOLUTION:g} refines the meshes until it is at most that"
     return Answer(
         name="root.relative_error",
-        value=root.total_error / abs(root.s1),
+        value=error,
         unit="",
         text="error of the largest tension at the teeth over its value",
         place=root.place,
+        remark=advice if error > RESOLUTION else "",
     )

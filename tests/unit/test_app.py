@@ -17,10 +17,14 @@ import numpy as np
 import pytest
 
 import swgpar
-from support.paths import DESIGN, DRIVERS, RECIPE
+from support.paths import DESIGN, DRIVERS, RECIPE, ROOT
+from support.scripts import load_script
+from swgpar.analysis.forecast import forecast
 from swgpar.answers.verdict import Judgement
+from swgpar.api.runs import load_mesh
 from swgpar.app.access import COOKIE, TokenGate
 from swgpar.app.drawings import DRAWINGS, FOLDER, drawings_of
+from swgpar.app.durations import durations
 from swgpar.app.fields import FormField, form_fields, is_optional, missing_sections
 from swgpar.app.flank_gaps import NEAR, flank_gaps
 from swgpar.app.jobs import AppJob, JobQueue, JobState, shell_environment
@@ -40,6 +44,7 @@ from swgpar.presentation.body_curves import body_curves
 from swgpar.presentation.overlap_areas import slot_overlap
 from swgpar.profiles.keys import ExternalProfile, InternalProfile
 from swgpar.profiles.mesh_gap import outline
+from swgpar.rating.forecast import rating_seconds
 from swgpar.rating.sheet_differences import sheet_differences
 from swgpar.rating.stored_sheet import StoredRow, StoredSheet, read_sheet
 
@@ -135,6 +140,25 @@ def test_sections_with_a_shape_have_drawings() -> None:
     design = drive(DRIVERS / "rating.toml")
     assert drawings_of(design, "ring_gear.profile") == (f"profile_{design.ring_gear.profile.type}",)
     assert set(DRAWINGS) >= {"cup", "wave_generator.bearing"} and not drawings_of(design, "fatigue")
+
+
+def test_drawings_are_those_of_the_documents() -> None:
+    """`python scripts/app_drawings.py` takes them over, and writes down from which scripts."""
+    script = load_script(ROOT / "scripts" / "app_drawings.py")
+    assert script.RECORD.read_text(encoding="utf-8") == script.record()
+
+
+def test_how_long_commands_take(tmp_path: Path) -> None:
+    """By the forecasts of their runs; nothing is said of a mesh that does not fit."""
+    design = drive(DRIVERS / "rating.toml")
+    run = forecast(design, load_mesh("coarse")).seconds
+    rating = rating_seconds(design, load_mesh("coarse"))
+    said = durations(design, "coarse", tmp_path)
+    amounts = [float(one) for one in re.findall(r"about (\d+) s", said)]
+    assert amounts == [pytest.approx(run, abs=10.0), pytest.approx(rating, abs=10.0)]
+    assert rating > 2.0 * run
+    assert durations(design, "none.toml", tmp_path) == ""
+    assert "rating" not in durations(drive(), "", tmp_path)
 
 
 def test_an_overlap_is_marked() -> None:

@@ -9,12 +9,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mpi4py import MPI
 
 import swgpar
 from support.optimisation import FREQUENCY, OPTIMISATION
 from swgpar.errors import InputError, OutputError, SwgparError
 from swgpar.input.toml_file import to_toml
+from swgpar.optimisation.problem import Evaluation, Problem
 from swgpar.optimisation.search import JOURNAL
+from swgpar.optimisation.tried_designs import read_tried
 
 pytest.importorskip("optuna")
 
@@ -60,6 +63,21 @@ def test_a_search_goes_on_after_a_restart_and_leaves_its_files(tmp_path: Path) -
     assert len((out / "optimise.csv").read_text(encoding="utf-8").splitlines()) == 31
     with pytest.raises(InputError, match="another problem"):
         swgpar.optimise(written(tmp_path, high="1e12"), out, restart=True)
+
+
+def test_designs_that_were_tried_so_far(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The table has them while the search goes on."""
+    path, out, evaluate = written(tmp_path, evaluations="4"), tmp_path / "out", Problem.evaluate
+    known = []
+
+    def looked(problem: Problem, values: Any, comm: MPI.Comm) -> Evaluation:
+        if (out / "optimise.csv").exists():
+            known.append(len(read_tried(path, out).evaluations))
+        return evaluate(problem, values, comm)
+
+    monkeypatch.setattr(Problem, "evaluate", looked)
+    swgpar.optimise(path, out)
+    assert known == [1, 2, 3]
 
 
 def test_two_objectives_give_a_front_in_a_database(tmp_path: Path) -> None:

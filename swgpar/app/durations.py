@@ -1,0 +1,35 @@
+"""How long a run and a rating of a design take, in words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from swgpar.analysis.forecast import forecast
+from swgpar.analysis.shortcuts import MESHES
+from swgpar.api.runs import load_mesh
+from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import SwgparError
+from swgpar.rating.forecast import rating_seconds
+
+
+def durations(design: DriveDesign, mesh: str, folder: Path) -> str:
+    """Forecast for two cores that do nothing else; empty where the mesh does not fit the design.
+
+    mesh : recipe of the package or name of one in the folder, empty for that of a command without a
+    mesh
+    """
+    name = mesh or MESHES[design.drive.model]
+    try:
+        recipe = load_mesh(folder / name if name.endswith(".toml") else name)
+        said = f"run: about {_rounded(forecast(design, recipe).seconds)}"
+        if design.rating is not None:
+            said += f"; rating: about {_rounded(rating_seconds(design, recipe))}"
+    except SwgparError:
+        return ""
+    return f"{said}, on two free cores"
+
+
+def _rounded(seconds: float) -> str:
+    if seconds < 95.0:
+        return f"{max(10.0 * round(seconds / 10.0), 10.0):.0f} s"
+    return f"{seconds / 60.0:.0f} min"
