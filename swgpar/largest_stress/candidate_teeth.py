@@ -27,6 +27,11 @@ ROUND_OFF = 1e-6
 """Share by which equal stresses differ: that of Newton's iteration."""
 
 
+Followed = tuple[int, bool]
+"""A stress that is followed: modelled tooth in the middle of the first window, whether at the ends
+of teeth."""
+
+
 def first_of_largest(values: np.ndarray) -> int:
     """Index of the largest of stresses (n,), of equal ones the first: two teeth have one nodal
     average in the middle of their root, and round-off differs with the number of ranks."""
@@ -77,12 +82,9 @@ def may_be_largest(one: WindowStress, best: WindowStress, level: int) -> bool:
     return one is best or one.value > share * best.value
 
 
-def followed(found: Mapping[tuple[int, bool], WindowStress], level: int) -> list[tuple[int, bool]]:
+def followed(found: Mapping[Followed, WindowStress], level: int) -> list[Followed]:
     """Places that may have the largest stress on windows finer than `level`: each may overtake the
-    first of both parts.
-
-    found : by tooth and whether at its ends
-    """
+    first of both parts."""
     firsts: dict[bool, WindowStress] = {}
     for (_, ends), stress in found.items():
         firsts[ends] = max(firsts.get(ends, stress), stress, key=lambda s: s.value)

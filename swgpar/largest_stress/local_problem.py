@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -48,6 +49,9 @@ SECTORS, MARGIN = 5, 1
 RING_SECTORS = 3
 """Those of a window of the ring gear, which its rim supports all around."""
 
+NARROW = 3
+"""Tooth sectors of a window around the largest stress of a coarser one, which holds its cuts."""
+
 CUP_LENGTH = 2.0
 """Length of the cup's wall behind the teeth that belongs to a window, over sqrt(radius *
 thickness): a disturbance of the cut at its end decays by e within about 0.8 of that."""
@@ -81,11 +85,18 @@ class WindowStress:
 class WindowState:
     """The equilibrium of a window, from which a finer one around the same tooth begins.
 
-    mesh : sector of the window;  displacement : (n_teeth, n_node, 3) mm
+    mesh : sector of the window;  first_tooth : of its sectors
+    displacement : (n_teeth, n_node, 3) mm
     """
 
     mesh: SectorMesh
+    first_tooth: int
     displacement: np.ndarray
+
+    def of(self, first: int, count: int) -> np.ndarray:
+        """Displacement (count, n_node, 3) mm of the sectors from a tooth on."""
+        begin = first - self.first_tooth
+        return self.displacement[begin : begin + count]
 
 
 @dataclass(frozen=True)
@@ -109,9 +120,8 @@ def window_sector(
     return trimmed(mesh, mesh.coords[mesh.hexes, 2].min(axis=1) < end)
 
 
-def shared_mesh(model: DriveModel, recipe: MeshRecipe, gear: str) -> WindowMesh:
-    """What the windows of a gear on a mesh share, made once for a model."""
-    count = sectors_of(gear)
+def shared_mesh(model: DriveModel, recipe: MeshRecipe, gear: str, count: int) -> WindowMesh:
+    """What the windows of `count` sectors of a gear on a mesh share, made once for a model."""
     key = gear, recipe, count
     if key not in model.window_meshes:
         layout, sector = model.partition.layouts[gear], window_sector(model.geometry, recipe, gear)
@@ -134,6 +144,7 @@ class LocalProblem:
     recipe : of the window's mesh
     gear : name of the body
     coarser : equilibrium of a coarser window around the tooth, which is nearer than the drive's
+    narrow : whether it has few sectors, and cuts with the displacements of the coarser window
 
     One window of a mesh at a time: the next one takes over its elements and factor.
     """
@@ -146,18 +157,24 @@ class LocalProblem:
         recipe: MeshRecipe,
         gear: str = FLEXIBLE_SPLINE,
         coarser: WindowState | None = None,
+        *,
+        narrow: bool = False,
     ) -> None:
         self.model, self.state, geometry = model, state, model.geometry
         self.gear = gear
-        count = sectors_of(gear)
+        count = NARROW if narrow else sectors_of(gear)
         first = tooth - count // 2
-        self._shared = shared = shared_mesh(model, recipe, gear)
+        self._shared = shared = shared_mesh(model, recipe, gear, count)
         self.layout = shared.move(first)
         self.partition, self.elements = shared.partition, shared.elements
         self.body = self.elements.bodies[gear]
         teeth = first + np.arange(count)
         self._loads = WindowLoads.of(model, state, self.layout.mesh, teeth)
         self._of_drive = displacement = self._of_the_drive(teeth)
+        begin = displacement
+        if coarser is not None:
+            matrix = shared.from_window(coarser.mesh)
+            begin = self._interpolated(coarser.of(first, count), matrix)
         self.scale = model.problem.supports.scale
         problem = DiscreteProblem(
             partition=self.partition,
@@ -168,7 +185,7 @@ class LocalProblem:
                 if gear == FLEXIBLE_SPLINE
                 else None
             ),
-            boundary_terms=[self._dead_load(), self._cuts(displacement)],
+            boundary_terms=[self._dead_load(), self._cuts(begin if narrow else displacement)],
             module=geometry.module,
             blocks=shared.blocks,
             phases=PhaseTimes(),
@@ -185,11 +202,8 @@ class LocalProblem:
         if shared.factor_angle is not None:
             self.solver.system.take_over_factor(shared.angle - shared.factor_angle)
         self.problem = problem
-        begin = displacement
         if (known := shared.states.get(self._place)) is not None:
             begin = known.near(displacement)
-        elif coarser is not None:
-            begin = self._interpolated(coarser.displacement, shared.from_window(coarser.mesh))
         own = begin[self.partition.owned_indices(gear)]
         write_field(self.partition, gear, own, problem.x)
 
@@ -216,9 +230,8 @@ class LocalProblem:
     def equilibrium(self) -> WindowState:
         """The present state, for a finer window; collective."""
         teeth = np.arange(self.layout.count)
-        return WindowState(
-            self.layout.mesh, read_field(self.partition, self.gear, teeth, self.problem.x)
-        )
+        field = read_field(self.partition, self.gear, teeth, self.problem.x)
+        return WindowState(self.layout.mesh, self.layout.first_tooth, field)
 
     def _numbers(self, sectors: np.ndarray, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Own local indices (n_sectors, n) of nodes, and whether this rank owns them."""
@@ -232,7 +245,7 @@ class LocalProblem:
         if "end" not in mesh.faces:
             return
         nodes = np.unique(mesh.faces["end"])
-        for sector in range(SECTORS):
+        for sector in range(self.layout.count):
             angle = self.layout.chain_angle(np.array(sector))
             yield (
                 np.array([sector]),
@@ -287,7 +300,7 @@ class LocalProblem:
         nodes, share = nodes[weighted], weight[weighted] / weight.sum()
         x, y, _ = mesh.coords[nodes].T
         force = (moment * share / (x**2 + y**2))[:, None] * np.column_stack([-y, x, 0.0 * x])
-        for sector in range(SECTORS):
+        for sector in range(self.layout.count):
             angle = self.layout.chain_angle(np.array([sector]))
             index, own = self._numbers(np.array([sector]), nodes)
             np.add.at(forces, index[0, own[0]], rotated(force[None], angle[:, None])[0][own[0]])
@@ -346,22 +359,27 @@ class LocalProblem:
         found = self._found(stresses[f"{STRESS_PREFIXES[self.gear][0]}_s1"][:, nodes], nodes)
         return self._named(found, str(self._shared.regions[found.node]))
 
-    def by_region(self) -> dict[str, WindowStress]:
-        """Largest stresses of the regions that the window resolves, by names with `OF_REGION`;
-        collective."""
+    def by_region(self) -> dict[int, dict[str, WindowStress]]:
+        """Largest stresses of the regions that the window resolves, by tooth and by names with
+        `OF_REGION`; collective."""
         geometry, mesh = self.model.geometry, self.layout.mesh
         length = CUP_LENGTH * geometry.wall_decay if "cut" in mesh.node_sets else 0.0
         regions = read_regions(geometry, mesh, length, self._shared.regions)
         stresses, sectors = self._stresses
-        near = self._loads.near(geometry.module)[sectors]
-        found = {}
+        near, mine = self._loads.near(geometry.module)[sectors], list[tuple[str, str, _Found]]()
         for region in sorted(set(regions) - {""}):
             nodes = np.flatnonzero(regions == region)
             for name, values in stresses.items():
                 read = np.where(near[:, nodes], -np.inf, values[:, nodes])
-                best = self._found(read, nodes)
-                if best.value > 0.0:
-                    found[f"{name}{OF_REGION}{region}"] = self._named(best, region)
+                for sector, of_sector in zip(sectors, read, strict=True):
+                    tooth, best = self.layout.first_tooth + int(sector), int(of_sector.argmax())
+                    value = float(of_sector[best])
+                    if value > 0.0:
+                        mine.append((name, region, _Found(value, tooth, int(nodes[best]))))
+        found: dict[int, dict[str, WindowStress]] = {}
+        for name, region, one in chain(*self.model.comm.allgather(mine)):
+            of_tooth = found.setdefault(one.tooth, {})
+            of_tooth[f"{name}{OF_REGION}{region}"] = self._named(one, region)
         return found
 
     def _found(self, values: np.ndarray, nodes: np.ndarray) -> _Found:

@@ -20,7 +20,7 @@ from swgpar.fem.body import FLEXIBLE_SPLINE, STRESS_PREFIXES
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.stress import principal
 from swgpar.largest_stress.convergence import error_of
-from swgpar.largest_stress.local_problem import MARGIN, WindowStress, sectors_of
+from swgpar.largest_stress.local_problem import WindowStress
 from swgpar.largest_stress.places import (
     APART_DISTANCE,
     OF_REGION,
@@ -73,9 +73,9 @@ IN_TEETH = (TOOTH_ROOT, TOOTH_END, BACK)
 class RegionStress:
     """Largest stress of a region.
 
-    levels : MPa, in the windows around one tooth, coarse to fine, not numbers where left out
+    levels : MPa, of one tooth in windows, coarse to fine, not numbers where left out
     tops : MPa, the largest of all windows of each level
-    spread : largest stress of the region over that in these windows, at least 1
+    spread : largest stress of the region over that of this tooth, at least 1
     place : with the error by the windows
     nodal : whether it is a nodal average at a tooth that is loaded in another way
     drive_error : MPa, by the mesh of the drive; None where it is not known
@@ -96,43 +96,59 @@ class RegionStress:
 
 @dataclass
 class WindowReadings:
-    """Stresses that windows of a gear have given, by tooth in the middle and by name.
+    """Stresses that windows of a gear have given, by modelled tooth and by name.
 
     skipped : coarsest windows that are left out
-    count : windows so far, by tooth
-    corners : the largest tension at the teeth where it has no limit, of the last windows, by tooth
+    corners : the largest tension at the teeth where it has no limit, of the last windows, by the
+    tooth in their middle
+    of_window : largest stresses of the last windows and their level, by the tooth in their middle
     """
 
     skipped: int
     levels: dict[int, dict[str, list[float]]] = field(default_factory=dict)
     last: dict[int, dict[str, WindowStress]] = field(default_factory=dict)
-    count: dict[int, int] = field(default_factory=dict)
     corners: dict[int, WindowStress] = field(default_factory=dict)
+    of_window: dict[int, tuple[int, dict[str, WindowStress]]] = field(default_factory=dict)
 
     def add(
-        self, tooth: int, found: Mapping[str, WindowStress], at_corner: WindowStress | None = None
+        self,
+        middle: int,
+        level: int,
+        found: Mapping[int, Mapping[str, WindowStress]],
+        at_corner: WindowStress | None = None,
     ) -> None:
-        """Keep what the next window around a tooth gives."""
+        """Keep what a window around the tooth `middle` gives, by tooth. Of two windows of a level
+        that read a tooth the larger stress counts."""
         if at_corner is not None:
-            self.corners[tooth] = at_corner
-        of_tooth, before = self.levels.setdefault(tooth, {}), self.count.get(tooth, 0)
-        for name, stress in found.items():
-            # a region that coarser windows had not had no stress there
-            unknown = [math.nan] * self.skipped + [0.0] * before
-            of_tooth.setdefault(name, unknown).append(stress.value)
-            self.last.setdefault(tooth, {})[name] = stress
-        self.count[tooth] = before + 1
+            self.corners[middle] = at_corner
+        largest: dict[str, WindowStress] = {}
+        for tooth, stresses in found.items():
+            of_tooth, last = self.levels.setdefault(tooth, {}), self.last.setdefault(tooth, {})
+            for name, stress in stresses.items():
+                largest[name] = max(largest.get(name, stress), stress, key=lambda one: one.value)
+                values = of_tooth.setdefault(name, [math.nan] * self.skipped)
+                # a region that coarser windows had not had no stress there
+                values += [0.0] * (level - len(values))
+                if len(values) == level:
+                    values.append(stress.value)
+                elif stress.value <= values[level]:
+                    continue
+                values[level], last[name] = stress.value, stress
+        self.of_window[middle] = level, largest
 
-    def tooth_with_largest(self, stress: str) -> int:
-        """Tooth around which the finest windows give the largest of a stress in teeth and rim."""
-        finest = max(self.count.values())
+    def window_with_largest(self, stress: str) -> tuple[int, WindowStress]:
+        """Tooth around which the finest windows give the largest of a stress in teeth and rim, and
+        this stress."""
+        finest = max(level for level, _ in self.of_window.values())
         names = [f"{stress}{OF_REGION}{region}" for region in (*IN_TEETH, RIM_INSIDE)]
-        found = {
-            tooth: max(by[name].value for name in names if name in by)
-            for tooth, by in self.last.items()
-            if self.count[tooth] == finest
-        }
-        return max(found, key=lambda tooth: found[tooth])
+        found = [
+            (middle, by[name])
+            for middle, (level, by) in self.of_window.items()
+            if level == finest
+            for name in names
+            if name in by
+        ]
+        return max(found, key=lambda one: one[1].value)
 
     def at_corner(self, model: DriveModel, s1: float) -> Place | None:
         """The largest tension at the teeth where it has no limit; None where it is not above
@@ -173,7 +189,7 @@ class WindowReadings:
         error = math.inf if unrefined else self._window_error(model, layout, name, main, ratio)
         least = 0.0
         if nodal is not None:
-            reads, elsewhere = _read_and_elsewhere(nodal, known, gear)
+            reads, elsewhere = _read_and_elsewhere(nodal, known)
             # nodal averages lose much beside a contact: the most alike is the one with most of them
             alike = max(reads, key=lambda tooth: reads[tooth])
             read, average = reads[alike], float(nodal[elsewhere])
@@ -196,7 +212,7 @@ class WindowReadings:
     def _window_error(
         self, model: DriveModel, layout: BodyLayout, name: str, tooth: int, ratio: float
     ) -> float:
-        """Error (MPa) of the last window around a tooth.
+        """Error (MPa) of the last window of a tooth.
 
         The stress of a flank beside its root is that of the end of the root, and at most the
         largest in the root. Coarser windows may have no node between the root and the contact.
@@ -210,9 +226,14 @@ class WindowReadings:
         return error_of(levels, ratio)
 
 
+def _of_teeth_and_rim(stress: str) -> list[str]:
+    """Names of a stress in the regions of teeth and rim."""
+    return [f"{stress}{OF_REGION}{region}" for region in (*IN_TEETH, RIM_INSIDE)]
+
+
 def _over(known: Mapping[int, Sequence[float]], main: int) -> dict[int, float]:
-    """Stresses of windows around teeth over those of windows around one, on the finest mesh that
-    both have. known : MPa, coarse to fine"""
+    """Stresses of teeth over those of one, in the finest windows that both have. known : MPa,
+    coarse to fine"""
     shares = {}
     for tooth, levels in known.items():
         last = min(len(levels), len(known[main])) - 1
@@ -227,17 +248,11 @@ def _to_root(layout: BodyLayout, position: np.ndarray) -> float:
     return float(np.hypot(abs(position[0]) - abs(x), position[1] - y))
 
 
-def _read_and_elsewhere(
-    nodal: np.ndarray, known: Iterable[int], gear: str
-) -> tuple[dict[int, float], int]:
-    """Largest of nodal averages (n_modelled,) that the windows around each tooth read, and the
-    sector with the largest that none of them reads."""
-    count = sectors_of(gear)
-    beside = np.arange(MARGIN, count - MARGIN) - count // 2
-    far = nodal.copy()
-    for tooth in known:
-        far[(tooth + beside) % len(nodal)] = -np.inf
-    reads = {tooth: float(nodal[(tooth + beside) % len(nodal)].max()) for tooth in known}
+def _read_and_elsewhere(nodal: np.ndarray, known: Iterable[int]) -> tuple[dict[int, float], int]:
+    """Nodal averages (of (n_modelled,) MPa) at the teeth that windows have read, and the tooth with
+    the largest elsewhere."""
+    reads, far = {tooth: float(nodal[tooth]) for tooth in known}, nodal.copy()
+    far[list(reads)] = -np.inf
     return reads, int(far.argmax())
 
 

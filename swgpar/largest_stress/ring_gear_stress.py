@@ -8,7 +8,7 @@ import numpy as np
 
 from swgpar.fem.body import RING_GEAR
 from swgpar.largest_stress.candidate_teeth import ROUND_OFF, first_of_largest
-from swgpar.largest_stress.local_problem import WindowState, WindowStress
+from swgpar.largest_stress.local_problem import WindowStress
 from swgpar.largest_stress.places import OF_REGION
 from swgpar.largest_stress.region_stress import (
     CLOSE_IN_ROOT,
@@ -17,7 +17,7 @@ from swgpar.largest_stress.region_stress import (
     nodal_averages,
     nodal_by_sector,
 )
-from swgpar.largest_stress.solved_window import solved_window
+from swgpar.largest_stress.solved_window import States, solved_window
 from swgpar.largest_stress.window_recipes import RATIO, RING_LEVELS, window_recipe
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
@@ -50,15 +50,15 @@ def ring_gear_stresses(
     roots = [f"rg_{stress}{OF_REGION}{TOOTH_ROOT}" for stress in stresses]
     peaks = [tooth for root in roots for tooth in _peaks(nodal[root], kind)]
     teeth = {(tooth + beside) % len(nodal[roots[0]]) for tooth in peaks for beside in (-1, 0, 1)}
-    readings, states = WindowReadings(skipped), dict[int, WindowState]()
+    readings, states = WindowReadings(skipped), States()
     for level in range(min(levels, RING_LEVELS[kind])):
         found = {}
         for tooth in sorted(teeth):
             recipe = window_recipe(kind, level)
             with solved_window(model, state, tooth, recipe, states, RING_GEAR) as window:
-                found[tooth] = window.by_region()
+                (found[tooth],) = window.by_region().values()
             if level >= skipped:
-                readings.add(tooth, found[tooth])
+                readings.add(tooth, level, {tooth: found[tooth]})
         share = FOLLOWED[min(level, 1)] if kind == "plane" else 1.0
         teeth = {tooth for root in roots for tooth in _followed(found, root, share)}
     return readings.stresses(model, RING_GEAR, nodal, RATIO[kind])

@@ -28,9 +28,14 @@ from swgpar.answers.answer import (
 )
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.largest_stress.candidate_teeth import candidates, first_of_largest, followed
+from swgpar.largest_stress.candidate_teeth import (
+    Followed,
+    candidates,
+    first_of_largest,
+    followed,
+)
 from swgpar.largest_stress.convergence import error_at_ends, error_of
-from swgpar.largest_stress.local_problem import WindowState, WindowStress
+from swgpar.largest_stress.local_problem import WindowStress
 from swgpar.largest_stress.places import OF_REGION, Place, root_nodes
 from swgpar.largest_stress.region_stress import (
     RegionStress,
@@ -41,16 +46,16 @@ from swgpar.largest_stress.region_stress import (
     nodal_by_sector,
 )
 from swgpar.largest_stress.ring_gear_stress import ring_gear_stresses
-from swgpar.largest_stress.solved_window import solved_window
+from swgpar.largest_stress.solved_window import States, solved_window
 from swgpar.largest_stress.window_recipes import (
     LEVELS,
+    NARROW_FROM,
     PERIOD_LEVEL,
     RATIO,
     window_recipe,
 )
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
-from swgpar.meshing import MeshRecipe
 from swgpar.model.drive_model import DriveModel
 from swgpar.model.regions import RIM_INSIDE, TOOTH_END, TOOTH_ROOT
 
@@ -239,18 +244,20 @@ def resolve_root_stress(
     mises = np.max([nodal[name] for name in parts_of_teeth if name in nodal], axis=0)
     teeth = candidates(*on_mesh, in_root=in_root, mises=mises)
     places = [(tooth, ends) for tooth in teeth for ends in parts]
-    values: dict[tuple[int, bool], list[float]] = {place: [math.nan] * skipped for place in places}
-    readings, states = WindowReadings(skipped), dict[int, WindowState]()
-    count = levels or LEVELS[kind]
+    values: dict[Followed, list[float]] = {place: [math.nan] * skipped for place in places}
+    readings, states = WindowReadings(skipped), States()
+    count, narrow = levels or LEVELS[kind], dict[Followed, int]()
     for level in range(skipped, count):
-        found = _solve(model, state, places, window_recipe(kind, level), readings, states)
+        found = _solve(model, state, places, level, readings, states, narrow)
         for place, stress in found.items():
             values[place].append(stress.value)
         best = max(places, key=lambda place: found[place].value)
         places = followed(found, level)
-        further = readings.tooth_with_largest("fs_vm")
+        further, mises_there = readings.window_with_largest("fs_vm")
         if level + 2 < count and all(tooth != further for tooth, _ in places):
             places.append((further, False))  # as far as the last window but one
+        if level + 1 >= NARROW_FROM:
+            narrow = {place: found.get(place, mises_there).tooth for place in places}
         _release(model)
     stresses = ", ".join(f"{value:.1f}" for value in values[best][skipped:])
     logger.info(
@@ -301,7 +308,7 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
     ends = known.part == ENDS
     s1, _, _ = nodal_averages(model, FLEXIBLE_SPLINE)
     tooth = first_of_largest(largest_by_tooth(model, s1, ends))
-    found = _solve(model, state, [(tooth, ends)], window_recipe(kind, level))[tooth, ends]
+    found = _solve(model, state, [(tooth, ends)], level)[tooth, ends]
     value = found.value * known.s1 / known.levels[level]
     period = known.period or ((0.0, known.s1),)
     return replace(known, period=(*period, (float(np.degrees(state.angle)), value)))
@@ -310,24 +317,33 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
 def _solve(
     model: DriveModel,
     state: LoadState,
-    places: list[tuple[int, bool]],
-    recipe: MeshRecipe,
+    places: Sequence[Followed],
+    level: int,
     readings: WindowReadings | None = None,
-    states: dict[int, WindowState] | None = None,
-) -> dict[tuple[int, bool], WindowStress]:
-    """Largest stresses at the ends of teeth or between them, by tooth and whether at the ends: a
-    window per tooth.
+    states: States | None = None,
+    narrow: Mapping[Followed, int] | None = None,
+) -> dict[Followed, WindowStress]:
+    """Largest stresses at the ends of teeth or between them: a window per tooth.
 
-    readings : takes the stresses of all regions
-    states : equilibria of coarser windows by tooth, which those of these windows replace
+    level : of the windows;  readings : takes the stresses of all regions
+    states : equilibria of coarser windows, to which those of these windows are added
+    narrow : teeth with the largest stresses of coarser windows, by place, around which windows are
+    narrow
     """
-    states = {} if states is None else states
-    found: dict[tuple[int, bool], WindowStress] = {}
-    for tooth in dict.fromkeys(tooth for tooth, _ in places):
-        with solved_window(model, state, tooth, recipe, states) as window:
-            found |= {place: window.largest(place[1]) for place in places if place[0] == tooth}
+    layout = model.partition.layouts[FLEXIBLE_SPLINE]
+    recipe = window_recipe(model.geometry.model, level)
+    states, narrow = {} if states is None else states, narrow or {}
+    windows: dict[tuple[int, int | None], list[Followed]] = {}
+    for place in places:
+        windows.setdefault((place[0], narrow.get(place)), []).append(place)
+    found: dict[Followed, WindowStress] = {}
+    for (tooth, middle), followed_there in windows.items():
+        with solved_window(model, state, tooth, recipe, states, middle=middle) as window:
+            found |= {place: window.largest(place[1]) for place in followed_there}
             if readings is not None:
-                readings.add(tooth, window.by_region(), window.largest_at_corners())
+                by_tooth = window.by_region().items()
+                read = {(one - layout.first_tooth) % layout.count: by for one, by in by_tooth}
+                readings.add(tooth, level, read, window.largest_at_corners())
     return found
 
 

@@ -71,6 +71,9 @@ FEWEST_LEVELS = {"plane": 4, "cup": 2}
 RING_LEVELS = {"plane": 3, "cup": 2}
 """Windows of the ring gear: its stresses are far below those of the flexible spline."""
 
+NARROW_FROM = 2
+"""Index of the first window of the flexible spline that is a narrow one of the one before."""
+
 PERIOD_LEVEL = {"plane": 1, "cup": 1}
 """Index of the window with which the further angles of a period are computed."""
 

@@ -23,6 +23,7 @@ from swgpar.largest_stress.local_problem import MARGIN, SECTORS, LocalProblem, s
 from swgpar.largest_stress.places import OF_REGION
 from swgpar.largest_stress.region_stress import nodal_averages, nodal_by_sector
 from swgpar.largest_stress.root_stress import resolve_root_stress
+from swgpar.largest_stress.window_recipes import window_recipe
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.model.regions import END, TOOTH_ROOT
 
@@ -165,6 +166,36 @@ def test_a_window_on_the_mesh_of_another_one_has_its_own_stress(model: str) -> N
     parallel_assert(turns[1] == pytest.approx(turned), f"{turns}")
 
 
+@pytest.mark.parametrize(("model", "rel"), [("plane", 1e-4), ("cup", 3e-4)])
+@pytest.mark.parallel([1, 2])
+def test_a_narrow_window_has_the_stress_of_the_one_around_it(
+    model: str, rel: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On the same mesh, around the tooth with the largest stress. With the displacements of the
+    drive's coarser mesh on its cuts it has another one."""
+    stepper, recipe = drive(model), window_recipe(model, 0)
+    wide = solved(stepper, 1, recipe)
+    largest, coarser = wide.largest(), wide.equilibrium()
+    wide.destroy()
+    found = []
+    for narrow in (True, False):
+        monkeypatch.setattr(local_problem, "SECTORS", SECTORS if narrow else local_problem.NARROW)
+        window = LocalProblem(
+            stepper.model,
+            stepper.load_state,
+            largest.tooth,
+            recipe,
+            coarser=coarser,
+            narrow=narrow,
+        )
+        window.solve()
+        found.append(window.largest().value)
+        window.destroy()
+    print(f"{largest.value:.3f}, narrow {found[0]:.3f}, cuts of the drive {found[1]:.3f} MPa")
+    parallel_assert(found[0] == pytest.approx(largest.value, rel=rel), f"{found}")
+    parallel_assert(found[1] != pytest.approx(largest.value, rel=2.0 * rel), f"{found}")
+
+
 def roots(stepper: LoadStepper, gear: str) -> tuple[dict[str, float], dict[str, float]]:
     """Largest stresses (MPa) in the roots of a gear in a window with the drive's mesh, and in the
     same sectors of the drive, by name; collective."""
@@ -174,13 +205,13 @@ def roots(stepper: LoadStepper, gear: str) -> tuple[dict[str, float], dict[str, 
     tooth = int(nodal[names[0]].argmax())
     window = LocalProblem(model, stepper.load_state, tooth, load_recipe(RECIPE), gear)
     window.solve()
-    found = window.by_region()
+    found = window.by_region().values()
     window.destroy()
     count = sectors_of(gear)
     inside = tooth + np.arange(MARGIN, count - MARGIN) - count // 2
     inside %= model.partition.layouts[gear].count
     return (
-        {name: found[name].value for name in names},
+        {name: max(of_tooth[name].value for of_tooth in found) for name in names},
         {name: float(nodal[name][inside].max()) for name in names},
     )
 

@@ -66,9 +66,13 @@ def readings(levels: dict[int, list[float]], name: str = ROOT, skipped: int = 0)
     """Windows around teeth."""
     found = WindowReadings(skipped)
     for tooth, values in levels.items():
-        for value in values:
-            found.add(tooth, {name: WindowStress(value, tooth, np.zeros(3), "", "", 1)})
+        for level, value in enumerate(values, skipped):
+            found.add(tooth, level, {tooth: {name: window_stress(value, tooth)}})
     return found
+
+
+def window_stress(value: float, tooth: int) -> WindowStress:
+    return WindowStress(value, tooth, np.zeros(3), "", "", 1)
 
 
 def stress(found: WindowReadings, nodal: np.ndarray, name: str = ROOT) -> RegionStress:
@@ -120,11 +124,33 @@ def test_a_nodal_average_below_the_stress_of_a_window_does_not_replace_it() -> N
     assert one.place.error == pytest.approx(81.0 / CLOSE_IN_ROOT - LEVELS[-1])
 
 
-def test_the_tooth_with_the_largest_stress_is_one_of_the_finest_windows() -> None:
+def test_the_window_with_the_largest_stress_is_one_of_the_finest() -> None:
     found = readings({3: LEVELS[:2], 9: [150.0]})
-    assert found.tooth_with_largest("fs_vm") == 3
-    found.add(9, {ROOT: WindowStress(91.0, 9, np.zeros(3), "", "", 1)})
-    assert found.tooth_with_largest("fs_vm") == 9
+    assert found.window_with_largest("fs_vm") == (3, window_stress_of(found, 3))
+    found.add(9, 1, {9: {ROOT: window_stress(80.0, 9)}, 10: {ROOT: window_stress(91.0, 10)}})
+    assert found.window_with_largest("fs_vm") == (9, window_stress_of(found, 10))
+
+
+def window_stress_of(found: WindowReadings, tooth: int) -> WindowStress:
+    return found.last[tooth][ROOT]
+
+
+def test_teeth_that_a_narrow_window_does_not_read_count_in_proportion() -> None:
+    found = WindowReadings(0)
+    for level, value in enumerate(LEVELS[:2]):
+        read = {3: value, 4: 1.1 * value}
+        found.add(3, level, {k: {ROOT: window_stress(v, k)} for k, v in read.items()})
+    found.add(3, 2, {3: {ROOT: window_stress(LEVELS[2], 3)}})
+    one = stress(found, nodal(t3=70.0, t4=70.0))
+    assert one.levels == tuple(LEVELS) and one.place.tooth == 4
+    assert one.place.value == pytest.approx(1.1 * LEVELS[2])
+
+
+def test_of_two_windows_that_read_a_tooth_the_larger_stress_counts() -> None:
+    found = WindowReadings(0)
+    for middle, value in ((3, 80.0), (5, 84.0), (4, 82.0)):
+        found.add(middle, 0, {4: {ROOT: window_stress(value, 4)}})
+    assert found.levels == {4: {ROOT: [84.0]}} and window_stress_of(found, 4).value == 84.0
 
 
 def test_a_tooth_without_a_window_has_the_stress_in_proportion() -> None:
@@ -156,9 +182,10 @@ def test_a_flank_beside_its_root_has_the_errors_of_the_root(
     flank, at_root = [1.0, 2.0, 93.0], [side * END_OF_ROOT[0], END_OF_ROOT[1], 0.3]
     position = np.array(at_root) + [0.0, distance * BESIDE_ROOT * 0.5, 0.0]
     found = WindowReadings(0)
-    for in_root, on_flank in zip(LEVELS, flank, strict=True):
+    for level, (in_root, on_flank) in enumerate(zip(LEVELS, flank, strict=True)):
         places = {ROOT: (in_root, np.zeros(3)), FLANK: (on_flank, position)}
-        found.add(3, {name: WindowStress(v, 3, at, "", "", 1) for name, (v, at) in places.items()})
+        read = {name: WindowStress(v, 3, at, "", "", 1) for name, (v, at) in places.items()}
+        found.add(3, level, {3: read})
     model = cast(DriveModel, Model("plane"))
     one = found.stresses(model, FLEXIBLE_SPLINE, {}, RATIO)[FLANK]
     of_root = error_of(LEVELS, RATIO) + LEVELS[-1] - 93.0

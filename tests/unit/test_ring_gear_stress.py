@@ -45,7 +45,7 @@ def windows(
         solved.append((tooth, levels[recipe]))
         value = largest.get(tooth, 1.0) + levels[recipe]
         found = WindowStress(value, tooth, np.zeros(3), "tooth root", "", 1)
-        yield SimpleNamespace(by_region=lambda: dict.fromkeys(NAMES, found))
+        yield SimpleNamespace(by_region=lambda: {tooth: dict.fromkeys(NAMES, found)})
 
     nodal = np.full(TEETH, 5.0)
     nodal[[0, TEETH - 1]] = 9.0
