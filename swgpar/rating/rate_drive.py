@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,6 +11,7 @@ from mpi4py import MPI
 
 from swgpar import watch
 from swgpar.analysis.accuracy import not_refinable
+from swgpar.analysis.forecast import forecast
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.summary import DriveSummary
@@ -136,6 +138,8 @@ def rate_drive(design: DriveDesign, options: RunOptions) -> RatingSheet:
     plan, count = book.plan, len(book.plan.runs)
     claim_folder(folder, options, "a rating", [RUNS], (JSON, CSV, PAGE), RUNS)
     watch.saved("runs", 0, count)
+    if comm.rank == 0 and options.terminal:
+        print_line([forecast_text(plan, book.options)])
 
     def run(index: int, own: MPI.Comm, _: object) -> None:
         planned = plan.runs[index]
@@ -188,6 +192,20 @@ def accuracy_of(run: PlannedRun, accuracy: float | None) -> tuple[float | None, 
     if found := not_refinable(run.design):
         return None, f"--accuracy, which is not available with {found[0]}"
     return accuracy, ""
+
+
+def forecast_text(plan: RatingPlan, options: RunOptions) -> str:
+    """How many runs follow, and how long they will take."""
+    recipe = options.recipe
+    assert recipe is not None  # `_begin` has one
+    designs = [run.design for run in plan.runs if run.design is not None]
+    try:
+        seconds = math.fsum(forecast(design, recipe).seconds for design in designs)
+    except InputError:  # every run says why it has no mesh
+        return f"{len(designs)} runs"
+    text = f"{seconds / 60.0:.1f} minutes" if seconds >= 90.0 else f"{seconds:.0f} s"
+    finer = "; meshes for the accuracy may be finer" if options.accuracy else ""
+    return f"{len(designs)} runs, up to some {text} on two ranks by the forecast{finer}"
 
 
 def _words(index: int, count: int, run: PlannedRun, outcome: Outcome) -> list[str]:

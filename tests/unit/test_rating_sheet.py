@@ -11,13 +11,20 @@ import pytest
 from rich.console import Console
 
 from support.html_text import Page
+from support.paths import DRIVERS
+from swgpar.analysis.forecast import forecast
 from swgpar.answers.answer import Answer
 from swgpar.answers.verdict import Limit, Sense, Verdict
+from swgpar.api.ratings import load_rated_design
+from swgpar.meshing import load_recipe
 from swgpar.rating import terminal
 from swgpar.rating.page import rating_page
+from swgpar.rating.planned_runs import plan_runs
+from swgpar.rating.rate_drive import forecast_text
 from swgpar.rating.sheet import RatedVerdict, RatingSheet, RunEntry
 from swgpar.rating.texts import counts_text, headline_text
 from swgpar.results.atomic import to_json
+from swgpar.run_options import RunOptions
 
 STRESS = Answer("largest.fs_vm", 514.8512, "MPa", "stress", error=4.1, place="tooth root")
 HYSTERESIS = Answer("stiffness.hysteresis", 4.06684, "arc minutes", "width", error=0.0076)
@@ -96,3 +103,20 @@ def test_rows_and_runs_are_in_the_file(sheet: RatingSheet) -> None:
     assert (second["verdict"], second["reason"]) == ("not judged", "no requirement")
     assert (third["value"], third["reason"]) == (None, "the run <i>failed</i>")
     assert content["runs"][0]["status"] == "failed"
+
+
+def test_a_rating_says_how_long_it_takes() -> None:
+    """Longer with a finer mesh."""
+    plane = plan_runs(load_rated_design(DRIVERS / "rating.toml"))
+
+    def seconds(mesh: str, accuracy: float | None = None) -> float:
+        options = RunOptions(recipe=load_recipe(mesh), accuracy=accuracy)
+        text = forecast_text(plane, options)
+        assert text.startswith("5 runs, up to some ") and ("finer" in text) == bool(accuracy)
+        number, unit = text.split()[5:7]
+        return float(number) * {"s": 1.0, "minutes": 60.0}[unit]
+
+    assert 1.5 * seconds("plane_coarse") < seconds("plane_fine", 0.02)
+    designs = [run.design for run in plane.runs if run.design is not None]
+    total = sum(forecast(design, load_recipe("plane_coarse")).seconds for design in designs)
+    assert seconds("plane_coarse") == pytest.approx(total, abs=1.0)
