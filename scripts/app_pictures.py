@@ -117,6 +117,7 @@ def picture(page: Page, path: Path) -> None:
     page.get_by_role("button", name="loaded", exact=True).click()
     page.get_by_text("[drive]", exact=True).scroll_into_view_if_needed()
     zoom(page, -1, 3)
+    page.mouse.move(5, 5)  # no answer below the pointer
     page.wait_for_timeout(2500)
     shot = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
     shot.quantize(PICTURE_COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)

@@ -13,7 +13,8 @@ from swgpar.rating.forecast import rating_seconds
 
 
 def durations(design: DriveDesign, mesh: str, folder: Path) -> str:
-    """Forecast for two cores that do nothing else; empty where the mesh does not fit the design.
+    """Forecast for two cores that do nothing else; empty where the mesh does not fit the design. It
+    knows no bearing, which takes about twice as long.
 
     mesh : recipe of the package or name of one in the folder, empty for that of a command without a
     mesh
@@ -26,7 +27,8 @@ def durations(design: DriveDesign, mesh: str, folder: Path) -> str:
             said += f"; rating: about {_rounded(rating_seconds(design, recipe))}"
     except SwgparError:
         return ""
-    return f"{said}, on two free cores"
+    longer = "; longer with the bearing" if design.bearing else ""
+    return f"{said}, on two free cores{longer}"
 
 
 def _rounded(seconds: float) -> str:

@@ -176,7 +176,7 @@ def _loads(loaded: LoadedOutline) -> list[dict[str, Any]]:
             "colorscale": [[0.0, TOUCHING], [1.0, OVERLAP]],
             "colorbar": {"title": {"text": "s1, MPa"}, "thickness": 12},
         },
-        "hovertemplate": "largest principal stress %{marker.color} MPa<extra></extra>",
+        "hovertemplate": "largest principal stress %{marker.color:.1f} MPa<extra></extra>",
     }
     forces = {
         "type": "scatter",

@@ -45,7 +45,8 @@ class Slider(ui.element):
         self.on("change", rests, js_handler=VALUE)
 
     def show(self, value: float) -> None:
-        """Put it to a value; nothing is sent where it stands there."""
-        if value != self._place:
+        """Put it to a value; nothing is sent where it stands there, and was put there: the browser
+        draws what it was put to whenever it draws the window."""
+        if (value, value) != (self._place, self.props["value"]):
             self._place = self.props["value"] = value
             self.update()
