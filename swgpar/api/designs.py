@@ -255,6 +255,7 @@ def check(
 def _needs(design: DriveDesign, recipe: MeshRecipe) -> dict[str, float]:
     from swgpar.analysis.forecast import forecast, require_memory
     from swgpar.rating.forecast import rating_seconds
+    from swgpar.rating.planned_runs import plan_runs
 
     needs = forecast(design, recipe)
     require_memory(needs, design.solver.memory_limit)
@@ -266,7 +267,7 @@ def _needs(design: DriveDesign, recipe: MeshRecipe) -> dict[str, float]:
         "time of a run on 2 cores, about (s)": needs.seconds,
     }
     if design.rating is not None:
-        values["time of a rating on 2 cores, about (s)"] = rating_seconds(design, recipe)
+        values["time of a rating on 2 cores, about (s)"] = rating_seconds(plan_runs(design), recipe)
     return values
 
 

@@ -10,11 +10,12 @@ from swgpar.api.runs import load_mesh
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import SwgparError
 from swgpar.rating.forecast import rating_seconds
+from swgpar.rating.planned_runs import plan_runs
 
 
 def durations(design: DriveDesign, mesh: str, folder: Path) -> str:
     """Forecast for two cores that do nothing else; empty where the mesh does not fit the design. It
-    knows no bearing, which takes about twice as long.
+    knows no bearing, which takes longer.
 
     mesh : recipe of the package or name of one in the folder, empty for that of a command without a
     mesh
@@ -24,7 +25,7 @@ def durations(design: DriveDesign, mesh: str, folder: Path) -> str:
         recipe = load_mesh(folder / name if name.endswith(".toml") else name)
         said = f"run: about {_rounded(forecast(design, recipe).seconds)}"
         if design.rating is not None:
-            said += f"; rating: about {_rounded(rating_seconds(design, recipe))}"
+            said += f"; rating: about {_rounded(rating_seconds(plan_runs(design), recipe))}"
     except SwgparError:
         return ""
     longer = "; longer with the bearing" if design.bearing else ""

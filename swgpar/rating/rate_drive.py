@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,12 +10,12 @@ from mpi4py import MPI
 
 from swgpar import watch
 from swgpar.analysis.accuracy import not_refinable
-from swgpar.analysis.forecast import forecast
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.errors import InputError
 from swgpar.meshing import MeshRecipe, load_recipe
+from swgpar.rating.forecast import rating_seconds
 from swgpar.rating.page import rating_page
 from swgpar.rating.planned_runs import LoadCase, PlannedRun, RatingPlan, plan_runs
 from swgpar.rating.rows import RatingRow, rating_rows
@@ -198,14 +197,14 @@ def forecast_text(plan: RatingPlan, options: RunOptions) -> str:
     """How many runs follow, and how long they will take."""
     recipe = options.recipe
     assert recipe is not None  # `_begin` has one
-    designs = [run.design for run in plan.runs if run.design is not None]
+    count = sum(run.design is not None for run in plan.runs)
     try:
-        seconds = math.fsum(forecast(design, recipe).seconds for design in designs)
+        seconds = rating_seconds(plan, recipe)
     except InputError:  # every run says why it has no mesh
-        return f"{len(designs)} runs"
+        return f"{count} runs"
     text = f"{seconds / 60.0:.1f} minutes" if seconds >= 90.0 else f"{seconds:.0f} s"
     finer = "; meshes for the accuracy may be finer" if options.accuracy else ""
-    return f"{len(designs)} runs, up to some {text} on two ranks by the forecast{finer}"
+    return f"{count} runs, about {text} on two free cores by the forecast{finer}"
 
 
 def _words(index: int, count: int, run: PlannedRun, outcome: Outcome) -> list[str]:

@@ -45,6 +45,7 @@ from swgpar.presentation.overlap_areas import slot_overlap
 from swgpar.profiles.keys import ExternalProfile, InternalProfile
 from swgpar.profiles.mesh_gap import outline
 from swgpar.rating.forecast import rating_seconds
+from swgpar.rating.planned_runs import plan_runs
 from swgpar.rating.sheet_differences import sheet_differences
 from swgpar.rating.stored_sheet import StoredRow, StoredSheet, read_sheet
 
@@ -152,7 +153,7 @@ def test_how_long_commands_take(tmp_path: Path) -> None:
     """By the forecasts of their runs; nothing is said of a mesh that does not fit."""
     design = drive(DRIVERS / "rating.toml")
     run = forecast(design, load_mesh("coarse")).seconds
-    rating = rating_seconds(design, load_mesh("coarse"))
+    rating = rating_seconds(plan_runs(design), load_mesh("coarse"))
     said = durations(design, "coarse", tmp_path)
     amounts = [float(one) for one in re.findall(r"about (\d+) s", said)]
     assert amounts == [pytest.approx(run, abs=10.0), pytest.approx(rating, abs=10.0)]
