@@ -28,6 +28,7 @@ from swgpar.geometry.rotation import rotated
 from swgpar.largest_stress.places import OF_REGION
 from swgpar.largest_stress.window_loads import WindowLoads
 from swgpar.largest_stress.window_regions import read_regions, tooth_nodes
+from swgpar.largest_stress.window_state import WindowState
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe
@@ -79,24 +80,6 @@ class WindowStress:
     region: str
     warning: str
     elements: int
-
-
-@dataclass(frozen=True)
-class WindowState:
-    """The equilibrium of a window, from which a finer one around the same tooth begins.
-
-    mesh : sector of the window;  first_tooth : of its sectors
-    displacement : (n_teeth, n_node, 3) mm
-    """
-
-    mesh: SectorMesh
-    first_tooth: int
-    displacement: np.ndarray
-
-    def of(self, first: int, count: int) -> np.ndarray:
-        """Displacement (count, n_node, 3) mm of the sectors from a tooth on."""
-        begin = first - self.first_tooth
-        return self.displacement[begin : begin + count]
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.largest_stress.local_problem import LocalProblem, WindowState
+from swgpar.largest_stress.local_problem import LocalProblem
+from swgpar.largest_stress.window_state import WindowState
 from swgpar.load.load_states import LoadState
 from swgpar.meshing import MeshRecipe
 from swgpar.model.drive_model import DriveModel
