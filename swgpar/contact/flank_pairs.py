@@ -105,6 +105,12 @@ class PlacedFaces:
         half = np.full((len(indices), 1), 0.5)
         return self.points(indices, half, half, np.ones_like(half))
 
+    def ends(self, chosen: np.ndarray) -> Faces:
+        """Faces (n,) with the middles of both ends along the profile as points."""
+        a = np.broadcast_to([0.0, 1.0], (len(chosen), 2)).copy()
+        half = np.full_like(a, 0.5)
+        return self.points(chosen, a, half, half)
+
 
 @dataclass
 class GapGradients:

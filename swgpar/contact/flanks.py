@@ -168,7 +168,7 @@ class FlankContact:
             return NO_KEYS
         if self.deviations is not None:
             flank_pairs.deviate(self.deviations)
-        gap, foot_point = self._gaps_at_centers(u)
+        gap, foot_point = self._gaps_of_faces(u)
         near = np.flatnonzero(gap < distances.near)
         closest = np.full(len(pairs), np.inf)
         np.minimum.at(closest, flank_pairs.faces.patch, gap)
@@ -205,12 +205,19 @@ class FlankContact:
             np.array([self.pairs[k].ring for k in self._near_pairs], dtype=np.int64),
         )
 
-    def _gaps_at_centers(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Gap (n_face,) mm at the middle of every face and its foot point (n_face, 2) mm on the
-        master."""
-        faces = self.flank_pairs.faces.centers()
-        gap, foot_point = self.kernel.gaps(faces, u, 0.5, 0.0)
-        return gap[:, 0], foot_point[:, 0]
+    def _gaps_of_faces(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Gap (n_face,) mm of every face and its foot point (n_face, 2) mm on the master: in the
+        middle, or where that lies beside the master's flank the smaller one at both ends. A tip may
+        reach past the other one by less than half of a face."""
+        placed = self.flank_pairs.faces
+        gap, foot_point = (one[:, 0] for one in self.kernel.gaps(placed.centers(), u, 0.5, 0.0))
+        beside = np.flatnonzero(np.isinf(gap))
+        if beside.size:
+            at_ends, feet = self.kernel.gaps(placed.ends(beside), u, 0.5, 0.0)
+            end = np.argmin(at_ends, axis=1)
+            rows = np.arange(len(beside))
+            gap[beside], foot_point[beside] = at_ends[rows, end], feet[rows, end]
+        return gap, foot_point
 
     def overlooked(self, pairs: list[FlankPair], u: np.ndarray, state: LoadState) -> bool:
         """Whether the last search missed pairs, or faces that are now in contact; on this rank.
@@ -221,7 +228,7 @@ class FlankContact:
             return True
         if self.flank_pairs is None or self.flank_pairs.faces is None:
             return False
-        gap, _ = self._gaps_at_centers(u)
+        gap, _ = self._gaps_of_faces(u)
         if np.delete(gap + state.flank_clearance < 0.0, self.cells.near).any():
             return True
         return self.cells.misses_lines(u, state.flank_clearance)
