@@ -177,8 +177,6 @@ def compare_variants(page: sync_api.Page, folder: Path) -> None:
     assert known and {re.sub(r"\s+", " ", row).strip() for row in rows} == known
     press(page, "3D model")
     press(page, "cancel the loaded state")
-    press(page, "compute")
-    press(page, "cancel the loaded state")
     expect(page.get_by_text("cancelled", exact=True)).to_be_visible()
     press(page, "plane model")
     press(page, "copy")
