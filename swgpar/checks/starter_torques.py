@@ -13,7 +13,7 @@ import numpy as np
 from swgpar.checks.starter import Request, usual_profile
 from swgpar.design.drive_design import DriveDesign
 
-CARRIED = {30.0: 0.04, 40.0: 0.064, 50.0: 0.14, 80.0: 0.112, 100.0: 0.1}
+CARRIED = {30.0: 0.04, 40.0: 0.064, 50.0: 0.14, 80.0: 0.112, 100.0: 0.1, 160.0: 0.096}
 """Ratio -> torque over the third power of the pitch diameter, N/mm². Cups with the default teeth,
 cam and bearing, ring gear fixed; the strengths are those that their files have. Linear between
 ratios."""
