@@ -50,6 +50,17 @@ class ModelSource(ABC):
         """Set the stepper to a loaded state of its model under another load; False where none is
         known, or where friction makes it depend on the path."""
 
+    @abstractmethod
+    def first_mesh(self, design: DriveDesign, recipe: MeshRecipe, accuracy: float) -> MeshRecipe:
+        """The mesh that a choice for an accuracy begins with, from the recipe that is asked for:
+        the one that was chosen for this drive under another load, if there is one."""
+
+    @abstractmethod
+    def keep_mesh(
+        self, design: DriveDesign, recipe: MeshRecipe, accuracy: float, chosen: MeshRecipe
+    ) -> None:
+        """A mesh was chosen for an accuracy. recipe : that was asked for"""
+
 
 class NewModels(ModelSource):
     """Builds every model anew."""
@@ -71,6 +82,14 @@ class NewModels(ModelSource):
 
     def resume(self, stepper: LoadStepper) -> bool:
         return False
+
+    def first_mesh(self, design: DriveDesign, recipe: MeshRecipe, accuracy: float) -> MeshRecipe:
+        return recipe
+
+    def keep_mesh(
+        self, design: DriveDesign, recipe: MeshRecipe, accuracy: float, chosen: MeshRecipe
+    ) -> None:
+        pass
 
 
 NEAR = 0.02
@@ -119,6 +138,7 @@ class LoadedDrives(ModelSource):
         self.most, self.keeps_windows, self.starts_near = most, keeps_windows, starts_near
         self._free: dict[str, LoadedDrive] = {}
         self._taken: dict[str, LoadedDrive] = {}
+        self._chosen: dict[str, MeshRecipe] = {}
 
     def take(self, design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> DriveModel:
         key = identity({**design.model_keys, "modelled": design.modelled_part}, recipe, None)
@@ -185,6 +205,14 @@ class LoadedDrives(ModelSource):
             transfer(nearest.model, x, stepper.model, stepper.problem.x, alike=alike)
         stepper.guides = drive.period
         return True
+
+    def first_mesh(self, design: DriveDesign, recipe: MeshRecipe, accuracy: float) -> MeshRecipe:
+        return self._chosen.get(identity(design.model_keys, recipe, accuracy), recipe)
+
+    def keep_mesh(
+        self, design: DriveDesign, recipe: MeshRecipe, accuracy: float, chosen: MeshRecipe
+    ) -> None:
+        self._chosen[identity(design.model_keys, recipe, accuracy)] = chosen
 
     def destroy(self) -> None:
         """Release all models."""

@@ -96,7 +96,9 @@ def run_drive(
             if resumed:
                 recipe = on_all(comm, lambda: load_recipe(folder / RECIPE))
             else:
-                chosen = choose_mesh(drive, recipe, options.accuracy, kept=kept)
+                first = models.first_mesh(design, recipe, options.accuracy)
+                chosen = choose_mesh(drive, first, options.accuracy, kept=kept)
+                models.keep_mesh(design, recipe, options.accuracy, chosen.model.recipe)
         model = models.take(design, recipe, comm) if chosen is None else chosen.model
         stepper = LoadStepper(model)
         recorder = (

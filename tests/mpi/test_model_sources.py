@@ -11,10 +11,12 @@ from pytest_mpi import parallel_assert
 from support.paths import RECIPE
 from support.stepping import small
 from swgpar.analysis import model_sources
+from swgpar.analysis.coarse_start import MeshedDrive
 from swgpar.analysis.model_sources import LoadedDrives
 from swgpar.analysis.run_drive import run_drive
+from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.design.drive_design import DriveDesign
-from swgpar.meshing import load_recipe
+from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.run_options import RunOptions
 
 WORLD = MPI.COMM_WORLD
@@ -69,3 +71,25 @@ def test_shared_models_give_the_results_of_each_run_alone(
     drives.destroy()
     expected = 1 if friction else 2  # half of the drive, and with its modes the whole
     parallel_assert(len(built) == expected, str(len(built)))
+
+
+def test_a_choice_begins_with_the_mesh_of_another_load(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the same drive, for the same accuracy."""
+    recipe, chosen, first = load_recipe(RECIPE), load_recipe("plane_coarse"), []
+
+    class ChoiceError(Exception):
+        """Ends a run where it chooses its mesh."""
+
+    def choose(drive: MeshedDrive, begin: MeshRecipe, *_: object, **__: object) -> None:
+        first.append(begin)
+        raise ChoiceError
+
+    monkeypatch.setattr("swgpar.analysis.run_drive.choose_mesh", choose)
+    drives = LoadedDrives()
+    loaded = with_shortcuts(small("plane", *SAMPLED, "load.torque=0.3"), recipe, levels=False)
+    drives.keep_mesh(loaded.design, recipe, 0.05, chosen)
+    for more, accuracy in ((), 0.05), ((), 0.1), (("ring_gear.rim=1.6",), 0.05):
+        options = RunOptions(recipe=recipe, accuracy=accuracy)
+        with pytest.raises(ChoiceError):
+            run_drive(small("plane", "load.torque=0.2", *SAMPLED, *more), options, drives)
+    assert first == [chosen, recipe, recipe]
