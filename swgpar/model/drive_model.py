@@ -1,5 +1,4 @@
-"""The drive as it is computed: meshes, ownership, elements, contacts, supports and solver, built by
-factories."""
+"""The drive as it is computed: meshes, ownership, elements, contacts, supports and solver."""
 
 from __future__ import annotations
 

@@ -51,7 +51,6 @@ SETTLED = 0.1
 MAX_FRICTION_ROUNDS, FRICTION_AGREEMENT = 20, 1e-3
 """Most problems with given friction bounds, and the relative agreement of the last two."""
 
-
 PETSC_REASONS = {
     NewtonVerdict.GO_ON: None,
     NewtonVerdict.CONVERGED: PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE,
