@@ -4,6 +4,7 @@ ranks."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -236,8 +237,8 @@ def test_a_state_that_fails_on_one_rank_ends_all(monkeypatch: pytest.MonkeyPatch
     """The states before it are kept."""
     points = DeviatingDrive.points
 
-    def failing(drive: DeviatingDrive, *arguments: object) -> Iterator[TurnPoint]:
-        for count, point in enumerate(points(drive, *arguments)):
+    def failing(drive: DeviatingDrive, *arguments: Any, **keys: Any) -> Iterator[TurnPoint]:
+        for count, point in enumerate(points(drive, *arguments, **keys)):
             if WORLD.rank == 1 and count == 2:
                 raise ConvergenceError("no state here")
             yield point
