@@ -287,12 +287,13 @@ class DeviatingDrive:
         state, ideal : of the ideal drive at the same place of a period
         check : whether a guess that is settled is not yet the state
         """
-        modelled: ModelledState | None = None
         problem, iterations, renamed = self.model.problem, 0, self._renamed(index)
         deviations, turned = (
             self.tables.rolled(renamed),
             renamed * self.design.kinematics.pitch_angle,
         )
+        angle, turned_output = state.angle + turned, turned / self.design.kinematics.ratio
+        modelled: ModelledState | None = None
         for start, steps in ((guess, 1), *((ideal, steps) for steps in STEPS)):
             if isinstance(start, PETSc.Vec):
                 start.copy(problem.x)
@@ -303,26 +304,25 @@ class DeviatingDrive:
                     found = start.set_x()
                     modelled = found if found.settled else None
                     if modelled is not None and not check:
-                        output = found.output_rotation + turned / self.design.kinematics.ratio
-                        angle = state.angle + turned
-                        return TurnPoint(index, angle, output, found.torque, 0, True)
+                        output = modelled.output_rotation + turned_output
+                        return TurnPoint(
+                            index, angle, output, modelled.torque, 0, by_linear_model=True
+                        )
                 result = self.model.solver.solve(state, search=False)
                 iterations += result.iterations
                 if not result.converged:
                     break
             else:
                 rotation, torque = problem.output_rotation(), torques(problem, state).wave_generator
-                output = rotation + turned / self.design.kinematics.ratio
                 difference = None
                 if modelled is not None:
                     difference = modelled.output_rotation - rotation, modelled.torque - torque
-                angle = state.angle + turned
+                output = rotation + turned_output
                 return TurnPoint(index, angle, output, torque, iterations, difference=difference)
-        angle = np.degrees(state.angle + turned)
         raise ConvergenceError(
             f"the drive with [deviations] did not converge at a wave-generator angle of "
-            f"{angle:.4g} degrees: {result.reason}, residual {result.residual:.1e} of the contact "
-            "force"
+            f"{np.degrees(angle):.4g} degrees: {result.reason}, residual {result.residual:.1e} of "
+            "the contact force"
         )
 
     def _repeated(self, point: TurnPoint, index: int) -> TurnPoint:
@@ -330,5 +330,11 @@ class DeviatingDrive:
         pitches = self._renamed(index) - self._renamed(point.index)
         turned = pitches * self.design.kinematics.pitch_angle
         output = point.output_angle + turned / self.design.kinematics.ratio
-        angle, by_model = point.wg_angle + turned, point.by_linear_model
-        return TurnPoint(index, angle, output, point.wg_torque, 0, by_model)
+        return replace(
+            point,
+            index=index,
+            wg_angle=point.wg_angle + turned,
+            output_angle=output,
+            iterations=0,
+            difference=None,
+        )

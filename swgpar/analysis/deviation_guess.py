@@ -92,7 +92,7 @@ class Balance:
     force : (n_pair,) N, of the pairs;  rotation : rad, of the output from the ideal state
     faces : numbers (n,) of the faces that are not on the cam as in the ideal state
     corrections : (n,) N, their correcting forces
-    settled : whether the faces are those that the corrections ask for
+    settled : whether the pairs are on their law, and the faces those that the corrections ask for
     """
 
     force: np.ndarray
@@ -104,8 +104,11 @@ class Balance:
 
 @dataclass(frozen=True)
 class ModelledState:
-    """What the linear model says of a state. torque : N mm, of the wave generator
-    output_rotation : rad;  settled : whether the model has found its own solution"""
+    """What the linear model says of a state.
+
+    output_rotation : rad;  torque : N mm, of the wave generator
+    settled : whether the model has found its own solution
+    """
 
     output_rotation: float
     torque: float

@@ -301,7 +301,7 @@ def build_supports(design: DriveDesign, partition: Partition, elements: Elements
         ring_coupling = DistributingCoupling(partition, ring, "outer", copies > 1)
         couplings.append(ring_coupling)
         if design.frame_is_rigid:
-            guide = ring_guide(design, ring_coupling)
+            guide = _ring_guide(design, ring_coupling)
     spline_ratio = None
     if design.dynamic_spline is not None:  # the flexible spline rotates with the dynamic one
         spline_ratio = 1.0 if output_gear == "dynamic_spline" else 0.0
@@ -322,7 +322,7 @@ def build_supports(design: DriveDesign, partition: Partition, elements: Elements
     )
 
 
-def ring_guide(design: DriveDesign, coupling: NodeMeans) -> RadialGuide:
+def _ring_guide(design: DriveDesign, coupling: NodeMeans) -> RadialGuide:
     """Guide around a rotating ring gear, which it follows where a bearing carries the output."""
     gear = design.kinematics.output_gear
     first, last = design.axial_range(gear)
