@@ -263,8 +263,8 @@ def test_the_error_holds() -> None:
     finer.destroy()
     true = abs(s1 - reference)
     print(f"s1 {s1:.2f} for {reference:.2f} MPa: error {error:.2f} for {true:.2f} MPa")
-    # with contacts on edges the error by the drive's mesh has a least value, as a share
-    assert 0.5 * true < error < max(3.0 * true, 1.01 * LEAST_WITH_EDGES * s1)
+    # the recipe is one of cup drives, whose layers below the root leave a least error
+    assert 0.5 * true < error < max(3.0 * true, 1.01 * LEAST["cup"] * s1)
 
 
 def test_the_best_mesh_is_returned_where_the_accuracy_is_out_of_reach() -> None:
