@@ -40,6 +40,37 @@ def _require(design: DriveDesign, recipe: MeshRecipe) -> None:
         require_slepc()
 
 
+def _recipe(design: DriveDesign, options: RunOptions) -> tuple[MeshRecipe, str]:
+    """The mesh recipe of a run and its name: that of the options, or that of the model."""
+    if options.recipe is not None:
+        return options.recipe, options.recipe_name
+    name = MESHES[design.drive.model]
+    return load_recipe(name), name
+
+
+def _prepared(
+    design: DriveDesign, recipe: MeshRecipe, options: RunOptions
+) -> tuple[DriveDesign, tuple[str, ...]]:
+    """The design that a run computes, and what it leaves out."""
+    if options.accuracy is not None:
+        design = with_accuracy(design, options.accuracy)
+    if options.plain:
+        return design, ()
+    shortcuts = with_shortcuts(design, recipe, levels=options.accuracy is None)
+    return shortcuts.design, shortcuts.left_out
+
+
+def keep_mesh_of(design: DriveDesign, options: RunOptions, models: ModelSource) -> None:
+    """The next choice of a mesh begins with that which an earlier run in the folder of the options
+    has chosen, as it does after that run; collective."""
+    folder, accuracy = options.out, options.accuracy
+    if folder is None or accuracy is None:
+        return
+    recipe, _ = _recipe(design, options)
+    chosen = on_all(options.comm, lambda: load_recipe(folder / RECIPE))
+    models.keep_mesh(_prepared(design, recipe, options)[0], recipe, accuracy, chosen)
+
+
 @releasing
 def run_drive(
     design: DriveDesign, options: RunOptions, models: ModelSource = NEW_MODELS
@@ -56,18 +87,11 @@ def run_drive(
     """
     begin = time.perf_counter()
     folder, comm = options.out, options.comm
-    recipe, recipe_name = options.recipe, options.recipe_name
-    if recipe is None:
-        recipe_name = MESHES[design.drive.model]
-        recipe = load_recipe(recipe_name)
+    recipe, recipe_name = _recipe(design, options)
     _require(design, recipe)
     if options.accuracy is not None:
         require_refinable(design, options.accuracy)
-        design = with_accuracy(design, options.accuracy)
-    left_out: tuple[str, ...] = ()
-    if not options.plain:
-        shortcuts = with_shortcuts(design, recipe, levels=options.accuracy is None)
-        design, left_out = shortcuts.design, shortcuts.left_out
+    design, left_out = _prepared(design, recipe, options)
     sequence, said = load_sequence(design), remarks(design)
     require_samples(sequence, [name for name in ("fatigue", "losses") if getattr(design, name)])
     needs = forecast(design, recipe)
@@ -94,7 +118,8 @@ def run_drive(
         drive, chosen = MeshedDrive(design, comm, models), None
         if options.accuracy is not None:
             if resumed:
-                recipe = on_all(comm, lambda: load_recipe(folder / RECIPE))
+                asked, recipe = recipe, on_all(comm, lambda: load_recipe(folder / RECIPE))
+                models.keep_mesh(design, asked, options.accuracy, recipe)
             else:
                 first = models.first_mesh(design, recipe, options.accuracy)
                 chosen = choose_mesh(drive, first, options.accuracy, kept=kept)

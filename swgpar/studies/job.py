@@ -61,6 +61,8 @@ def run_one(
             if options.restart and old.get("status") == "finished":
                 outcome = _finished_before(system, folder, comm, record, old)
                 if outcome is not None:
+                    if outcome.kept:
+                        system.take_over(design, options)
                     return outcome
             _make(folder, comm)
             write_from_root(comm, folder / STATUS, to_json({"status": "started", **record}))

@@ -59,6 +59,12 @@ class Drives(System[DriveDesign, "DriveResult"]):
 
         return DriveResult.of(run_drive(design, options, self.models or NEW_MODELS))
 
+    def take_over(self, design: DriveDesign, options: RunOptions) -> None:
+        from swgpar.analysis.run_drive import keep_mesh_of
+
+        if self.models is not None:
+            keep_mesh_of(design, options, self.models)
+
     def open(self, folder: Path, comm: MPI.Comm) -> DriveResult:
         from swgpar.drive_results.drive_data import open_data
         from swgpar.presentation.drive_result import DriveResult

@@ -104,6 +104,10 @@ class System(ABC, Generic[D, R]):
     def run(self, design: D, options: RunOptions) -> R:
         """Run a design; collective. Options have values as far as `options` names them."""
 
+    def take_over(self, design: D, options: RunOptions) -> None:
+        """A run of an earlier call is kept: later runs that share something with it begin as after
+        it; collective. By default nothing is shared."""
+
     @abstractmethod
     def open(self, folder: Path, comm: MPI.Comm) -> R:
         """Result of a finished run from its folder; collective, every rank reads the files."""

@@ -3,6 +3,9 @@ alone."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -16,8 +19,12 @@ from swgpar.analysis.model_sources import LoadedDrives
 from swgpar.analysis.run_drive import run_drive
 from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.design.drive_design import DriveDesign
+from swgpar.input.toml_file import to_toml
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.run_options import RunOptions
+from swgpar.studies.case import Outcome
+from swgpar.studies.job import run_one
+from swgpar.systems.drive import Drives
 
 WORLD = MPI.COMM_WORLD
 SAMPLED = ("steps.samples=2", "steps.rotation=9.0")
@@ -73,18 +80,26 @@ def test_shared_models_give_the_results_of_each_run_alone(
     parallel_assert(len(built) == expected, str(len(built)))
 
 
-def test_a_choice_begins_with_the_mesh_of_another_load(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of the same drive, for the same accuracy."""
-    recipe, chosen, first = load_recipe(RECIPE), load_recipe("plane_coarse"), []
+class ChoiceError(Exception):
+    """Ends a run where it has its first mesh."""
 
-    class ChoiceError(Exception):
-        """Ends a run where it chooses its mesh."""
+
+@pytest.fixture
+def first(monkeypatch: pytest.MonkeyPatch) -> list[MeshRecipe]:
+    """The mesh that each choice begins with, where it ends."""
+    begun: list[MeshRecipe] = []
 
     def choose(drive: MeshedDrive, begin: MeshRecipe, *_: object, **__: object) -> None:
-        first.append(begin)
+        begun.append(begin)
         raise ChoiceError
 
     monkeypatch.setattr("swgpar.analysis.run_drive.choose_mesh", choose)
+    return begun
+
+
+def test_a_choice_begins_with_the_mesh_of_another_load(first: list[MeshRecipe]) -> None:
+    """Of the same drive, for the same accuracy."""
+    recipe, chosen = load_recipe(RECIPE), load_recipe("plane_coarse")
     drives = LoadedDrives()
     loaded = with_shortcuts(small("plane", *SAMPLED, "load.torque=0.3"), recipe, levels=False)
     drives.keep_mesh(loaded.design, recipe, 0.05, chosen)
@@ -93,3 +108,26 @@ def test_a_choice_begins_with_the_mesh_of_another_load(monkeypatch: pytest.Monke
         with pytest.raises(ChoiceError):
             run_drive(small("plane", "load.torque=0.2", *SAMPLED, *more), options, drives)
     assert first == [chosen, recipe, recipe]
+
+
+@pytest.mark.parametrize("finished", [True, False])
+def test_a_choice_begins_with_the_mesh_of_an_earlier_call(
+    finished: bool, first: list[MeshRecipe], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whether that call has finished the run under the other load, or left a checkpoint of it."""
+    chosen, folder = load_recipe("plane_coarse"), tmp_path / "before"
+    folder.mkdir()
+    (folder / "recipe.toml").write_bytes(to_toml(chosen.model_dump()).encode())
+    (folder / "status.json").write_text('{"status": "finished"}' if finished else "{}")
+    kept = Outcome("finished", kept=True)
+    monkeypatch.setattr("swgpar.studies.job._finished_before", lambda *_: kept)
+    options = RunOptions(recipe=load_recipe(RECIPE), accuracy=0.05, comm=MPI.COMM_SELF)
+    system = Drives(LoadedDrives())
+    with monkeypatch.context() as patched:
+        patched.setattr("swgpar.analysis.run_drive.prepare", lambda *_, **__: True)
+        patched.setattr(LoadedDrives, "take", lambda *_: 1 / 0)  # ends the run that is continued
+        before = small("plane", *SAMPLED, "load.torque=0.3")
+        outcome = run_one(system, before, replace(options, out=folder, restart=True))
+    assert outcome.kept == finished
+    run_one(system, small("plane", *SAMPLED, "load.torque=0.2"), options)
+    assert first == [chosen]
