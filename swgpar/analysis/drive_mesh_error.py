@@ -37,9 +37,9 @@ ORDER = 2
 """Order of the displacements of a mesh."""
 
 SAFETY = 2.0
-"""Factor on the errors that two meshes show. The counts across the tooth can be too small to be
-coarsened: they leave up to half of the error of a plane drive, and the orders that are seen are 1.3
-to 2 (docs/verification/effectivity.md)."""
+"""Factor on the errors that two meshes show. Layers below the flank and counts of the ring gear are
+too small to be coarsened, and the orders that are seen are 1.3 to 2
+(docs/verification/effectivity.md)."""
 
 COMPARED_LEVELS = 2
 """Windows of which the last one shows what the mesh of the drive changes."""
@@ -60,9 +60,9 @@ root, which change such a stress by 2.5 and 1.8 % (docs/verification/effectivity
 
 LEAST_IN_RING = {"plane": 0.1, "cup": 0.3}
 """Least error in the ring gear, as a share of its largest stress; in the plane not in the tooth
-root where no contact lies on an edge. Its meshes have one element in the rim and below the root,
-which no coarser one has fewer of: more of them change these stresses by up to a tenth. In a cup
-drive there are two windows, of which the finer one misses 3 to 30 %
+root. Its meshes have one element in the rim and below the root, which no coarser one has fewer of:
+more of them change other stresses than those in the root by up to a tenth of the largest one, and
+these by 0.9 %. In a cup drive there are two windows, of which the finer one misses 3 to 30 %
 (docs/verification/effectivity.md)."""
 
 FEWEST_ALONG_FLANKS = 6
@@ -213,7 +213,7 @@ def region_errors(
             continue
         share = least
         if stress.place.body != FLEXIBLE_SPLINE:
-            if model == "cup" or region != TOOTH_ROOT or on_edge:
+            if model == "cup" or region != TOOTH_ROOT:
                 share = LEAST_IN_RING[model]
             share = max(share, _force_error(coarser, recipe, contacts, stress.place, ring_teeth))
         floor = share * _largest_apart(fine.regions, kind)

@@ -1,8 +1,8 @@
 """Error of the torsional stiffness by the mesh, from the first position on coarser ones.
 
 Two groups of counts have an error each: those that are smaller on a coarser mesh, and in the plane
-those that are too small to be: across the tooth, and in the ring gear. These are doubled on another
-mesh. The sizes of both errors are added (docs/theory/stiffness.md).
+those that are too small to be: along the flanks, in the layers below them, and in the ring gear.
+These are doubled on another mesh. The sizes of both errors are added (docs/theory/stiffness.md).
 """
 
 from __future__ import annotations

@@ -142,10 +142,12 @@ def test_ratios_are_those_of_the_counts() -> None:
 
 
 def test_few_elements_along_flanks_stay() -> None:
-    """The mesh of a plane run has as many as the contact law needs: one coarser mesh."""
+    """The mesh of a plane run has as many as the contact law needs: one coarser mesh, which shows
+    elements across the tooth too."""
     recipe = load_recipe("plane_coarse")
     (coarse,) = coarser_recipes(recipe)
     assert contact_ratio(coarse, recipe) is None and body_ratio(coarse, recipe) == RATIO
+    assert recipe.flexible_spline.tip == RATIO * coarse.flexible_spline.tip
     (cup,) = coarser_recipes(load_recipe("forces"))
     assert contact_ratio(cup, load_recipe("forces")) == RATIO
 
