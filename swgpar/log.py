@@ -34,6 +34,11 @@ from swgpar.errors import printable
 logger = logging.getLogger("swgpar")
 
 
+def ranks_text(count: int) -> str:
+    """How many ranks there are, as "2 ranks"."""
+    return f"{count} rank{'' if count == 1 else 's'}"
+
+
 def _printable(record: logging.LogRecord) -> bool:
     """Escape what a message holds of control characters: paths and values of a user may."""
     record.msg, record.args = printable(record.getMessage()), None

@@ -31,7 +31,7 @@ from swgpar.evaluation.transmission_error import period_rows
 from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress, with_angle
 from swgpar.largest_stress.wall_stress import WallStress, resolve_wall
 from swgpar.load.load_states import LoadState, Stage
-from swgpar.log import IncrementProgress, logger
+from swgpar.log import IncrementProgress, logger, ranks_text
 from swgpar.meshing.recipe_counts import body_ratio
 from swgpar.model.drive_model import DriveModel
 from swgpar.petsc import warn_of_unused_options
@@ -61,12 +61,12 @@ class DriveRun:
         self.comparison: MeshComparison | None = None
         counts = self.model.counts()
         logger.info(
-            "%d elements, %d nodes in the whole drive; %d unknowns modelled%s; %d ranks",
+            "%d elements, %d nodes in the whole drive; %d unknowns modelled%s; %s",
             self.model.n_elements(),
             sum(b["nodes_whole"] for b in counts.values()),
             sum(b["dofs"] for b in counts.values()),
             self.model.part_remark,
-            self.model.comm.size,
+            ranks_text(self.model.comm.size),
         )
         recorder.begin()
 

@@ -51,6 +51,13 @@ WHOLE_MESH = 7e-7
 """Memory (GB) for each element of the whole drive while its mesh is written: up to 670 bytes."""
 
 
+def duration_text(seconds: float) -> str:
+    """Seconds of a forecast, to one or two digits."""
+    if seconds < 95.0:
+        return f"{max(10.0 * round(seconds / 10.0), 10.0):.0f} s"
+    return f"{seconds / 60.0:.0f} min"
+
+
 @dataclass(frozen=True)
 class Forecast:
     """elements : of the whole drive;  unknowns : modelled;  memory : GB;  seconds : wall time"""

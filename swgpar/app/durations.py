@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from swgpar.analysis.forecast import forecast
+from swgpar.analysis.forecast import duration_text, forecast
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.api.runs import load_mesh
 from swgpar.design.drive_design import DriveDesign
@@ -23,16 +23,10 @@ def durations(design: DriveDesign, mesh: str, folder: Path) -> str:
     name = mesh or MESHES[design.drive.model]
     try:
         recipe = load_mesh(folder / name if name.endswith(".toml") else name)
-        said = f"run: about {_rounded(forecast(design, recipe).seconds)}"
+        said = f"run: about {duration_text(forecast(design, recipe).seconds)}"
         if design.rating is not None:
-            said += f"; rating: about {_rounded(rating_seconds(plan_runs(design), recipe))}"
+            said += f"; rating: about {duration_text(rating_seconds(plan_runs(design), recipe))}"
     except SwgparError:
         return ""
     longer = "; longer with the bearing" if design.bearing else ""
     return f"{said}, on two free cores{longer}"
-
-
-def _rounded(seconds: float) -> str:
-    if seconds < 95.0:
-        return f"{max(10.0 * round(seconds / 10.0), 10.0):.0f} s"
-    return f"{seconds / 60.0:.0f} min"

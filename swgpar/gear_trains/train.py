@@ -29,7 +29,7 @@ from swgpar.gear_trains.result import (
 )
 from swgpar.input.quantities import show
 from swgpar.input.toml_file import validate
-from swgpar.log import logger
+from swgpar.log import logger, ranks_text
 from swgpar.results.atomic import agreed, reason_of
 from swgpar.results.figure_set import Drawings, NamedFigures
 from swgpar.results.folder import SUMMARY, TRAIN_RESULTS, open_log, prepare, read_summary
@@ -128,7 +128,7 @@ def run_train(design: TrainDesign, options: RunOptions) -> TrainResult:
     )
     if folder is not None:
         write(result, folder, comm)
-    logger.info("finished in %.1f s on %d ranks", seconds, comm.size)
+    logger.info("finished in %.1f s on %s", seconds, ranks_text(comm.size))
     return _with_figures(result, comm)
 
 

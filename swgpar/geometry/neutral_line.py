@@ -10,7 +10,7 @@ line is the cam's exact offset, elsewhere it is an elastica.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 
 import numpy as np
 
@@ -38,11 +38,21 @@ make the contact exact."""
 LINE_ROUNDS, LINE_CHANGE = 12, 1e-8
 """Most steps of Newton's method, and the change of the tilt, rad, at which it ends."""
 
+ROUND_OFF = 1e-14
+"""Amplitude of the tilt, rad, below which the last harmonics are left out."""
+
 SYMMETRY = 1e-9
 """Amplitudes over the first below which a cam counts as symmetric to its major axis."""
 
 SERIES_POINTS = 1024
 """Points of the Fourier series of the curve, whose terms fall to round-off long before."""
+
+
+@cache
+def _waves(points: int, harmonics: int) -> tuple[Floats, Floats]:
+    """Cosines and sines (points, harmonics) of the harmonics of the lobes at points around one."""
+    angle = np.outer(2.0 * np.pi / points * np.arange(points), np.arange(1, harmonics + 1))
+    return np.cos(angle), np.sin(angle)
 
 
 def bent_ring(cam: Cam, inner_radius: float, radius: float, lobes: int = 2) -> np.ndarray:
@@ -61,7 +71,7 @@ def bent_ring(cam: Cam, inner_radius: float, radius: float, lobes: int = 2) -> n
     polar = np.arctan2(-outline[:, 0], outline[:, 1])
     around = np.argsort(polar)
     polar, distance = polar[around], np.hypot(*outline[around].T)
-    cosines, sines = np.cos(np.outer(theta, order)), np.sin(np.outer(theta, order))
+    cosines, sines = _waves(POINTS, HARMONICS)
     waves, energy = np.hstack([cosines, -sines]), np.tile((order**2 - 1.0) ** 2, 2)
     penalty = PENALTY * energy[0]
     amplitudes, shrink = np.zeros(2 * HARMONICS), 0.0
@@ -104,15 +114,15 @@ class _RingOnCam:
         the cam presses on.
         """
         order = float(self.lobes) * np.arange(1, LINE_HARMONICS + 1)
-        angle = np.outer(2.0 * np.pi / self.lobes * np.arange(LINE_POINTS) / LINE_POINTS, order)
-        waves, energy = np.sin(angle), order**2
+        cosines, sines = _waves(LINE_POINTS, LINE_HARMONICS)
+        waves, energy = sines, order**2
         start = bent_ring(self.cam, self.inner_radius, self.radius, self.lobes)[1:]
         first = np.zeros(LINE_HARMONICS, dtype=complex)
         # v = -int w, L = (v - w') / r of the radial displacement w: both of the imaginary part
         first[:HARMONICS] = (order - 1.0 / order)[:HARMONICS] * start / self.radius
         amplitudes, symmetric = first.real, np.abs(first.imag).max() < SYMMETRY * abs(first[0])
         if not symmetric:
-            waves, energy = np.hstack([waves, np.cos(angle)]), np.tile(energy, 2)
+            waves, energy = np.hstack([sines, cosines]), np.tile(energy, 2)
             amplitudes = np.append(amplitudes, first.imag)
         pressure, penalty = np.zeros(LINE_POINTS), LINE_PENALTY * self.lobes**2
         for _ in range(LINE_ROUNDS):
@@ -244,4 +254,5 @@ def neutral_line(
     cam, lobes = make_cam(keys, a, b), keys.lobes
     excess = max(taut_length(cam) / (2.0 * np.pi) - inner_radius, 0.0)
     tilts = share * _RingOnCam(cam, inner_radius, radius, radius + excess, lobes).tilts()
-    return NeutralLine(tuple(map(complex, tilts)), radius, radius + share * excess, lobes)
+    kept = tilts[: 1 + int(np.flatnonzero(np.abs(tilts) > ROUND_OFF).max(initial=0))]
+    return NeutralLine(tuple(map(complex, kept)), radius, radius + share * excess, lobes)

@@ -12,8 +12,12 @@ from swgpar.geometry.rotation import rotated
 from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.profiles import ToothMotion, ToothProfile
 
-FLANK_POINTS = 12
-"""On one flank, on all its segments together."""
+CHORD = 0.0025
+"""Distance of a flank from the chords that are drawn for it, over the module: a tenth of a pixel
+where seven teeth are seen."""
+
+PLACES = np.linspace(0.0, 1.0, 9)
+"""Places of a segment between which its tangent turns one way."""
 
 
 def tooth_angles(motion: ToothMotion, cam_angle: float) -> Floats:
@@ -43,9 +47,10 @@ def body_curves(
     """
     spline, ring_gear = geometry.gears["flexible_spline"], geometry.gears["ring_gear"]
     angle = 2.0 * np.pi / motion.teeth_rg * (np.arange(motion.teeth_rg) + 0.5)
-    ring = rotated(_tooth(ring_gear.profile)[None], angle[:, None]).reshape(-1, 2)
-    outer, line = ring_gear.outer_radius, motion.line
-    teeth = moved_points(line, tooth_angles(motion, cam_angle), _tooth(spline.profile), cam_angle)
+    off = CHORD * geometry.module
+    ring = rotated(_tooth(ring_gear.profile, off)[None], angle[:, None]).reshape(-1, 2)
+    outer, line, tooth = ring_gear.outer_radius, motion.line, _tooth(spline.profile, off)
+    teeth = moved_points(line, tooth_angles(motion, cam_angle), tooth, cam_angle)
     around = np.linspace(0.0, 2.0 * np.pi, 721)[:-1]
     bore = np.array([[0.0, geometry.inner_radius]])
     inside = moved_points(line, around, bore, cam_angle)
@@ -57,13 +62,18 @@ def body_curves(
     }
 
 
-def _tooth(profile: ToothProfile) -> Floats:
-    """One tooth (n, 2), mm, centred on +y, from its clockwise to its counter-clockwise root."""
-    ends = profile.breaks
-    s = np.concatenate(
-        [np.linspace(a, b, FLANK_POINTS // len(ends) + 3)[:-1] for a, b in zip(ends[:-1], ends[1:])]
-    )
-    flank = profile.point(np.append(s, ends[-1]))[::-1]
+def _tooth(profile: ToothProfile, off: float) -> Floats:
+    """One tooth (n, 2), mm, centred on +y, from its clockwise to its counter-clockwise root.
+
+    off : mm, of the flank from its chords
+    """
+    begin, length = profile.breaks[:-1], np.diff(profile.breaks)
+    angle = profile.at((begin[:, None] + length[:, None] * PLACES).ravel()).angle
+    turned = np.abs(np.diff(angle.reshape(len(begin), -1))).sum(axis=1)
+    # an arc leaves its chord by an eighth of its length times its angle
+    counts = np.maximum(np.ceil(np.sqrt(length * turned / (8.0 * off))), 1.0).astype(int)
+    s = [np.linspace(a, a + b, n + 1)[:-1] for a, b, n in zip(begin, length, counts, strict=True)]
+    flank = profile.point(np.append(np.concatenate(s), profile.length))[::-1]
     return np.concatenate([flank, (flank * [-1.0, 1.0])[::-1]])
 
 

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from swgpar.answers.answer import AnswerGroup
 from swgpar.drive_results.summary import DriveSummary
-from swgpar.log import console
+from swgpar.log import console, ranks_text
 from swgpar.presentation.answer_text import error_text, remark_text, value_text
 from swgpar.results.number_tables import Labels, number_tables
 
@@ -42,7 +42,7 @@ def print_drive(history: Mapping[str, np.ndarray], summary: DriveSummary) -> Non
     for answers in summary.groups():
         _print_answers(answers)
     console.print(
-        f"\n{summary.wall_s:.0f} s on {summary.ranks} ranks; summary.json has all answers"
+        f"\n{summary.wall_s:.0f} s on {ranks_text(summary.ranks)}; summary.json has all answers"
     )
 
 

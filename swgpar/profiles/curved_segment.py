@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -62,15 +62,29 @@ def by_pieces(spline: scipy.interpolate.BSpline) -> scipy.interpolate.PPoly:
 
 
 @dataclass(frozen=True)
+class _Cut:
+    """What a segment is cut from: the curve, the arc length (mm) and the parameter at which the
+    segment begins, its length (mm) and its share of the parameter's range."""
+
+    curve: CurvedSegment
+    first: float
+    begin: float
+    length: float
+    share: float
+
+
+@dataclass(frozen=True)
 class CurvedSegment:
     """A smooth segment x(t), 0 <= t <= 1, run through from the tip towards the root.
 
     name : str
     evaluate : `CurvePoints` at parameters (n,), exact, a little beyond 0 and 1 too; speed above 0
+    cut : from a curve whose arc lengths it has, None for a curve of its own
     """
 
     name: str
     evaluate: Callable[[Floats], CurvePoints]
+    cut: _Cut | None = field(default=None, compare=False)
 
     def part(self, first: float, last: float) -> CurvedSegment:
         """The part between two local arc lengths, mm."""
@@ -81,7 +95,7 @@ class CurvedSegment:
             curve = self.evaluate(begin + share * t)
             return replace(curve, speed=share * curve.speed, angle_rate=share * curve.angle_rate)
 
-        return CurvedSegment(self.name, evaluate)
+        return CurvedSegment(self.name, evaluate, _Cut(self, first, begin, last - first, share))
 
     def turned(self, angle: float) -> CurvedSegment:
         """The curve turned about the axis by `angle`, rad."""
@@ -104,10 +118,12 @@ class CurvedSegment:
     @property
     def length(self) -> float:
         """Arc length, mm."""
-        return float(self._table[1][-1])
+        return self.cut.length if self.cut is not None else float(self._table[1][-1])
 
     def arc_length(self, t: Floats) -> Floats:
         """Return the arc lengths (n,), mm, at the parameters `t` : (n,)."""
+        if (cut := self.cut) is not None:
+            return cut.curve.arc_length(cut.begin + cut.share * t) - cut.first
         (point, weight), ends = self._table
         panel = np.clip((t * PANELS).astype(int), 0, PANELS - 1)
         part = t - panel / PANELS
@@ -131,6 +147,8 @@ class CurvedSegment:
         """Parameters (n,) at the arc lengths `s` : (n,) mm, by Newton's method where the table is
         not exact."""
         s = np.asarray(s, dtype=np.float64)
+        if (cut := self.cut) is not None:
+            return (cut.curve.parameter(cut.first + s) - cut.begin) / cut.share
         inverse, exact = self._inverse
         t: Floats = inverse(s)
         for _ in range(0 if exact else 6):

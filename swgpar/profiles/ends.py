@@ -67,7 +67,8 @@ class _Ends:
 
     def at(self, s: float) -> tuple[complex, complex]:
         """Point, mm, and unit normal out of the tooth, at the arc length s, mm."""
-        return complex(*self.curve.point(s)[0]), complex(*self.curve.normal(s)[0])
+        at = self.curve.at(s)
+        return complex(*at.point[0]), complex(*self.curve.normals(at.angle)[0])
 
     def above(self, s: float, offset: float, radius: float) -> float:
         """How far (mm) towards the tip the point `offset` mm along the normal lies from the circle
@@ -79,7 +80,8 @@ class _Ends:
         """First arc length, mm, at which that point passes the circle towards the root; None where
         it never does."""
         s = np.unique(np.append(np.linspace(0.0, self.curve.length, SAMPLES), self.curve.breaks))
-        places = self.curve.point(s) + offset * self.curve.normal(s)
+        at = self.curve.at(s)
+        places = at.point + offset * self.curve.normals(at.angle)
         above = self.curve.sign * (np.hypot(*places.T) - radius)
         if abs(above[0]) < SAME * self.module:
             return 0.0

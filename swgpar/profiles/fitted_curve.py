@@ -18,9 +18,9 @@ from swgpar.profiles.curved_segment import (
 )
 from swgpar.profiles.flank import MISMATCH
 
-INTERVALS = 16, 32, 64, 128, 256, 512, 1024
-"""Of splines that are tried, one after the other: of a short curve with many of them tangents show
-the round-off of its points."""
+INTERVALS = 16, 1024
+"""Of the first and the last spline that is tried; each one has twice those of the one before. Of a
+short curve with many of them tangents show the round-off of its points."""
 
 BEYOND = 0.01
 """Share of the parameter's range by which a spline goes on at either end."""
@@ -30,12 +30,12 @@ CLOSE, TURNED = 1e-10, 0.25 * MISMATCH
 ends and in the middles of its intervals, at most: so that pieces still join."""
 
 
-def _spline(t: Floats, points: Floats, angle: float) -> Callable[[Floats], CurvePoints]:
-    """Spline through points (n, 2) mm at the parameters t (n,), for `CurvedSegment`.
+def _evaluated(spline: scipy.interpolate.BSpline, angle: float) -> Callable[[Floats], CurvePoints]:
+    """What `CurvedSegment` evaluates of a spline of points (n, 2) mm.
 
-    angle : rad, of its middle tangent
+    angle : rad, of a middle tangent
     """
-    pieces = by_pieces(scipy.interpolate.make_interp_spline(t, points, DEGREE))
+    pieces = by_pieces(spline)
     kinds = [pieces, pieces.derivative(1), pieces.derivative(2)]
     # derivatives have fewer coefficients
     c = [np.pad(one.c, ((k, 0), (0, 0), (0, 0))) for k, one in enumerate(kinds)]
@@ -54,21 +54,24 @@ def _spline(t: Floats, points: Floats, angle: float) -> Callable[[Floats], Curve
 def fitted(curve: CurvedSegment) -> CurvedSegment:
     """The curve as a spline through some of its points; itself where a spline is not
     `CLOSE`, as beside a cusp."""
-    angle, before = float(curve.evaluate(np.array([0.5])).angle[0]), np.inf
-    for count in INTERVALS:
-        t = np.linspace(-BEYOND, 1.0 + BEYOND, count + 1)
-        points = curve.evaluate(t).point
-        if not np.isfinite(points).all():
-            return curve
-        known = CurvedSegment(curve.name, _spline(t, points, angle))
-        between = np.array([0.0, *(t[:-1] + 0.5 * (t[1] - t[0])), 1.0])
-        exact, found = (of.evaluate(between) for of in (curve, known))
-        length = float(exact.speed.mean())
-        distance = np.linalg.norm(found.point - exact.point, axis=1).max()
-        turned = np.abs(found.angle - exact.angle).max()
-        if distance < CLOSE * length and turned < TURNED:
-            return known
-        if turned > before:  # round-off, which grows with their number
-            return curve
+    t, before = np.linspace(-BEYOND, 1.0 + BEYOND, INTERVALS[0] + 1), np.inf
+    known = curve.evaluate(t)
+    points, angle = known.point, float(known.angle[len(t) // 2])
+    while np.isfinite(points).all():
+        spline = scipy.interpolate.make_interp_spline(t, points, DEGREE)
+        between = np.concatenate([0.5 * (t[:-1] + t[1:]), [0.0, 1.0]])
+        exact = curve.evaluate(between)
+        tangent = np.exp(-1j * exact.angle) * (spline(between, nu=1) @ (1.0, 1j))
+        distance = np.linalg.norm(spline(between) - exact.point, axis=1).max()
+        turned = np.abs(np.angle(tangent)).max()
+        if distance < CLOSE * float(exact.speed.mean()) and turned < TURNED:
+            return CurvedSegment(curve.name, _evaluated(spline, angle))
+        # beyond that there is round-off alone, which grows with the number of points
+        if turned > before or len(t) > INTERVALS[1]:
+            break
         before = turned
+        # the middles are the further points of the next spline
+        order = np.argsort(np.concatenate([t, between[:-2]]), kind="stable")
+        t = np.concatenate([t, between[:-2]])[order]
+        points = np.concatenate([points, exact.point[:-2]])[order]
     return curve

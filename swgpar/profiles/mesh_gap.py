@@ -33,6 +33,9 @@ DIVISION, LEVELS = 4, 5
 SHIFTS = np.arange(DIVISION) - 0.5 * (DIVISION - 1)
 """Middles of these parts, in parts from the middle of the interval."""
 
+LEAF = 64
+"""Samples that are compared with a point at once; along a curve more of them take less time."""
+
 SPEED_MARGIN = 1.1
 """Largest speed in an interval over that in its middle."""
 
@@ -76,7 +79,8 @@ class Outline:
 
     @cached_property
     def _tree(self) -> scipy.spatial.cKDTree:
-        return scipy.spatial.cKDTree(np.column_stack([self.point.real, self.point.imag]))
+        xy = np.column_stack([self.point.real, self.point.imag])
+        return scipy.spatial.cKDTree(xy, leafsize=LEAF, compact_nodes=False)
 
     @cached_property
     def _neighbours(self) -> tuple[Indices, Indices]:

@@ -10,6 +10,7 @@ from mpi4py import MPI
 
 from swgpar import watch
 from swgpar.analysis.accuracy import not_refinable
+from swgpar.analysis.forecast import duration_text
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.summary import DriveSummary
@@ -202,9 +203,8 @@ def forecast_text(plan: RatingPlan, options: RunOptions) -> str:
         seconds = rating_seconds(plan, recipe)
     except InputError:  # every run says why it has no mesh
         return f"{count} runs"
-    text = f"{seconds / 60.0:.1f} minutes" if seconds >= 90.0 else f"{seconds:.0f} s"
     finer = "; meshes for the accuracy may be finer" if options.accuracy else ""
-    return f"{count} runs, about {text} on two free cores by the forecast{finer}"
+    return f"{count} runs, about {duration_text(seconds)} on two free cores by the forecast{finer}"
 
 
 def _words(index: int, count: int, run: PlannedRun, outcome: Outcome) -> list[str]:

@@ -95,7 +95,7 @@ def test_two_ranks_give_the_same(whole: Path, tmp_path: Path) -> None:
     done = execute(study_command(study_file(tmp_path), tmp_path / "out", ranks=2))
     assert done.returncode == 5
     assert table(tmp_path / "out") == table(whole)
-    assert "1 ranks" in (tmp_path / "out/cases" / KEPT[0] / "run.log").read_text(encoding="utf-8")
+    assert "1 rank\n" in (tmp_path / "out/cases" / KEPT[0] / "run.log").read_text(encoding="utf-8")
 
 
 def test_all_ranks_on_one_case(whole: Path, tmp_path: Path) -> None:

@@ -26,7 +26,7 @@ from swgpar.gear_trains.cascade.static_sharing import (
 from swgpar.gear_trains.cascade.tolerance_stack_up import contributions, sample_stack_up
 from swgpar.gear_trains.published import number_label
 from swgpar.gear_trains.result import Computed
-from swgpar.log import logger
+from swgpar.log import logger, ranks_text
 from swgpar.results.table import Columns
 from swgpar.vibration.sampling import Tasks, block_sizes, run_tasks
 
@@ -40,11 +40,11 @@ def compute(design: CascadeDesign, comm: MPI.Comm) -> Computed:
     """All results of a design, the same on all ranks; collective."""
     logger.info(
         "cascade gearbox: %d degrees of freedom, %d tolerance samples, %d gearboxes with errors; "
-        "%d ranks",
+        "%s",
         DOFS,
         design.tolerances.samples,
         design.population.gearboxes,
-        comm.size,
+        ranks_text(comm.size),
     )
     blocks = enumerate(block_sizes(design.population.gearboxes, BLOCK_SIZE))
     groups: Tasks = {

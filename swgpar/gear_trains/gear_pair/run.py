@@ -20,7 +20,7 @@ from swgpar.gear_trains.gear_pair.model import (
 from swgpar.gear_trains.gear_pair.monte_carlo import BLOCK_SIZE, simulate
 from swgpar.gear_trains.gear_pair.quantities import VALUES
 from swgpar.gear_trains.result import Computed
-from swgpar.log import logger
+from swgpar.log import logger, ranks_text
 from swgpar.results.table import Columns
 from swgpar.vibration.linearisation import EQUIVALENT, Criterion, linearise
 from swgpar.vibration.moments import (
@@ -41,12 +41,12 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> Computed:
     cases, seed = range(len(design.load.input)), design.gear_train.seed
     steps = design.step, design.steps, design.every
     logger.info(
-        "gear pair: %d cases, %d steps of %.3g s, %d simulations of each; %d ranks",
+        "gear pair: %d cases, %d steps of %.3g s, %d simulations of each; %s",
         len(cases),
         design.steps,
         design.step,
         design.monte_carlo.samples,
-        comm.size,
+        ranks_text(comm.size),
     )
     pairs = [(gear_pair_system(design, case), static_equilibrium(design, case)) for case in cases]
     keys = list(product(cases, EQUIVALENT))

@@ -18,7 +18,7 @@ from swgpar.gear_trains.planetary_parts.model import PlanetaryModel, ring_pitch_
 from swgpar.gear_trains.planetary_parts.natural_modes import mode_table
 from swgpar.gear_trains.published import number_label
 from swgpar.gear_trains.result import Computed
-from swgpar.log import logger
+from swgpar.log import logger, ranks_text
 from swgpar.results.table import Columns
 from swgpar.vibration.dominant_cycles import dominant_cycles
 from swgpar.vibration.moments import (
@@ -62,14 +62,13 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> Computed:
     """All results of a design, the same on all ranks; collective."""
     rims = list(dict.fromkeys([design.ring.rim, *design.ring.rims]))
     logger.info(
-        "planetary gear train: %d coordinates, %d steps of %.3g s, %d simulations, %d rims; %d "
-        "ranks",
+        "planetary gear train: %d coordinates, %d steps of %.3g s, %d simulations, %d rims; %s",
         PlanetaryModel(design).size,
         design.time.steps,
         design.end / design.time.steps,
         design.monte_carlo.samples,
         len(rims),
-        comm.size,
+        ranks_text(comm.size),
     )
     whole = _Case(design, design.ring.rim, design.time.steps)
     blocks = enumerate(block_sizes(design.monte_carlo.samples, BLOCK_SIZE))

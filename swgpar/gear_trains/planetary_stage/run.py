@@ -20,7 +20,7 @@ from swgpar.gear_trains.planetary_stage.load_sharing import (
 )
 from swgpar.gear_trains.planetary_stage.quantities import LISTED, QUANTILES, of_teeth
 from swgpar.gear_trains.result import Computed
-from swgpar.log import logger
+from swgpar.log import logger, ranks_text
 from swgpar.results.table import Columns
 from swgpar.vibration.sampling import Tasks, block_sizes, run_tasks
 
@@ -33,9 +33,8 @@ def compute(design: PlanetaryStageDesign, comm: MPI.Comm) -> Computed:
     tolerances, places = design.tolerances, design.load.positions
     samples = tolerances.samples if tolerances else 0
     logger.info(
-        "planetary stage: %d planets, %d places of the carrier, %d trains with random errors; %d "
-        "ranks",
-        *(design.planet.count, places, samples, comm.size),
+        "planetary stage: %d planets, %d places of the carrier, %d trains with random errors; %s",
+        *(design.planet.count, places, samples, ranks_text(comm.size)),
     )
     groups: Tasks = {
         "revolution": [partial(revolution, design, given_errors(design), places)],

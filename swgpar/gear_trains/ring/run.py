@@ -14,7 +14,7 @@ from swgpar.gear_trains.ring.design import MovingLoad, RingDesign
 from swgpar.gear_trains.ring.moving_load import MovingLoads, Response
 from swgpar.gear_trains.ring.natural_frequencies import distinct_frequencies
 from swgpar.gear_trains.ring.quantities import POINTS
-from swgpar.log import logger
+from swgpar.log import logger, ranks_text
 from swgpar.results.table import Columns
 from swgpar.vibration.curved_beam import BeamSection, free_frequencies
 from swgpar.vibration.dominant_cycles import dominant_cycles
@@ -36,7 +36,7 @@ BLOCK_SIZE = 50
 
 def compute(design: RingDesign, comm: MPI.Comm) -> Computed:
     """All results of a design, the same on all ranks; collective."""
-    logger.info("elastic ring: %d elements; %d ranks", design.ring.elements, comm.size)
+    logger.info("elastic ring: %d elements; %s", design.ring.elements, ranks_text(comm.size))
     frequencies, shapes = distinct_frequencies(design, design.ring.modes)
     section, number = design.beam_section(), np.arange(1, len(frequencies) + 1)
     stiffness, line_mass = section.E * section.inertia, section.density * section.area
