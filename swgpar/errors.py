@@ -55,7 +55,7 @@ class ConvergenceError(SwgparError):
 
 
 class TimeLimitError(SwgparError):
-    """A run whose time limit has passed, at its last Newton iteration."""
+    """A run whose time limit has passed, or which was stopped, at its last Newton iteration."""
 
     exit_code = 3
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
@@ -41,6 +42,9 @@ class Session:
         Whether a drive whose numbers differ by up to 2 % from those of one that is kept begins with
         its loaded state, without friction. Where more than one equilibrium exists, as with teeth
         that may engage otherwise, it finds that next to the other drive's.
+    stop : callable, optional
+        Called on rank 0 after every Newton iteration. Where it returns True the run ends with
+        `TimeLimitError`, and the session goes on.
 
     Raises
     ------
@@ -61,10 +65,12 @@ class Session:
         comm: MPI.Comm = MPI.COMM_WORLD,
         *,
         starts_near: bool = False,
+        stop: Callable[[], bool] | None = None,
     ) -> None:
         require_number("models", models)
         require(1 <= models <= MOST_MODELS, "models", models, f"1 to {MOST_MODELS}")
         self.models, self.comm, self.starts_near = int(models), comm, starts_near
+        self.stop = stop
         self._drives: LoadedDrives | None = None
 
     def run(
@@ -80,6 +86,7 @@ class Session:
     ) -> Result:
         """Run a design; collective. Arguments, result and errors are those of `swgpar.run`."""
         from swgpar.analysis.model_sources import LoadedDrives  # starts PETSc
+        from swgpar.solve.time_limit import stopped_by
         from swgpar.systems.drive import Drives
 
         if self._drives is None:
@@ -90,7 +97,8 @@ class Session:
             out, progress, accuracy=accuracy, plain=plain, overwrite=overwrite, comm=self.comm
         )
         try:
-            return run_with(given, design, mesh, Drives(self._drives))
+            with stopped_by(self.stop):
+                return run_with(given, design, mesh, Drives(self._drives))
         except SwgparError:
             raise
         except BaseException:  # a model that was interrupted in a solve is of no use

@@ -21,7 +21,7 @@ class AnswersPanel:
         self.state = state
         heading("loaded state")
         choices = {False: PLANE.name, True: SOLID.name}
-        self.model = ui.toggle(choices, value=state.is_solid, on_change=self._choose)
+        self.model = ui.toggle(choices, value=state.choices.is_solid, on_change=self._choose)
         self.model.props("dense no-caps size=sm")
         self.said = live_label().classes("text-caption")
         with ui.row().classes("items-center"):
@@ -64,7 +64,7 @@ class AnswersPanel:
         """Answers of loaded states under the torque of the design."""
         state = self.state
         self.model.set_visibility(state.variant.design.drive.model != "plane")
-        self.model.value = state.is_solid
+        self.model.value = state.choices.is_solid
         self.draw_progress()
         shown = [(one.name, state.loaded_state(one)) for one in state.shown]
         if len(shown) == 1:
@@ -86,7 +86,7 @@ class AnswersPanel:
             table(headings, rows, "loaded state", notes).classes("swgpar-loaded")
 
     def _choose(self) -> None:
-        if bool(self.model.value) != self.state.is_solid:
+        if bool(self.model.value) != self.state.choices.is_solid:
             self.state.choose_model(bool(self.model.value))
 
     def _cancel(self) -> None:

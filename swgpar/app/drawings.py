@@ -19,6 +19,7 @@ DRAWINGS = {
     "flexible_spline": TEETH,
     "ring_gear": TEETH,
     "ring_gear.housing": ("housing",),
+    "ring_gear.frame": ("housing",),
     "dynamic_spline": ("drive_pancake", *TEETH),
     "wave_generator": ("cam_sizes", "cams"),
     "wave_generator.bearing": ("bearing",),

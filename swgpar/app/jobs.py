@@ -71,6 +71,12 @@ def shell_environment() -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if not name.startswith(OF_MPI)}
 
 
+def command_line(arguments: Sequence[str], ranks: int) -> str:
+    """A command of `swgpar` on some ranks, as it is typed."""
+    start = f"mpirun -n {ranks} " if ranks > 1 else ""
+    return f"{start}swgpar {shlex.join(arguments)}"
+
+
 @dataclass
 class AppJob:
     """One command.
@@ -119,8 +125,7 @@ class AppJob:
     @property
     def typed(self) -> str:
         """The command line, as it would be typed in the workspace."""
-        ranks = f"mpirun -n {self.ranks} " if self.ranks > 1 else ""
-        return f"{ranks}swgpar {shlex.join(self.arguments)}"
+        return command_line(self.arguments, self.ranks)
 
 
 class JobQueue:

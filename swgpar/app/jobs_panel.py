@@ -6,16 +6,14 @@ from functools import partial
 
 from nicegui import ui
 
+from swgpar.app.choices import USUAL, most_ranks
 from swgpar.app.durations import durations
 from swgpar.app.jobs import AppJob, JobState
 from swgpar.app.search_panel import show_search
-from swgpar.app.state import AppState, files_of, most_ranks, recipes_of
+from swgpar.app.state import AppState, files_of, recipes_of
 from swgpar.app.tables import live_label, say
 from swgpar.errors import SwgparError
 from swgpar.results.folder import FIELD_INDEX
-
-USUAL = "usual"
-"""The mesh of a command without `--mesh`."""
 
 MESHES = (USUAL, "coarse", "forces", "medium", "full", "plane_coarse", "plane")
 """Recipes of the package that are offered; those of the folder come after them."""
@@ -47,21 +45,33 @@ class JobsPanel:
                     item = ui.item(name.upper() if name != "teeth" else "points of the teeth")
                     item.on_click(lambda name=name: self._design("export", "--format", name))
         with ui.row().classes("items-center no-wrap"):
-            meshes = [*MESHES, *recipes_of(state.workspace.folder)]
-            self.mesh = ui.select(meshes, value=USUAL, label="mesh", on_change=self.draw_durations)
+            self.meshes = [*MESHES, *recipes_of(state.workspace.folder)]
+            self.mesh = ui.select(self.meshes, value=USUAL, label="mesh")
             self.accuracy = ui.select(ACCURACIES, value="", label="accuracy")
             self.accuracy.tooltip("error of the stress at the teeth for which meshes are refined")
-            for choice in (self.mesh, self.accuracy):
-                choice.props("dense").classes("min-w-24")
-            self.ranks = ui.number("ranks", value=min(2, most_ranks()), min=1, max=most_ranks())
-            self.ranks.props("dense").classes("w-16")
+            self.ranks = ui.number("ranks", value=1, min=1, max=most_ranks())
+            for choice, width in ((self.mesh, 24), (self.accuracy, 28), (self.ranks, 16)):
+                choice.props("dense").classes(f"min-w-{width} w-{width}")
         self.lasts = live_label().classes("text-caption")
-        self.draw_durations()
+        self.draw_choices()
+        for choice in (self.mesh, self.accuracy, self.ranks):
+            choice.on_value_change(self._choose)
         self.files()
         self.said = live_label().classes("text-caption")
         with ui.column().classes("w-full swgpar-queue"):
             self.jobs()
         self.dialogs = ui.element("div")  # the queue is drawn anew while they are open
+
+    def draw_choices(self) -> None:
+        """Show what is chosen for the next jobs; a recipe that is gone is the usual mesh."""
+        chosen = self.state.choices
+        self.mesh.value = chosen.mesh if chosen.mesh in self.meshes else USUAL
+        self.accuracy.value = chosen.accuracy if chosen.accuracy in ACCURACIES else ""
+        self.ranks.value = chosen.ranks
+        self.draw_durations()
+
+    def _choose(self) -> None:
+        self.state.choose(str(self.mesh.value), str(self.accuracy.value), self._ranks())
 
     def draw_durations(self) -> None:
         """Say how long commands take on the mesh that is chosen."""
@@ -140,15 +150,12 @@ class JobsPanel:
             show_search(self.state, job)
 
     def _run(self) -> None:
-        self._design("run", *self._options())
+        self._choose()
+        self._design("run", *self.state.choices.options)
 
     def _rate(self) -> None:
-        self._design("rate", *self._options())
-
-    def _options(self) -> list[str]:
-        """Options of a run and of a rating."""
-        chosen = {"--mesh": self.mesh.value, "--accuracy": self.accuracy.value}
-        return [part for pair in chosen.items() if pair[1] not in (USUAL, "") for part in pair]
+        self._choose()
+        self._design("rate", *self.state.choices.options)
 
     def _ranks(self) -> int:
         return int(min(max(self.ranks.value or 1, 1), most_ranks()))

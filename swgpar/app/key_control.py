@@ -11,34 +11,62 @@ from swgpar.app.fields import FormField
 from swgpar.app.slider import Slider
 
 SLIDERS = 3.0
-"""A slider goes from 0 to this multiple of the value that its key has when the form is drawn."""
+"""A slider goes from 0 to this multiple of the value that its key has when it is drawn."""
+
+SMALL = 0.2
+"""Length over the module to which the slider of a length goes that is 0 when it is drawn."""
+
+WIDE = 1000.0
+"""Width of a range up to which the slider of another number goes through all of it."""
 
 STEPS = 600
 """Places of a slider."""
 
 
+def slider_range(field: FormField, module: float) -> tuple[float, float] | None:
+    """Ends of the slider of a number; None where nothing says how large a change is.
+
+    module : mm, of the design
+    """
+    if field.value > 0.0:
+        return max(0.0, field.low), min(SLIDERS * field.value, field.high)
+    if field.high - field.low <= WIDE:
+        return field.low, field.high
+    if field.unit == "mm":
+        far = max(SMALL * module, SLIDERS * abs(field.value))
+        return max(-far, field.low), min(far, field.high)
+    return None
+
+
 class KeyControl:
     """The control of one key.
 
-    field : of the design that is shown
+    field : of the design that is shown;  module : mm, of that design
     change : called with the field, a new entry, and whether its slider still moves
     """
 
     def __init__(
-        self, field: FormField, change: Callable[[FormField, Any, bool], Awaitable[None]]
+        self,
+        field: FormField,
+        module: float,
+        change: Callable[[FormField, Any, bool], Awaitable[None]],
     ) -> None:
-        self.field, self._change = field, change
+        self.field, self._module, self._change = field, module, change
         self._shown = self._moves = False
         self.slider: Slider | None = None
         with ui.element("div").classes("w-full q-mb-sm"):
             self.entry = self._make_entry()
             help_text = "; ".join(text for text in (field.text, field.allowed) if text)
-            self.entry.classes("w-full").props("dense").tooltip(help_text)
+            self.entry.classes("w-full").props("dense")
+            with self.entry:  # above: the sentence of a refusal is below
+                ui.tooltip(help_text).props('anchor="top middle" self="bottom middle"')
             self.entry.props["data-key"] = field.key
             self.entry.props["aria-description"] = help_text
             self.entry.props["aria-label"] = f"{field.key}, {field.unit}".rstrip(", ")
-            if _is_number(field) and field.value > 0.0:
-                self.slider = self._make_slider(field.value)
+            if field.kind != "switch":  # the range where nothing points, too
+                self.entry.props["hint"] = help_text
+                self.entry.props("hide-hint hide-bottom-space")
+            self.place = ui.element("div")
             self.refusal = ui.label().classes("text-negative text-caption").props("role=alert")
         self.show(field, None)
 
@@ -48,8 +76,8 @@ class KeyControl:
         value = refused[0] if refused is not None else _as_entry(field)
         if self.entry.value != value:
             self.entry.value = value
-        if self.slider is not None and _is_number(field) and not self._moves:
-            self.slider.show(field.value)
+        if _is_number(field) and not self._moves:
+            self._show_slider(field.value)
         self.refusal.text = "" if refused is None else refused[1]
         self.refusal.set_visibility(refused is not None)
         self._shown = False
@@ -68,12 +96,17 @@ class KeyControl:
         entry.on("change", lambda event: self._entered(event.args))
         return entry
 
-    def _make_slider(self, value: float) -> Slider:
-        high, name = min(SLIDERS * value, self.field.high), f"slider of {self.field.key}"
-        step = 1.0 if self.field.kind == "whole number" else high / STEPS
-        slider = Slider(max(0.0, self.field.low), high, step, name, self._slid)
-        slider.props["data-slider"] = self.field.key
-        return slider
+    def _show_slider(self, value: float) -> None:
+        """Put the slider to a value; one that does not reach it goes further then."""
+        if self.slider is None or not self.slider.low <= value <= self.slider.high:
+            if (ends := slider_range(self.field, self._module)) is None:
+                return
+            self.place.clear()
+            step = 1.0 if self.field.kind == "whole number" else (ends[1] - ends[0]) / STEPS
+            with self.place:
+                self.slider = Slider(*ends, step, f"slider of {self.field.key}", self._slid)
+            self.slider.props["data-slider"] = self.field.key
+        self.slider.show(value)
 
     async def _changed(self) -> None:
         if not self._shown:

@@ -6,7 +6,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from swgpar.design.drive_design import DriveDesign
@@ -96,9 +95,9 @@ PLANE = StateModel("plane model", "plane_coarse", plane_table)
 SOLID = StateModel("3D model", "coarse", solid_table)
 
 
-def solve_state(table: dict[str, Any], mesh: MeshLike) -> ShownState:
+def solve_state(table: dict[str, Any], mesh: MeshLike, session: Session) -> ShownState:
     """The state of a design that `StateModel.table` gives; failures are reasons. States of one
-    process share what does not change."""
+    session share what does not change."""
     from swgpar.api.runs import load_design  # PETSc starts in the worker alone
     from swgpar.drive_results.drive_data import DriveData
     from swgpar.errors import SwgparError
@@ -106,7 +105,7 @@ def solve_state(table: dict[str, Any], mesh: MeshLike) -> ShownState:
 
     begin = time.perf_counter()
     try:
-        result = _session().run(load_design(table), mesh, progress=False)
+        result = session.run(load_design(table), mesh, progress=False)
         assert isinstance(result, DriveData)
         outline = loaded_outline(result)
     except SwgparError as error:
@@ -130,8 +129,8 @@ def _shown() -> tuple[AnswerKind, ...]:
     return (*stresses, FLANK_PRESSURE, EDGE_FORCE, PAIRS, FORCE_SHARE)
 
 
-@cache
-def _session() -> Session:
+def open_session(stop: Callable[[], bool] | None = None) -> Session:
+    """A session for loaded states. stop : see `Session`"""
     from swgpar.api.session import Session
 
-    return Session(models=KEPT_MODELS, starts_near=True)
+    return Session(models=KEPT_MODELS, starts_near=True, stop=stop)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import shlex
 from functools import partial
 
 from nicegui import events, ui
 
 from swgpar.app.answers_panel import AnswersPanel
+from swgpar.app.choices import USUAL
 from swgpar.app.drawings import drawings_of, show_drawings
 from swgpar.app.fields import form_fields, is_optional, missing_sections
+from swgpar.app.jobs import command_line
 from swgpar.app.jobs_panel import JobsPanel
 from swgpar.app.key_control import KeyControl
 from swgpar.app.new_drive import NewDrive
@@ -116,15 +117,18 @@ class Page:
         ui.notify(f"written {path.name}", type="positive")
 
     def _command(self) -> str:
-        name = shlex.quote(f"variants/{self.state.variant.name}.toml")
-        return f"swgpar run {name} --mesh coarse --out results/{self.state.variant.name}"
+        name, choices = self.state.variant.name, self.state.choices
+        arguments = ["run", f"variants/{name}.toml", *choices.options, "--out", f"results/{name}"]
+        return command_line(arguments, choices.ranks)
 
     def _python(self) -> str:
-        name = self.state.variant.name
+        name, choices = self.state.variant.name, self.state.choices
+        mesh = "" if choices.mesh == USUAL else f' mesh="{choices.mesh}",'
+        accuracy = f" accuracy={choices.accuracy}," if choices.accuracy else ""
         return (
             "import swgpar\n\n"
             f'design = swgpar.load_design("variants/{name}.toml")\n'
-            f'result = swgpar.run(design, mesh="coarse", out="results/{name}")\n'
+            f'result = swgpar.run(design,{mesh}{accuracy} out="results/{name}")\n'
         )
 
     def _clip(self, text: str) -> None:
@@ -175,7 +179,7 @@ class Page:
             button.props["aria-label"] = f"drawing of [{section}]"
         for field in form_fields(design):
             if field.section == section:
-                self.controls[field.key] = KeyControl(field, self.state.set)
+                self.controls[field.key] = KeyControl(field, design.drive.module, self.state.set)
         if is_optional(design, section):
             step = partial(self._without, section)
             ui.button("leave out this section", on_click=step).props("flat dense no-caps")
@@ -211,6 +215,10 @@ class Page:
     def draw_progress(self) -> None:
         """Draw where the computation of a loaded state is."""
         self.answers.draw_progress()
+
+    def draw_choices(self) -> None:
+        """Draw what is chosen for jobs."""
+        self.jobs.draw_choices()
 
     def draw_jobs(self) -> None:
         """Draw the queue, and the sheet that a job may have written."""

@@ -24,6 +24,9 @@ COLOURS = {
 BREAK = np.full((1, 2), np.nan)
 """Between two curves of a body."""
 
+OTHER_SIZE = np.log(1.25)
+"""Logarithm of the ratio of two sizes from which designs are not seen in the same view."""
+
 OVERLAP, TOUCHING, APART = "#c0182b", "#e6c229", "#2f7fb8"
 """Colours of flanks that overlap, and of smallest and largest gaps that are marked."""
 
@@ -36,20 +39,20 @@ def section_figure(
 
     angle_deg : of the cam, counter-clockwise; the ring gear rests
 
-    The view is that of the teeth at the lobe next to +y, and stays where a user has moved it.
+    The view is that of the teeth at the lobe next to +y, or of its pairs of flanks under load. It
+    stays where a user has moved it, for designs of about the same size.
     """
     angle = float(np.radians(angle_deg))
     bodies = body_curves(design.geometry, design.tooth_motion(), design.cam(), angle)
     traces = [_body(name, curves) for name, curves in bodies.items()]
     marks = _loads(loaded) if loaded else [*_overlaps(design, angle), _gaps(design, angle_deg)]
-    width = 7.0 * np.pi * design.drive.module
-    top = design.major_semi_axis + design.flexible_spline.rim
-    x, y = -top * np.sin(angle), top * np.cos(angle)
+    (x, y), width = _view(design, angle, loaded)
+    sizes = design.drive.module, design.major_semi_axis
     lines = {"showgrid": False, "zeroline": False, "title": {"text": "mm"}}
     return {
         "data": [*traces, *marks],
         "layout": {
-            "uirevision": "kept",
+            "uirevision": f"{loaded is None} {np.round(np.log(sizes) / OTHER_SIZE)}",
             "dragmode": "pan",
             "margin": {"l": 45, "r": 10, "t": 10, "b": 40},
             "showlegend": False,
@@ -66,6 +69,19 @@ def section_figure(
         },
         "config": {"scrollZoom": True, "displaylogo": False, "responsive": True},
     }
+
+
+def _view(design: DriveDesign, angle: float, loaded: LoadedOutline | None) -> tuple[Floats, float]:
+    """Middle (2,) mm and width (mm) of what is shown first. angle : rad, of the cam"""
+    usual, top = 7.0 * np.pi * design.drive.module, design.major_semi_axis
+    top += design.flexible_spline.rim
+    if loaded is not None:
+        place = loaded.pairs.place
+        lobe = np.abs(np.arctan2(place[:, 0], place[:, 1])) < np.pi / design.wave_generator.lobes
+        if lobe.any():
+            low, high = place[lobe].min(axis=0), place[lobe].max(axis=0)
+            return 0.5 * (low + high), max(usual, 1.3 * float(high[0] - low[0]))
+    return np.array([-top * np.sin(angle), top * np.cos(angle)]), usual
 
 
 def _body(name: str, curves: list[Floats]) -> dict[str, Any]:

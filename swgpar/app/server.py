@@ -10,6 +10,7 @@ from nicegui import app, ui
 
 from swgpar.api.designs import new
 from swgpar.app.access import TokenGate
+from swgpar.app.choices import read_choices
 from swgpar.app.drawings import ADDRESS, FOLDER
 from swgpar.app.jobs import JobQueue
 from swgpar.app.page import Page
@@ -65,6 +66,7 @@ def open_workspace(source: Path) -> Workspace:
         workspace.shown = source.stem
     else:
         workspace.open_all()
+        workspace.show_again(read_choices(folder))
     if not workspace.variants:
         workspace.add("drive", new(ratio=50.0, diameter=50.0, torque=15.0))
         workspace.keep()

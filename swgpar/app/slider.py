@@ -27,6 +27,7 @@ class Slider(ui.element):
         moved: Callable[[float, bool], Awaitable[None]],
     ) -> None:
         super().__init__("input")
+        self.low, self.high = low, high
         self._place = low  # in the browser
         self.props["type"], self.props["aria-label"] = "range", name
         self.props["min"], self.props["max"], self.props["step"] = low, high, step

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
-import os
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Protocol
 
 from swgpar.api.runs import load_mesh
+from swgpar.app.choices import read_choices
 from swgpar.app.fields import FormField
 from swgpar.app.jobs import AppJob, JobQueue
 from swgpar.app.loaded_states import PLANE, SOLID, ShownState, StateModel
@@ -37,6 +38,9 @@ class Window(Protocol):
     def draw_progress(self) -> None:
         """Draw where the computation of a loaded state is."""
 
+    def draw_choices(self) -> None:
+        """Draw what is chosen for jobs."""
+
     def draw_jobs(self) -> None:
         """Draw the queue, and what follows from its results."""
 
@@ -48,7 +52,7 @@ class AppState:
     """What all windows of the app show.
 
     workspace : variants;  queue : jobs;  workers : of loaded states, by their models
-    is_solid : whether the loaded states of drives in 3D are wanted, beside those of plane models
+    choices : beside the designs
     angle_deg : of the cam;  plays : whether it turns;  loaded : whether the section shows the
     loaded state in place of gaps
     refused : entries that were refused and their sentences, by their keys
@@ -58,7 +62,7 @@ class AppState:
     def __init__(self, workspace: Workspace, queue: JobQueue) -> None:
         self.workspace, self.queue = workspace, queue
         self.workers = {model: StateWorker(model) for model in (PLANE, SOLID)}
-        self.is_solid = False
+        self.choices = read_choices(workspace.folder)
         self.angle_deg, self.plays, self.loaded = 0.0, False, False
         self.refused: dict[str, tuple[Any, str]] = {}
         self.windows: list[Window] = []
@@ -77,7 +81,7 @@ class AppState:
 
     def model_of(self, variant: Variant) -> StateModel:
         """Model whose loaded state is shown of a variant; a plane drive has no other."""
-        return SOLID if self.is_solid and variant.design.drive.model != "plane" else PLANE
+        return SOLID if self.choices.is_solid and variant.design.drive.model != "plane" else PLANE
 
     @property
     def worker(self) -> StateWorker:
@@ -97,9 +101,25 @@ class AppState:
 
     def choose_model(self, is_solid: bool) -> None:
         """Show loaded states of drives in 3D, or of plane models."""
-        self.is_solid = is_solid
+        self.choices.is_solid = is_solid
+        self.remember()
         self.want_states()
         self.draw_states()
+
+    def choose(self, mesh: str, accuracy: str, ranks: int) -> None:
+        """Choose for the next jobs; see `Choices`."""
+        chosen = replace(self.choices, mesh=mesh, accuracy=accuracy, ranks=ranks)
+        if chosen != self.choices:
+            self.choices = chosen
+            self.remember()
+            for window in self.windows:
+                window.draw_choices()
+
+    def remember(self) -> None:
+        """Keep the choices, and which variants are shown, for the next server."""
+        workspace = self.workspace
+        self.choices.shown, self.choices.beside = workspace.shown, workspace.beside
+        self.choices.keep(workspace.folder)
 
     async def set(self, field: FormField, entry: Any, moves: bool = False) -> None:
         """Take over an entry of the form; a refused one stays with its sentence.
@@ -140,6 +160,11 @@ class AppState:
         await asyncio.sleep(SENT)
         if keeps:
             self.workspace.keep()
+        if (self.choices.shown, self.choices.beside) != (
+            self.workspace.shown,
+            self.workspace.beside,
+        ):
+            self.remember()
         self.want_states()
         for window in self.windows:
             window.draw_design()
@@ -193,11 +218,6 @@ class AppState:
         out = f"results/{self.variant.name}_{number}"
         arguments = [command, name, *options, "--out", out]
         return self.queue.add(arguments, out, ranks, self.variant.name)
-
-
-def most_ranks() -> int:
-    """Ranks of a job: the cores of this machine."""
-    return os.cpu_count() or 1
 
 
 def files_of(folder: Path, section: str) -> list[Path]:

@@ -13,12 +13,20 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-from swgpar.app.loaded_states import ShownState, StateModel, solve_state
+from swgpar.app.loaded_states import ShownState, StateModel, open_session, solve_state
 from swgpar.design.drive_design import DriveDesign
 from swgpar.results.atomic import to_json
 
 KEPT = 50
 """States that are kept: undo and a change of the variant show them at once."""
+
+STALE = 1.5
+"""Seconds after which a state is given up whose design is not shown any more: one that is nearly
+there is a start for the next one."""
+
+PATIENCE = 10.0
+"""Seconds in which a computation ends that was given up; else its process is ended, and the next
+one begins without what this one knows."""
 
 NICE = 5
 """Steps by which the priority of the process is below that of the server."""
@@ -26,19 +34,24 @@ NICE = 5
 
 @dataclass
 class _Running:
-    """The state that is computed. begun : s of time.monotonic;  line : last one of the log"""
+    """The state that is computed.
+
+    begun, given_up : s of time.monotonic, 0 of one that is not given up;  line : last one of the
+    log
+    """
 
     key: str
     begun: float
     line: str = ""
+    given_up: float = 0.0
 
 
 class StateWorker:
     """Computes states of one model of the designs that are shown, one at a time, and keeps the last
     ones.
 
-    A design that is not shown any more when its turn comes is left out. The process begins with the
-    first design, and again after it was ended.
+    A design that is not shown any more when its turn comes is left out, and its state is given up.
+    The process begins with the first design, and stays warm.
     """
 
     def __init__(self, model: StateModel) -> None:
@@ -65,6 +78,8 @@ class StateWorker:
         """For how long the state is computed, and where the run is; empty without one."""
         if self._running is None:
             return ""
+        if self._running.given_up:
+            return "after the one that is given up"
         seconds = f"for {time.monotonic() - self._running.begun:.0f} s"
         return f"{seconds}: {self._running.line}" if self._running.line else seconds
 
@@ -85,9 +100,9 @@ class StateWorker:
         self.look()
 
     def cancel(self) -> None:
-        """End the process; the designs that are shown are computed after a change or `go_on`."""
+        """Give up the state; the designs that are shown are computed after a change or `go_on`."""
         self._cancelled.update(self._missing)
-        self.close()
+        self._give_up()
 
     def go_on(self) -> None:
         """Compute what was cancelled."""
@@ -97,11 +112,21 @@ class StateWorker:
     def look(self) -> bool:
         """Take over what has been computed, and begin what is asked for; whether there is a new
         state."""
-        new = self._receive()
-        missing = self._missing
+        new, now = self._receive(), time.monotonic()
+        missing, running = self._missing, self._running
+        if running is not None and running.given_up and now > running.given_up + PATIENCE:
+            self.close()
+        elif running is not None and running.key not in missing and now > running.begun + STALE:
+            self._give_up()
         if self._running is None and missing:
             self._begin(missing[0])
         return new
+
+    def _give_up(self) -> None:
+        """Let the computation end after its present Newton iteration."""
+        if self._running is not None and self._pipe is not None and not self._running.given_up:
+            self._running.given_up = time.monotonic()
+            self._pipe.send(None)
 
     def close(self) -> None:
         """End the process."""
@@ -132,7 +157,8 @@ class StateWorker:
                 if isinstance(found, str):
                     self._running.line = found
                 else:
-                    self._keep(self._running.key, found)
+                    if found.answers or not self._running.given_up:
+                        self._keep(self._running.key, found)
                     self._running, new = None, True
         except (EOFError, OSError):
             if self._running is not None:
@@ -166,13 +192,16 @@ def _compute(pipe: Connection, mesh: str) -> None:
     threading.Thread(target=_end_with_the_server, daemon=True).start()
     logger = logging.getLogger("swgpar")
     logger.addHandler(_Lines(pipe))
+    # whatever comes while a state is computed gives it up
+    session = open_session(stop=pipe.poll)
     while True:
         try:
-            table = pipe.recv()
+            while (table := pipe.recv()) is None:
+                pass
         except EOFError:
             return
         try:
-            state = solve_state(table, mesh)
+            state = solve_state(table, mesh, session)
         except Exception as error:  # a fault of the program must not cost the next state
             state = ShownState((), 0.0, f"{type(error).__name__}: {error}")
         pipe.send(state)

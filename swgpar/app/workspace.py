@@ -11,6 +11,7 @@ from typing import Any
 
 from swgpar.api.ratings import load_rated_design
 from swgpar.api.runs import load_design
+from swgpar.app.choices import Choices
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
 from swgpar.input.commented_file import commented_toml
@@ -171,6 +172,12 @@ class Workspace:
                 with suppress(InputError):
                     self.open(path)
         self.shown = min(self.variants, default="")
+
+    def show_again(self, choices: Choices) -> None:
+        """Show the variants that an earlier server has shown last."""
+        if choices.shown in self.variants:
+            self.shown = choices.shown
+            self.beside = choices.beside if choices.beside in self.variants else ""
 
     def save(self, *, overwrite: bool = False) -> Path:
         """Write the variant that is shown to NAME.toml. Raises OutputError where there is such a

@@ -18,7 +18,7 @@ from swgpar.solve.active_set_cycles import (
 )
 from swgpar.solve.discrete_problem import DiscreteProblem, ResidualInfo
 from swgpar.solve.solve_state import NewtonSettings, Phase, SolveState
-from swgpar.solve.time_limit import passed
+from swgpar.solve.time_limit import ending
 
 SOFT_TOLERANCE = 0.03
 """Residual over contact force at which a run with softened contact ends. What it leaves is less
@@ -71,7 +71,7 @@ class Decision:
     search_is_outdated : nodes have moved far since the last contact search
     goal : N, residual at which the iteration ends at the latest; None where it has not been asked
     for
-    time_limit : s, once it has passed
+    ending : why the run ends now, empty where it goes on
     """
 
     verdict: NewtonVerdict
@@ -79,7 +79,7 @@ class Decision:
     cycles: bool = False
     search_is_outdated: bool = False
     goal: float | None = None
-    time_limit: float | None = None
+    ending: str = ""
 
 
 class ConvergenceTest:
@@ -109,9 +109,8 @@ class ConvergenceTest:
 
         descending : the line search descends already;  bounded : flanks may touch, so are steps
         """
-        time_limit = passed(self.problem.partition.comm)
-        if time_limit is not None:
-            return Decision(NewtonVerdict.OUT_OF_TIME, time_limit=time_limit)
+        if words := ending(self.problem.partition.comm):
+            return Decision(NewtonVerdict.OUT_OF_TIME, ending=words)
         if last.collapsed or not np.isfinite(norm):
             return Decision(NewtonVerdict.COLLAPSED)
         ratio, softened, rtol = state.residual, state.phase is Phase.SOFTENED, self.settings.rtol

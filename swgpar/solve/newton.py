@@ -200,7 +200,7 @@ class NewtonSolver:
 
     def _act(self, decision: Decision, its: int) -> None:
         """Do what has been decided after Newton iteration `its`, before the next one."""
-        self.state.time_limit = decision.time_limit
+        self.state.ending = decision.ending
         self.state.outdated_search = decision.search_is_outdated
         if decision.goal is not None:
             self.system.set_goal(decision.goal)
@@ -251,8 +251,8 @@ class NewtonSolver:
             state.max_iterations = min(max_iterations, state.max_iterations)
         while state.result is None:
             status = self._iterate(state)
-            if state.time_limit is not None:
-                raise TimeLimitError(state.time_limit_text())
+            if state.ending:
+                raise TimeLimitError(state.ending_text())
             if status is IterationStatus.FAILED:
                 self._after_failure(state)
             elif status is IterationStatus.SLOW:

@@ -106,7 +106,7 @@ class SolveState:
     outdated_search : whether the nodes have moved far since the last contact search
     slow : whether contact spreads slowly;  softened : whether contacts are or were softened
     renewed : whether cells were placed anew since the last augmentation
-    visited : active sets of the present run;  time_limit : s, once it has passed
+    visited : active sets of the present run;  ending : why the run ends now
     """
 
     load_state: LoadState
@@ -128,7 +128,7 @@ class SolveState:
     breaker: CycleBreaker = field(default_factory=CycleBreaker)
     before_augmentation: AcceptableState | None = None
     result: SolveResult | None = None
-    time_limit: float | None = None
+    ending: str = ""
 
     @property
     def cells_may_be_stale(self) -> bool:
@@ -159,12 +159,11 @@ class SolveState:
             f"Newton iteration {iteration}, residual {self.residual:.1e}"
         )
 
-    def time_limit_text(self) -> str:
-        """The sentence for a time limit that has passed."""
+    def ending_text(self) -> str:
+        """The sentence for a run that ends here."""
         here = self.load_state
         return (
-            f"the time limit of {self.time_limit:g} s (solver.time_limit) has passed in step "
-            f"{here.step} ({here.stage.label}) at a wave-generator angle of "
+            f"{self.ending} in step {here.step} ({here.stage.label}) at a wave-generator angle of "
             f"{np.degrees(here.angle):.4g} degrees, after {self.iterations} Newton iterations, "
             f"residual {self.residual:.1e} of the contact force"
         )

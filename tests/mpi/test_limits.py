@@ -13,7 +13,7 @@ import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import NO_SHORTCUTS, PLANE, SHORT
 from swgpar.errors import ConvergenceError, TimeLimitError
-from swgpar.solve.time_limit import limited, passed
+from swgpar.solve.time_limit import ending, limited, stopped_by
 
 COMM = MPI.COMM_WORLD
 
@@ -33,7 +33,7 @@ def test_a_time_limit_ends_a_run() -> None:
     )
     with pytest.raises(TimeLimitError, match=words):
         swgpar.run(design(time_limit=1e-6), RECIPE)
-    assert passed(COMM) is None
+    assert ending(COMM) == ""
 
 
 @pytest.mark.parallel([1, 2])
@@ -60,12 +60,26 @@ def test_a_run_continues_with_another_limit(tmp_path: Path) -> None:
 @pytest.mark.parallel([1, 2])
 def test_limits_of_time_end_with_their_block() -> None:
     with limited(1e6):
-        assert passed(COMM) is None
+        assert ending(COMM) == ""
         with limited(0.0):
-            assert passed(COMM) == 0.0
-        assert passed(COMM) is None
-    with limited(None):
-        assert passed(COMM) is None
+            assert "limit of 0 s" in ending(COMM)
+        assert ending(COMM) == ""
+    with limited(None), stopped_by(lambda: True):
+        assert ending(COMM) == "the run was stopped"
+    assert ending(COMM) == ""
+
+
+@pytest.mark.parallel([1, 2])
+def test_a_session_goes_on_after_a_run_that_was_stopped() -> None:
+    """It keeps no state of that run."""
+    answers = iter([False, False, True])
+    stop = lambda: next(answers, False)  # noqa: E731
+    with swgpar.Session(stop=stop) as session:
+        with pytest.raises(TimeLimitError, match="the run was stopped in step 1"):
+            session.run(design(), RECIPE)
+        found = session.run(design(), RECIPE)
+    alone = swgpar.run(design(), RECIPE)
+    assert found.history["fs_s1"] == pytest.approx(alone.history["fs_s1"], rel=1e-9)
 
 
 def test_the_default_is_far_from_what_drives_need() -> None:

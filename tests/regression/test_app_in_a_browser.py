@@ -19,7 +19,7 @@ import pytest
 
 import swgpar
 from support.paths import DESIGN, RECIPE
-from swgpar.app.loaded_states import PLANE, solve_state
+from swgpar.app.loaded_states import PLANE, open_session, solve_state
 from swgpar.design.drive_design import DriveDesign
 
 CHROMIUM = shutil.which("chromium")
@@ -137,7 +137,7 @@ def plane_answers(path: Path) -> set[str]:
     """Answers of the plane model of a design as the page shows them."""
     design = swgpar.load_design(path)
     assert isinstance(design, DriveDesign)
-    state = solve_state(PLANE.table(design), PLANE.mesh)
+    state = solve_state(PLANE.table(design), PLANE.mesh, open_session())
     return {
         f"{one.text} {one.place} {one.value:.4g} {one.unit}".replace("  ", " ").strip()
         for one in state.answers

@@ -28,7 +28,14 @@ from swgpar.app.durations import durations
 from swgpar.app.fields import FormField, form_fields, is_optional, missing_sections
 from swgpar.app.flank_gaps import NEAR, flank_gaps
 from swgpar.app.jobs import AppJob, JobQueue, JobState, shell_environment
-from swgpar.app.loaded_states import PLANE, SOLID, ShownState, plane_table, solve_state
+from swgpar.app.loaded_states import (
+    PLANE,
+    SOLID,
+    ShownState,
+    open_session,
+    plane_table,
+    solve_state,
+)
 from swgpar.app.search_plot import EVALUATION, pair_figure, parallel_figure
 from swgpar.app.section_panel import TeethPicture
 from swgpar.app.section_plot import section_figure
@@ -481,7 +488,7 @@ def largest_distance(state: ShownState, design: DriveDesign) -> float:
 def test_the_loaded_state_is_that_of_the_interface() -> None:
     """Largest tension, balance of shares, and forces of the pairs, in the whole drive."""
     table = plane_table(drive(DESIGN))
-    state = solve_state(table, PLANE.mesh)
+    state = solve_state(table, PLANE.mesh, open_session())
     assert state.reason == "" and state.outline is not None
     values = {one.name: one.value for one in state.answers}
     outline = state.outline
@@ -497,7 +504,7 @@ def test_the_loaded_state_is_that_of_the_interface() -> None:
 def test_the_loaded_state_in_3d_is_that_of_the_interface() -> None:
     """Answers and their places; the picture has the nodes at mid-width."""
     table = SOLID.table(drive())
-    state, result = solve_state(table, RECIPE), swgpar.run(table, RECIPE)
+    state, result = solve_state(table, RECIPE, open_session()), swgpar.run(table, RECIPE)
     assert state.reason == "" and state.outline is not None
     known = {one.name: one for one in result.summary.answers()}
     assert {"largest.fs_s1", "largest.fs_vm", "sharing.pairs"} <= {
