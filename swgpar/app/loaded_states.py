@@ -131,6 +131,7 @@ def _shown() -> tuple[AnswerKind, ...]:
 
 def open_session(stop: Callable[[], bool] | None = None) -> Session:
     """A session for loaded states. stop : see `Session`"""
+    from swgpar.analysis import run_drive  # noqa: F401  (here, not within the first state)
     from swgpar.api.session import Session
 
     return Session(models=KEPT_MODELS, starts_near=True, stop=stop)

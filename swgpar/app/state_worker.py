@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import logging
 import os
 import threading
@@ -194,6 +195,7 @@ def _compute(pipe: Connection, mesh: str) -> None:
     logger.addHandler(_Lines(pipe))
     # whatever comes while a state is computed gives it up
     session = open_session(stop=pipe.poll)
+    gc.freeze()  # each run looks for what nobody refers to any more, but not among all modules
     while True:
         try:
             while (table := pipe.recv()) is None:
