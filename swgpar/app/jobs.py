@@ -147,6 +147,10 @@ class JobQueue:
         """Whether a job runs."""
         return any(job.state == JobState.RUNS for job in self.jobs)
 
+    def is_last(self, job: AppJob) -> bool:
+        """Whether no later job has gone on with its results."""
+        return all(one.out != job.out for one in self.jobs if one.number > job.number)
+
     @property
     def next_number(self) -> int:
         """Number of the next job."""

@@ -132,7 +132,7 @@ class JobsPanel:
                     ui.link(path.name, f"/{job.out}/{path.name}").props("download")
             if job.state in (JobState.WAITS, JobState.RUNS):
                 ui.button("cancel", on_click=lambda: self._cancel(job)).props("flat dense")
-            elif job.continued and job.state != JobState.FINISHED:
+            elif job.continued and job.state != JobState.FINISHED and queue.is_last(job):
                 ui.button("continue", on_click=lambda: self._go_on(job)).props("flat dense")
 
     def _view(self, job: AppJob) -> None:

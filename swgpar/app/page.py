@@ -61,7 +61,7 @@ class Page:
     def header(self) -> None:
         """Variants, undo, redo, save, and what can be copied."""
         for choice in (self.variant, self.beside):
-            choice.props("dense dark outlined").classes("min-w-24")
+            choice.props("dense dark outlined color=white").classes("min-w-24")
         self._draw_names()
         for name, step in (
             ("undo", lambda: self.state.change(lambda variant: variant.undo())),
@@ -158,6 +158,17 @@ class Page:
                 dialog = SectionDialog(self.state, section)
                 item = ui.item(f"[{section.name}]", on_click=dialog.open)
                 item.tooltip(section.text)
+        self._draw_refused()
+
+    def _draw_refused(self) -> None:
+        """Files of the folder that are no designs, and why."""
+        refused = self.state.workspace.refused
+        if not refused:
+            return
+        title = f"not opened: {', '.join(refused)}"
+        with ui.expansion(title).classes("w-full text-caption"):
+            for name, sentence in refused.items():
+                ui.label(f"{name}: {sentence}").classes("text-negative text-caption swgpar-text")
 
     def _open(self, name: str, event: events.ValueChangeEventArguments) -> None:
         """Unfold or fold a section. Its keys are drawn when it is unfolded first: the browser draws

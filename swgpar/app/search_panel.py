@@ -9,6 +9,7 @@ from nicegui import events, ui
 from swgpar.app.jobs import AppJob
 from swgpar.app.search_plot import EVALUATION, pair_figure, parallel_figure, words
 from swgpar.app.state import AppState
+from swgpar.app.tables import live_label
 from swgpar.app.workspace import drive_of
 from swgpar.errors import SwgparError
 
@@ -57,7 +58,10 @@ class SearchDialog:
                 texts = {n: f"{n}: {words(tried, n)}" for n in numbers}
                 with ui.row().classes("items-center"):
                     chosen = ui.select(texts, value=numbers[0], label="evaluation")
+                    chosen.classes("min-w-48")
                     ui.button("open", on_click=lambda: self._open(chosen.value)).props("dense")
+                reason = live_label().classes("text-caption")
+                reason.bind_text_from(chosen, "value", lambda n: tried.evaluations[n].reason)
             ui.button("close", on_click=self.dialog.close).props("flat dense")
         self.dialog.open()
 

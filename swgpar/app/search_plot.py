@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 from swgpar.input.quantities import show
@@ -18,6 +19,9 @@ EVALUATION = "evaluation"
 
 FEW = 10
 """Whole numbers on an axis up to which each has a tick."""
+
+LETTERS = 60
+"""In a line of a reason."""
 
 FORBIDDEN = "#c03030"
 
@@ -137,7 +141,8 @@ def _text(tried: TriedDesigns, number: int) -> str:
     each = tried.evaluations[number]
     found = [*each.values.items(), *((k, float(f"{v:.5g}")) for k, v in each.quantities.items())]
     lines = [f"{name} = {show(value)} {tried.units.get(name, '')}".strip() for name, value in found]
-    return "<br>".join([f"evaluation {number}: {words(tried, number)}", *lines])
+    reason = textwrap.wrap(each.reason, LETTERS)
+    return "<br>".join([f"evaluation {number}: {words(tried, number)}", *lines, *reason])
 
 
 def _axis(tried: TriedDesigns, name: str) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from nicegui import ui
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 
 SHAPES = "drive", "flexible_spline", "ring_gear", "dynamic_spline", "wave_generator", "cup"
 """Sections of a design that the picture of undeformed teeth follows from."""
+
+ONCE = "(() => { let said = false; return () => { if (!said) emit(); said = true } })()"
+"""Says the first of several events, and again where the element is updated."""
 
 VIEWS = {False: "gaps", True: "loaded"}
 """What the section shows: gaps of the rigid teeth, or stress and forces of a loaded state."""
@@ -52,6 +56,7 @@ class SectionPanel:
     def __init__(self, state: AppState) -> None:
         self.state = state
         self.plots: list[ui.plotly] = []
+        self.ready: set[ui.plotly] = set()  # those that the browser has drawn
         self.drawn: list[TeethPicture] = []
         self._moves = False  # whether the slider does
         self.pictures()
@@ -79,9 +84,12 @@ class SectionPanel:
             if picture.shows_the_same(self.drawn[k]):
                 continue
             self.drawn[k], figure = picture, picture.figure()
-            plot.figure = figure
-            # an update of the element would draw all controls of the window anew before it
-            plot.run_plot_method("react", figure["data"], figure["layout"], figure["config"])
+            if plot in self.ready:
+                plot.figure = figure
+                # an update of the element would draw all controls of the window anew before it
+                plot.run_plot_method("react", figure["data"], figure["layout"], figure["config"])
+            else:
+                plot.update_figure(figure)
 
     def draw_states(self) -> None:
         """Draw loaded states."""
@@ -91,6 +99,7 @@ class SectionPanel:
     @ui.refreshable_method
     def pictures(self) -> None:
         """A picture of each variant."""
+        self.ready.clear()
         self.plots, self.drawn = [], [self._picture(one) for one in self.state.shown]
         two = len(self.state.shown) > 1
         with ui.column().classes("w-full gap-0"):
@@ -100,7 +109,12 @@ class SectionPanel:
                 plot = ui.plotly(picture.figure())
                 plot.classes("w-full swgpar-plot" + (" swgpar-half" if two else ""))
                 plot.props('role=img aria-label="section of the teeth"')
+                plot.on("plotly_afterplot", partial(self._drawn, plot), [], js_handler=ONCE)
                 self.plots.append(plot)
+
+    def _drawn(self, plot: ui.plotly) -> None:
+        """The browser has drawn a picture."""
+        self.ready.add(plot)
 
     @ui.refreshable_method
     def clearance(self) -> None:

@@ -15,7 +15,7 @@ from swgpar.app.fields import FormField
 from swgpar.app.jobs import AppJob, JobQueue
 from swgpar.app.loaded_states import PLANE, SOLID, ShownState, StateModel
 from swgpar.app.state_worker import StateWorker
-from swgpar.app.workspace import Variant, Workspace
+from swgpar.app.workspace import Variant, Workspace, has_section
 from swgpar.errors import SwgparError
 from swgpar.results.atomic import write_file
 
@@ -225,7 +225,7 @@ def files_of(folder: Path, section: str) -> list[Path]:
     return [
         path
         for path in sorted(folder.glob("*.toml"))
-        if not path.is_symlink() and _has_section(path, section)
+        if not path.is_symlink() and has_section(path, section)
     ]
 
 
@@ -237,11 +237,3 @@ def recipes_of(folder: Path) -> list[str]:
             load_mesh(path)
             names.append(path.name)
     return names
-
-
-def _has_section(path: Path, section: str) -> bool:
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, ValueError):
-        return False
-    return any(line.strip().startswith(f"[{section}]") for line in lines)

@@ -26,6 +26,8 @@ STYLE = """
 .swgpar-answers { width: 340px; max-height: calc(100vh - 80px); overflow-y: auto; flex: none;
   flex-wrap: nowrap }
 .swgpar-answers > * { flex-shrink: 0 }
+.swgpar-answers td { overflow-wrap: anywhere }
+.swgpar-answers th:first-child, .swgpar-answers td:first-child { padding-left: 0 }
 .swgpar-slider { width: 100%; height: 4px; border-radius: 2px; appearance: none;
   background: #8c8c8c80; margin: 8px 0; cursor: pointer }
 .swgpar-slider::-webkit-slider-thumb { appearance: none; width: 16px; height: 16px;

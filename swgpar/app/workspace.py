@@ -50,6 +50,15 @@ def drive_of(table: dict[str, Any], values: Mapping[str, Any]) -> DriveDesign:
     return design
 
 
+def has_section(path: Path, section: str) -> bool:
+    """Whether a file has a line that begins the section [SECTION]."""
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, ValueError):
+        return False
+    return any(line.strip().startswith(f"[{section}]") for line in lines)
+
+
 @dataclass
 class Variant:
     """A design under a name, and its former and later states.
@@ -113,12 +122,14 @@ class Workspace:
 
     folder : resolved;  variants : by name;  shown : name of the one that is shown
     beside : name of the one that is compared with it, empty without one
+    refused : sentences that refuse files of drives, by their names
     """
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder.resolve()
         self.variants: dict[str, Variant] = {}
         self.shown = self.beside = ""
+        self.refused: dict[str, str] = {}
 
     @property
     def variant(self) -> Variant:
@@ -165,12 +176,15 @@ class Workspace:
                 self.open(path)
 
     def open_all(self) -> None:
-        """Open the designs of drives in the folder; other files, links and names that are not
-        allowed are left. The first variant is shown."""
+        """Open the designs of drives in the folder; other files and links are left. The first
+        variant is shown."""
         for path in sorted(self.folder.glob("*.toml")):
             if path.stem not in self.variants and not path.is_symlink():
-                with suppress(InputError):
+                try:
                     self.open(path)
+                except InputError as error:
+                    if has_section(path, "drive"):
+                        self.refused[path.name] = str(error)
         self.shown = min(self.variants, default="")
 
     def show_again(self, choices: Choices) -> None:

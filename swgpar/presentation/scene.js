@@ -332,7 +332,18 @@
     const before = size();
     state.factor = Number(text); zoom *= before / size(); update();
   });
-  listen("choose-increment", text => { state.increment = Number(text); update(); });
+  let playing = 0;
+  const show = number => { state.increment = number; update(); };
+  const stop = () => { clearInterval(playing); playing = 0; find("play").textContent = "play"; };
+  listen("choose-increment", text => { stop(); show(Number(text)); });
+  find("play").addEventListener("click", () => {
+    if (playing) return stop();
+    find("play").textContent = "stop";
+    playing = setInterval(() => {
+      show((state.increment + 1) % data.increments.length);
+      find("choose-increment").value = state.increment;
+    }, 400);
+  });
   listen("choose-section", text => {
     const [low, high] = data.ends; // at first the middle of the teeth, or the major axis
     state.section = text; find("at").hidden = text === "none";

@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import suppress
@@ -44,7 +45,10 @@ class Served:
         command = [sys.executable, "-P", "-m", "swgpar.cli", "app", str(source), "--no-browser"]
         # NiceGUI serves otherwise within a test
         alone = {name: value for name, value in os.environ.items() if "PYTEST" not in name}
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=alone)
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115  (closed with this object)
+        self.process = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=self._errors, text=True, env=alone
+        )
         assert self.process.stdout is not None
         self.address = self.process.stdout.readline().split()[-1]
 
@@ -54,6 +58,12 @@ class Served:
         pid = self.process.pid
         text = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="utf-8")
         return [Path(f"/proc/{child}") for child in text.split()]
+
+    @property
+    def errors(self) -> str:
+        """What it has said of errors: of handlers that have failed, for one."""
+        self._errors.seek(0)
+        return self._errors.read().decode()
 
     def ended(self, number: int) -> int:
         """Exit code of the server after a signal."""
@@ -171,9 +181,9 @@ def compare_variants(page: sync_api.Page, folder: Path) -> None:
     """The plane state is that of the interface, and that in 3D is cancelled; a copy stands beside
     its source, and is saved."""
     expect = sync_api.expect
+    known = plane_answers(folder / "variants" / "one.toml")  # while the server computes it
     expect(page.get_by_text("no estimate of errors by the mesh")).to_be_visible()
     rows = page.locator(".swgpar-loaded tbody tr").all_inner_texts()
-    known = plane_answers(folder / "variants" / "one.toml")
     assert known and {re.sub(r"\s+", " ", row).strip() for row in rows} == known
     press(page, "3D model")
     press(page, "cancel the loaded state")
@@ -250,11 +260,13 @@ def test_a_session_with_a_killed_server(
     assert served.ended(signal.SIGKILL) == -signal.SIGKILL and children
     served = opened(page, folder, servers)
     sync_api.expect(clearance).to_have_text(changed)
-    compare_variants(page, folder)
+    sync_api.expect(page.get_by_label("mesh", exact=True)).to_have_value("tiny.toml")
     look_at_a_narrow_window(page)
+    compare_variants(page, folder)
     look_at_jobs(page, folder)
     assert undressed(page) == []
     assert not alerts
+    assert [one.errors for one in servers] == ["", ""]
     children += served.children
     assert served.ended(signal.SIGTERM) in (0, 143, -signal.SIGTERM)
     for _ in range(300):
