@@ -49,6 +49,10 @@ LEAST = {"plane": 0.004, "cup": 0.015}
 points move between nodes, and the recipe of cup drives has the fewest layers below the root
 already. Twice the elements in root and below it change the reference cup by 1 %."""
 
+OF_LEAST = {"root": 4, "under": 1, "rim": 1}
+"""Counts of the flexible spline of that recipe, `forces`: with more of all of them the least error
+falls in second order, as far as the one in the plane."""
+
 LEAST_WITH_EDGES = 0.02
 """The same where a contact lies on an edge. The forces of the teeth move with the mesh: on
 plane_coarse by 0.7 to 2.7 % of the stress."""
@@ -109,7 +113,7 @@ class MeshComparison:
     def with_errors(self, found: RootStress) -> RootStress:
         """Stresses by windows on the mesh, with their errors by the mesh of the drive. More windows
         may find the largest stress in another part of the teeth, of another error."""
-        least = least_error(self.recipe.model, self.contacts, found.part)
+        least = least_error(self.recipe, self.contacts, found.part)
         error = drive_error(self.coarser, self.recipe, found, least, self.before)
         regions = region_errors(
             self.coarser, self.recipe, found, least, self.contacts, self.ring_teeth
@@ -307,9 +311,15 @@ def _contact_first(coarse: MeshRecipe, fine: MeshRecipe) -> float:
     return contact_ratio(coarse, fine) or smallest_ratio(coarse, fine)
 
 
-def least_error(model: str, contacts: Sequence[PairContact], part: str) -> float:
+def least_error(recipe: MeshRecipe, contacts: Sequence[PairContact], part: str) -> float:
     """Least error that two meshes of the drive can show, as a share of the largest stress in this
-    part of the teeth. model : kind"""
+    part of the teeth. recipe : of the finer one"""
     if part == ENDS and any(FACE_END in contact.edge_place for contact in contacts):
         return LEAST_AT_LOADED_ENDS
-    return LEAST_WITH_EDGES if touches_edges(contacts) else LEAST[model]
+    if touches_edges(contacts):
+        return LEAST_WITH_EDGES
+    if recipe.model == "plane":
+        return LEAST["plane"]
+    spline = recipe.flexible_spline
+    ratio = min(getattr(spline, name) / count for name, count in OF_LEAST.items())
+    return max(LEAST["cup"] / max(ratio, 1.0) ** ORDER, LEAST["plane"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -22,6 +22,10 @@ these change it by up to 0.3 %.
 At the ends of teeth, after the first window, and after later ones. Between them, while an end has
 the largest. At the ends the second window gives the most, up to 12 % too much."""
 
+
+SAME_WINDOW = {"plane": 0.995, "cup": 0.985}
+"""Share of the largest stress of a window from which another tooth in it has a narrow window too:
+the third window of the reference cup changes the ratio of two teeth by 1.2 %."""
 
 ROUND_OFF = 1e-6
 """Share by which equal stresses differ: that of Newton's iteration."""
@@ -93,6 +97,28 @@ def followed(found: Mapping[Followed, WindowStress], level: int) -> list[Followe
         for place, stress in found.items()
         if all(may_be_largest(stress, f, level) for f in firsts.values())
     ]
+
+
+def narrowed(
+    found: Mapping[Followed, Sequence[WindowStress]], first_tooth: int, count: int, share: float
+) -> dict[Followed, list[int]]:
+    """Teeth around which narrow windows lie, by place, and places that need none any more.
+
+    found : stresses of the teeth in the windows of a place, the largest first
+    first_tooth, count : of the modelled teeth, of which others are images
+    share : see `SAME_WINDOW`
+
+    A tooth that windows of two places read has one narrow window.
+    """
+    taken, narrow = set[tuple[int, bool]](), dict[Followed, list[int]]()
+    for place in sorted(found, key=lambda place: -found[place][0].value):
+        close = [one for one in found[place] if one.value >= share * found[place][0].value]
+        for one in close:
+            modelled = (one.tooth - first_tooth) % count, place[1]
+            if modelled not in taken:
+                taken.add(modelled)
+                narrow.setdefault(place, []).append(one.tooth)
+    return narrow
 
 
 def _near(tooth: int, count: int) -> np.ndarray:

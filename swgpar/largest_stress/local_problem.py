@@ -321,6 +321,10 @@ class LocalProblem:
     def largest(self, ends: bool = False) -> WindowStress:
         """Largest s1 of the teeth at their ends or between them that has a limit, one pitch or more
         inside of the cuts; collective."""
+        return self.by_tooth(ends)[0]
+
+    def by_tooth(self, ends: bool = False) -> list[WindowStress]:
+        """The same of every tooth, the largest first; collective."""
         nodes = tooth_nodes(self.layout.mesh, self.model.geometry, ends)
         return self._tension(nodes[~self._no_limit(nodes)])
 
@@ -331,16 +335,22 @@ class LocalProblem:
         parts = (False,) if mesh.plane else (False, True)
         nodes = np.concatenate([tooth_nodes(mesh, geometry, ends) for ends in parts])
         nodes = nodes[self._no_limit(nodes)]
-        return self._tension(nodes) if len(nodes) else None
+        return self._tension(nodes)[0] if len(nodes) else None
 
     def _no_limit(self, nodes: np.ndarray) -> np.ndarray:
         return np.isin(self._shared.regions[nodes], WITHOUT_LIMIT)
 
-    def _tension(self, nodes: np.ndarray) -> WindowStress:
-        """Largest s1 at nodes (n,) of the sector; collective."""
-        stresses, _ = self._stresses
-        found = self._found(stresses[f"{STRESS_PREFIXES[self.gear][0]}_s1"][:, nodes], nodes)
-        return self._named(found, str(self._shared.regions[found.node]))
+    def _tension(self, nodes: np.ndarray) -> list[WindowStress]:
+        """Largest s1 at nodes (n,) of the sector of every tooth, the largest first; collective."""
+        stresses, sectors = self._stresses
+        values = stresses[f"{STRESS_PREFIXES[self.gear][0]}_s1"][:, nodes]
+        teeth = self.layout.first_tooth + sectors
+        mine = [
+            _Found(float(one.max()), int(tooth), int(nodes[one.argmax()]))
+            for tooth, one in zip(teeth, values, strict=True)
+        ]
+        found = sorted(chain(*self.model.comm.allgather(mine)), key=lambda one: -one.value)
+        return [self._named(one, str(self._shared.regions[one.node])) for one in found]
 
     def by_region(self) -> dict[int, dict[str, WindowStress]]:
         """Largest stresses of the regions that the window resolves, by tooth and by names with
@@ -364,16 +374,6 @@ class LocalProblem:
             of_tooth = found.setdefault(one.tooth, {})
             of_tooth[f"{name}{OF_REGION}{region}"] = self._named(one, region)
         return found
-
-    def _found(self, values: np.ndarray, nodes: np.ndarray) -> _Found:
-        """The largest of values (n, n_read) MPa at nodes (n_read,) of the sectors of `_stresses`;
-        collective."""
-        best = _Found(-np.inf, 0, 0)
-        if values.size:
-            k, i = np.unravel_index(values.argmax(), values.shape)
-            tooth = self.layout.first_tooth + int(self._stresses[1][k])
-            best = _Found(float(values[k, i]), tooth, int(nodes[i]))
-        return max(self.model.comm.allgather(best), key=lambda one: one.value)
 
     def _named(self, found: _Found, region: str) -> WindowStress:
         mesh = self.layout.mesh

@@ -117,11 +117,15 @@ class WindowReadings:
         found: Mapping[int, Mapping[str, WindowStress]],
         at_corner: WindowStress | None = None,
     ) -> None:
-        """Keep what a window around the tooth `middle` gives, by tooth. Of two windows of a level
-        that read a tooth the larger stress counts."""
+        """Keep what a window around the tooth `middle`, or a narrow one in it, gives, by tooth. Of
+        two windows of a level that read a tooth the larger stress counts."""
+        before, largest = self.of_window.get(middle, (level, {}))
+        if before != level:
+            largest = {}
+            self.corners.pop(middle, None)
         if at_corner is not None:
-            self.corners[middle] = at_corner
-        largest: dict[str, WindowStress] = {}
+            known = self.corners.get(middle, at_corner)
+            self.corners[middle] = max(known, at_corner, key=lambda one: one.value)
         for tooth, stresses in found.items():
             of_tooth, last = self.levels.setdefault(tooth, {}), self.last.setdefault(tooth, {})
             for name, stress in stresses.items():

@@ -29,10 +29,12 @@ from swgpar.answers.answer import (
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.largest_stress.candidate_teeth import (
+    SAME_WINDOW,
     Followed,
     candidates,
     first_of_largest,
     followed,
+    narrowed,
 )
 from swgpar.largest_stress.convergence import error_at_ends, error_of
 from swgpar.largest_stress.local_problem import WindowStress
@@ -237,8 +239,8 @@ def resolve_root_stress(
     )  # between the ends of the teeth, and at them
     averages = nodal_averages(model, FLEXIBLE_SPLINE)
     on_mesh = [largest_by_tooth(model, averages[0], ends) for ends in parts]
-    mesh = model.partition.layouts[FLEXIBLE_SPLINE].mesh
-    in_root = largest_of_nodes(model, averages[0], root_nodes(model.geometry, mesh))
+    layout = model.partition.layouts[FLEXIBLE_SPLINE]
+    in_root = largest_of_nodes(model, averages[0], root_nodes(model.geometry, layout.mesh))
     nodal = nodal_by_sector(model, state, FLEXIBLE_SPLINE, averages)
     parts_of_teeth = [f"fs_vm{OF_REGION}{part}" for part in (TOOTH_ROOT, TOOTH_END, RIM_INSIDE)]
     mises = np.max([nodal[name] for name in parts_of_teeth if name in nodal], axis=0)
@@ -246,9 +248,10 @@ def resolve_root_stress(
     places = [(tooth, ends) for tooth in teeth for ends in parts]
     values: dict[Followed, list[float]] = {place: [math.nan] * skipped for place in places}
     readings, states = WindowReadings(skipped), States()
-    count, narrow = levels or LEVELS[kind], dict[Followed, int]()
+    count, narrow = levels or LEVELS[kind], dict[Followed, list[int]]()
     for level in range(skipped, count):
-        found = _solve(model, state, places, level, readings, states, narrow)
+        by_tooth = _solve(model, state, places, level, readings, states, narrow)
+        found = {place: of_teeth[0] for place, of_teeth in by_tooth.items()}
         for place, stress in found.items():
             values[place].append(stress.value)
         best = max(places, key=lambda place: found[place].value)
@@ -257,7 +260,9 @@ def resolve_root_stress(
         if level + 2 < count and all(tooth != further for tooth, _ in places):
             places.append((further, False))  # as far as the last window but one
         if level + 1 >= NARROW_FROM:
-            narrow = {place: found.get(place, mises_there).tooth for place in places}
+            at = {place: by_tooth.get(place, [mises_there]) for place in places}
+            narrow = narrowed(at, layout.first_tooth, layout.count, SAME_WINDOW[kind])
+            places = [place for place in places if place in narrow]
         _release(model)
     stresses = ", ".join(f"{value:.1f}" for value in values[best][skipped:])
     logger.info(
@@ -308,7 +313,7 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
     ends = known.part == ENDS
     s1, _, _ = nodal_averages(model, FLEXIBLE_SPLINE)
     tooth = first_of_largest(largest_by_tooth(model, s1, ends))
-    found = _solve(model, state, [(tooth, ends)], level)[tooth, ends]
+    found = _solve(model, state, [(tooth, ends)], level)[tooth, ends][0]
     value = found.value * known.s1 / known.levels[level]
     period = known.period or ((0.0, known.s1),)
     return replace(known, period=(*period, (float(np.degrees(state.angle)), value)))
@@ -321,9 +326,10 @@ def _solve(
     level: int,
     readings: WindowReadings | None = None,
     states: States | None = None,
-    narrow: Mapping[Followed, int] | None = None,
-) -> dict[Followed, WindowStress]:
-    """Largest stresses at the ends of teeth or between them: a window per tooth.
+    narrow: Mapping[Followed, Sequence[int]] | None = None,
+) -> dict[Followed, list[WindowStress]]:
+    """Largest stresses of the teeth in windows, at the ends of teeth or between them, the largest
+    first: windows by tooth.
 
     level : of the windows;  readings : takes the stresses of all regions
     states : equilibria of coarser windows, to which those of these windows are added
@@ -335,16 +341,18 @@ def _solve(
     states, narrow = {} if states is None else states, narrow or {}
     windows: dict[tuple[int, int | None], list[Followed]] = {}
     for place in places:
-        windows.setdefault((place[0], narrow.get(place)), []).append(place)
-    found: dict[Followed, WindowStress] = {}
+        for middle in narrow.get(place, [None]):
+            windows.setdefault((place[0], middle), []).append(place)
+    found: dict[Followed, list[WindowStress]] = {place: [] for place in places}
     for (tooth, middle), followed_there in windows.items():
         with solved_window(model, state, tooth, recipe, states, middle=middle) as window:
-            found |= {place: window.largest(place[1]) for place in followed_there}
+            for place in followed_there:
+                found[place] += window.by_tooth(place[1])
             if readings is not None:
                 by_tooth = window.by_region().items()
                 read = {(one - layout.first_tooth) % layout.count: by for one, by in by_tooth}
                 readings.add(tooth, level, read, window.largest_at_corners())
-    return found
+    return {place: sorted(of, key=lambda one: -one.value) for place, of in found.items()}
 
 
 def _place(

@@ -246,11 +246,21 @@ def test_contacts_on_edges_leave_more_of_an_error() -> None:
         model = MeshedDrive(design, MPI.COMM_SELF).load(recipe)
         contacts = pair_contacts(model, load_sequence(design).loaded)
         for part in (BETWEEN, ENDS):
-            assert least_error("plane", contacts, part) == least
+            assert least_error(recipe, contacts, part) == least
         # at the ends of teeth, where the load is on an end of the face width
         at_end = [replace(contacts[0], edge=1, edge_place=f"{FACE_END} and the tip")]
-        assert least_error("plane", at_end, ENDS) == LEAST_AT_LOADED_ENDS > LEAST_WITH_EDGES
-        assert least_error("plane", at_end, BETWEEN) == LEAST_WITH_EDGES
+        assert least_error(recipe, at_end, ENDS) == LEAST_AT_LOADED_ENDS > LEAST_WITH_EDGES
+        assert least_error(recipe, at_end, BETWEEN) == LEAST_WITH_EDGES
+
+
+def test_a_finer_mesh_of_a_cup_has_a_smaller_least_error() -> None:
+    """It stands for few elements in root, below it and in the rim: all of them have to be more."""
+    usual = load_recipe("forces")
+    finer, more = refined(usual), RATIO**ORDER
+    assert least_error(usual, [], BETWEEN) == LEAST["cup"]
+    assert least_error(load_recipe("full"), [], BETWEEN) == LEAST["cup"]  # three along the root
+    assert least_error(finer, [], BETWEEN) == pytest.approx(LEAST["cup"] / more)
+    assert least_error(refined(refined(finer)), [], BETWEEN) == LEAST["plane"]
 
 
 def test_the_error_holds() -> None:

@@ -5,7 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from swgpar.largest_stress.candidate_teeth import candidates, followed, may_be_largest
+from swgpar.largest_stress.candidate_teeth import (
+    SAME_WINDOW,
+    candidates,
+    followed,
+    may_be_largest,
+    narrowed,
+)
 from swgpar.largest_stress.convergence import error_at_ends, error_of
 from swgpar.largest_stress.local_problem import WindowStress
 
@@ -132,6 +138,29 @@ def test_the_first_of_each_part_is_followed_and_others_only_where_they_may_overt
         (5, True): WindowStress(293.0, 5, np.zeros(3), "tooth end", "", 1),
     }
     assert followed(found, 1) == [(0, False), (9, False), (5, True)]
+
+
+def test_teeth_with_nearly_the_largest_stress_have_a_narrow_window_each() -> None:
+    """Finer windows change which of two teeth has the largest. Of teeth that are images of each
+    other, or that windows of two places read, one has it."""
+
+    def of(**stresses: float) -> list[WindowStress]:
+        return [
+            WindowStress(value, int(tooth[1:]), np.zeros(3), "tooth root", "", 1)
+            for tooth, value in stresses.items()
+        ]
+
+    found = {
+        (58, False): of(t60=279.0, t61=270.0),  # images of 0 and 1
+        (1, False): of(t0=280.0, t1=279.0, t2=265.0),
+        (7, False): of(t8=279.5),
+        (1, True): of(t0=250.0),
+    }
+    share = SAME_WINDOW["cup"]
+    expected = {(1, False): [0, 1], (7, False): [8], (1, True): [0]}
+    assert narrowed(found, 0, 60, share) == expected
+    alone = narrowed({(1, False): of(t0=280.0, t1=275.0)}, 0, 60, share)
+    assert alone == {(1, False): [0]}
 
 
 def test_a_stress_at_the_ends_that_falls_is_bounded_by_the_one_between_them() -> None:
