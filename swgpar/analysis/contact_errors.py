@@ -31,9 +31,9 @@ LEAST_PRESSURE_WITH_EDGES = 0.05
 """The same where another contact lies on an edge."""
 
 LEAST_FORCE = {"plane": 0.02, "cup": 0.07}
-"""Least error of a force, as a share of it: elements along the flank, across the tooth and in the
-ring gear, of which no coarser mesh has fewer, change it by up to 2 % in the plane. In a cup drive
-the forces of some ten pairs move with the layers along the face width, by 1 to 6.5 %
+"""Least error of a force, as a share of it: elements along the flank, below it and in the ring
+gear, of which no coarser mesh has fewer, change it by up to 2 % in the plane. In a cup drive the
+forces of some ten pairs move with the layers along the face width, by 1 to 6.5 %
 (docs/verification/effectivity.md)."""
 
 LEAST_FORCE_WITH_EDGES = 0.03
