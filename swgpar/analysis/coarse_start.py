@@ -174,7 +174,7 @@ def start_at_load(
             start_loaded(stepper, drive, recipes + compared, on_coarse, kept, len(compared))
             return True
         except (ConvergenceError, InputError) as error:
-            known = stepper.load_state.is_periodic
+            known = stepper.load_state != stepper.sequence.start
             what = "on coarser meshes" if compared else "from the bent shape"
             logger.info("no start %s: %s", "from another load" if known else what, error)
             stepper.reset()
@@ -206,7 +206,7 @@ def start_loaded(
             coarse = drive.load(recipe, coarse, kept)
             if left <= compared:
                 on_coarse(coarse)
-        if stepper.load_state.is_periodic:
+        if stepper.load_state != stepper.sequence.start:  # that under another load
             if coarse is not None:
                 models.give_back(coarse)
             _advance(stepper)

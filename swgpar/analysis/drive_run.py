@@ -151,6 +151,8 @@ class DriveRun:
             for state in states[len(record.rows) :]:
                 if steps.has_ended() or self.ended_early:
                     break
+                if state != stepper.load_state and steps.has_passed(state):
+                    continue
                 start = time.perf_counter()
                 # a start at once ends with the first one
                 if state != stepper.load_state and not self._advance(steps, state):
@@ -180,12 +182,18 @@ class DriveRun:
             steps.advance(state)
         except ConvergenceError as error:
             rotated = self.model.design.ratcheting is not None and state.stage == Stage.PROGRAM
-            if not rotated or not self.recorder.record.torque_points:
+            starts = rotated and state.control == "torque"
+            if not starts and not (rotated and self.recorder.record.torque_points):
                 raise
-            logger.warning("the rotation of the output ends here: %s", error)
-            self.ended_early = True
+            if starts:
+                logger.warning(
+                    "the rotation of the output begins under a smaller torque: %s", error
+                )
+            else:
+                logger.warning("the rotation of the output ends here: %s", error)
+                self.ended_early = True
             if self.stepper.load_state == before:
-                return False
+                return starts
             self.stepper.advance(self.stepper.load_state)  # contacts of the last state
         return True
 

@@ -16,11 +16,19 @@ from pathlib import Path
 from mpi4py import MPI
 
 from swgpar.analysis.shortcuts import SAMPLES, with_shortcuts
+from swgpar.analysis.turn_drive import (
+    CHECKED,
+    LEAST_CHECKED,
+    WORTH_GUESSES,
+    turn_design,
+    turn_mesh,
+)
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutOfMemoryError
 from swgpar.load.load_sequence import program_points
 from swgpar.meshing import MeshRecipe
-from swgpar.meshing.sector_counts import sector_counts
+from swgpar.meshing.race_sector import OUTER_RACE
+from swgpar.meshing.sector_counts import race_counts, sector_counts
 from swgpar.petsc import is_out_of_memory
 
 
@@ -45,6 +53,17 @@ NEEDS["pancake"] = NEEDS["cup"]
 
 START = 4.0
 """Increments that take as long as the rest of a default run: start, windows, evaluation, report."""
+
+WITH_BEARING = 2.0
+"""Newton iterations with balls over those on a rigid cam (docs/verification/forecast.md)."""
+
+BY_GUESS, BY_LINEAR_MODEL = 0.45, 0.08
+"""Times of an angle of whole turns from the guess of the linear model, and by this model alone,
+over that of an increment on the same mesh (docs/verification/time_error.md)."""
+
+EXTREME = 0.02
+"""Share of the angles by Newton's iteration because they may be extreme, beside those that check
+the linear model."""
 
 
 WHOLE_MESH = 7e-7
@@ -72,43 +91,74 @@ def forecast(design: DriveDesign, recipe: MeshRecipe) -> Forecast:
     """Needs of a run with the default shortcuts and the direct solver, without condensed sectors.
 
     The time grows with the increments beyond those of a default run, among them the points of a
-    load program and the angles of [deviations], as if these were computed on the mesh of the run.
-    Nothing is meshed. Raises InputError where the recipe lacks a section.
+    load program, and with the angles of [deviations] on their own mesh, as if no deviations
+    repeated. Nothing is meshed. Raises InputError where the recipe lacks a section.
     """
-    plane = design.drive.model == "plane"
-    elements = unknowns = 0
-    for gear, counts in sector_counts(design.geometry, recipe).items():
-        fixed = (
-            counts.outer if gear == design.kinematics.standing_gear and design.frame_is_rigid else 0
-        )
-        free = counts.nodes - counts.shared - fixed
-        elements += counts.elements * counts.n_sectors
-        unknowns += (2 if plane else 3) * free * (counts.n_sectors // design.copies)
-    needs, size = NEEDS[design.drive.model], unknowns / 1e5
+    elements, unknowns = _counts(design, recipe)
+    needs = NEEDS[design.drive.model]
     usual = SAMPLES[design.drive.model]
     longer = max((START + _increments(design, recipe)) / (START + usual), 1.0)
+    seconds = longer * (needs.seconds_base + _growing(design, unknowns))
     return Forecast(
         elements=elements,
         unknowns=unknowns,
-        memory=needs.memory_base + needs.memory * size,
-        seconds=longer * (needs.seconds_base + needs.seconds * size),
+        memory=needs.memory_base + needs.memory * unknowns / 1e5,
+        seconds=seconds + _turn_seconds(design, recipe),
     )
 
 
+def _counts(design: DriveDesign, recipe: MeshRecipe) -> tuple[int, int]:
+    """Elements of the whole drive, and unknowns modelled."""
+    dimensions = 2 if design.drive.model == "plane" else 3
+    sectors = sector_counts(design.geometry, recipe)
+    if design.bearing is not None:
+        sectors[OUTER_RACE] = race_counts(design.geometry, recipe, design.race_width)
+    elements = unknowns = 0
+    for body, counts in sectors.items():
+        fixed = (
+            counts.outer if body == design.kinematics.standing_gear and design.frame_is_rigid else 0
+        )
+        free = counts.nodes - counts.shared - fixed
+        elements += counts.elements * counts.n_sectors
+        unknowns += dimensions * free * (counts.n_sectors // design.copies)
+    return elements, unknowns
+
+
+def _growing(design: DriveDesign, unknowns: int) -> float:
+    """Seconds of a default run that grow with the unknowns."""
+    share = 1.0 if design.bearing is None else WITH_BEARING
+    return share * NEEDS[design.drive.model].seconds * unknowns / 1e5
+
+
 def _increments(design: DriveDesign, recipe: MeshRecipe) -> int:
-    """Increments of a run with shortcuts from the loaded state on, angles of [deviations] among
-    them."""
+    """Increments of a run with shortcuts from the loaded state on."""
     shortened = with_shortcuts(design, recipe).design
-    steps, kinematics, deviations = shortened.steps, design.kinematics, design.deviations
-    count = len(program_points(shortened))
-    if not count and steps.samples:
-        count = steps.samples * design.periods
-    elif not count:
-        count = 1 + math.ceil(steps.rotation / steps.increment)
-    if deviations is not None:
-        teeth = kinematics.teeth(kinematics.standing_gear)
-        count += deviations.turns * teeth * deviations.angles_per_pitch
-    return count
+    steps = shortened.steps
+    if points := program_points(shortened):
+        return len(points)
+    if steps.samples:
+        return steps.samples * design.periods
+    return 1 + math.ceil(steps.rotation / steps.increment)
+
+
+def _turn_seconds(design: DriveDesign, recipe: MeshRecipe) -> float:
+    """Seconds of the angles of [deviations]; 0 without them."""
+    shortened = with_shortcuts(design, recipe).design
+    deviations, kinematics = shortened.deviations, design.kinematics
+    if deviations is None:
+        return 0.0
+    pitches = deviations.turns * kinematics.teeth(kinematics.standing_gear)
+    share, at_a_place = 1.0, pitches // kinematics.pitches
+    if design.drive.model == "plane" and design.bearing is None and at_a_place >= WORTH_GUESSES:
+        newton = 1.0
+        if deviations.linear_model:
+            newton = min(max(CHECKED, LEAST_CHECKED / at_a_place) + EXTREME, 1.0)
+        share = newton * BY_GUESS + (1.0 - newton) * BY_LINEAR_MODEL
+    turning = turn_design(shortened)
+    mesh = turn_mesh(recipe) if deviations.mesh == "coarse" else recipe
+    increments = START + SAMPLES[design.drive.model]
+    of_increment = _growing(design, _counts(turning, mesh)[1]) / increments
+    return share * pitches * deviations.angles_per_pitch * of_increment
 
 
 def fits(needs: Forecast, limit: float | None = None, comm: MPI.Comm = MPI.COMM_SELF) -> bool:

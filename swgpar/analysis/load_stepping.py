@@ -292,7 +292,8 @@ class LoadStepper:
             self.problem.x.axpy(factor, last)
             self.problem.x.axpy(-factor, older)
         elif state.control == "rotation" and state.output_rotation != here.output_rotation:
-            self._rotate_output(state.output_rotation - here.output_rotation)
+            if not self._presses(here):
+                self._rotate_output(state.output_rotation - here.output_rotation)
         elif state.stage == here.stage == Stage.DEFLECT:
             # the ring bends in proportion to the travel of the pins, or to the growth of the cam
             first, old, new = (
@@ -300,6 +301,19 @@ class LoadStepper:
                 for s in (self.sequence.start, here, state)
             )
             self.problem.x.scale((first - new) / (first - old))
+
+    def _presses(self, here: LoadState) -> bool:
+        """Whether flanks press under the first rotation of a program: a rotated pattern would press
+        them deeper, and the first iteration follows the tangent. Collective."""
+        first = self._before is None and self._last is not None and self._last[0] == here
+        return first and self.problem.touching_pairs() > 0
+
+    def hold_output(self) -> None:
+        """Hold the output where the present torque has rotated it: the same equilibrium, under a
+        prescribed rotation."""
+        rotation = self.problem.output_rotation()
+        self.load_state = replace(self.load_state, control="rotation", output_rotation=rotation)
+        self._before, self._last = None, (self.load_state, self.problem.x.copy())
 
     def _extrapolation(self, state: LoadState) -> float:
         """Share of the last step of a program that leads to `state`; 0 if other things change.

@@ -26,6 +26,9 @@ EARLY_FALL = 0.125
 """Share of the tolerance of the peak by which the torque may be missed at a fall: Newton's
 iteration leaves the rising branch before its end, and later after smaller steps."""
 
+SAME_SHARE = 1e-9
+"""Share of an increment that is round-off."""
+
 SAME_PLACE = 1e-6
 """Difference (deg) of two rotations that are the same."""
 
@@ -68,6 +71,8 @@ class RotationPath:
         last point is then the last state that has it.
         """
         stepper, here = self.stepper, self.measure()
+        if stepper.load_state.control == "torque":
+            stepper.hold_output()
         origin = stepper.origin(target)
         whole = abs(pitches_turned(origin, target, stepper.design.kinematics))
         if not self.points or abs(self.points[-1].rotation_deg - here.rotation_deg) > SAME_PLACE:
@@ -75,7 +80,8 @@ class RotationPath:
         done, iterations, steps, leaps = 0.0, 0, 0, False
         self._is_free = not stepper.problem.touching_pairs()
         while done < 1.0 and not self.has_ended():
-            before, end = stepper.snapshot(), min(1.0, done + self._step / whole)
+            before, end = stepper.snapshot(), done + self._step / whole
+            end = 1.0 if end > 1.0 - SAME_SHARE else end
             step, failure = (end - done) * whole, None
             try:
                 stepper.advance(stepper.between(origin, target, end), cut_back=False)
@@ -119,7 +125,9 @@ class RotationPath:
         falls_unseen &= step > SMALLEST_STEP_AT_PEAK
         if falls_unseen and max(torques) + missed > (1.0 + self.tolerance) * top:
             return False
-        bend = departure(known)
+        # behind a torque that is not from a rotation there is no line yet
+        starts = len(known) == 2 and abs(known[0].torque_Nm) > self._floor
+        bend = 0.0 if starts else departure(known)
         return step <= SMALLEST_STEP or -BEND_DOWN * scale <= bend <= BEND * scale
 
 

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.load.load_program import begins_with_rotation
 from swgpar.load.load_sequence import program_points
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import coarser
@@ -91,10 +92,10 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
         if samples_enough and not points:
             beyond = f"{steps.rotation - period:.4g} of {steps.rotation:.4g} degrees"
             leave_out("samples", samples, f"{beyond} ({samples} angles of one period)")
-        # a rotation that is prescribed is followed from the assembled drive on
-        follows = bool(points) and points[0].control == "rotation" and points[0].value != 0.0
+        follows = begins_with_rotation(points)
         # the bent spline lies on the cam that is not turned
-        if not follows and (points[0].angle == 0.0 if points else steps.load_increments == 1):
+        unturned = points[0].angle == 0.0 if points else steps.load_increments == 1
+        if follows or unturned:
             leave_out("bent_start", True, "deflection and engagement step by step")
         worth = levels and not follows and recipe.flexible_spline.flank >= WORTH[design.drive.model]
         fewest = FEWEST_IN_START[design.drive.model]

@@ -24,6 +24,9 @@ DOUBTFUL_SLIP = 0.01
 with its halves. Points that slip through the whole step carry the bound of friction, whatever the
 step."""
 
+SAME_PITCHES = 1e-6
+"""Rotation of the output in pitches up to which it is at a point of the program."""
+
 MOST_PARTS = 16
 """Of a step with friction; the wave generator then turns by a 64th of the period in each."""
 
@@ -72,6 +75,14 @@ class StepControl:
             self._advance_with_friction(target)
             return
         stepper.advance(target)
+
+    def has_passed(self, target: LoadState) -> bool:
+        """Whether the torque that [ratcheting] starts with has rotated the output beyond `target`
+        already."""
+        if not self._teeth or target.control == "torque" or target.stage != Stage.PROGRAM:
+            return False
+        origin = self.stepper.origin(target)
+        return pitches_turned(origin, target, self.design.kinematics) < SAME_PITCHES
 
     def has_ended(self) -> bool:
         """Whether the rotation of [ratcheting] has gone far enough."""

@@ -131,3 +131,7 @@ def _check_ratcheting(design: DriveDesign) -> None:
     require(section.limit >= section.increment, key, section.limit, allowed)
     allowed = f"up to {most:.3g} pitches, {MOST_ROTATION:g} degrees"
     require(section.limit <= most, key, section.limit, allowed)
+    start, enough = section.start_torque, section.sufficient_torque
+    if start is not None and enough is not None:
+        allowed = f"below {enough:g} N·m (ratcheting.sufficient_torque)"
+        require(start < enough, "ratcheting.start_torque", start, allowed)

@@ -79,6 +79,11 @@ class Ratcheting(Section):
         ge=1e-4,
         le=0.5,
     )
+    start_torque: float | None = positive(
+        "torque of the output from which on it is rotated; default: none, from the assembled drive",
+        "N·m",
+        None,
+    )
     limit: float = positive(
         "rotation of the output at which the run ends at the latest", "pitches", 1.5, le=20.0
     )

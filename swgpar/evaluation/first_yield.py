@@ -12,7 +12,8 @@ GEAR_STRESSES = ("fs_vm", "rg_vm")
 
 
 def yield_torque(rows: Sequence[Row], sense: float, strength: float) -> float | None:
-    """Torque (N·m) of the output at which a gear begins to yield; None where none does.
+    """Torque (N·m) of the output at which a gear begins to yield; None where none does, and where
+    one has yielded under the torque that the history begins with.
 
     Between two rows torque and stress are taken as linear. Gears that the wave generator alone
     makes yield have 0.
@@ -27,11 +28,13 @@ def yield_torque(rows: Sequence[Row], sense: float, strength: float) -> float | 
     media, Quarterly of Applied Mathematics 9 (1952) 381-389, theorem 1.
     """
     torque_before = stress_before = 0.0
-    for row in rows:
+    for number, row in enumerate(rows):
         stress = max(float(row[name]) for name in GEAR_STRESSES)
         loaded = row["step"] >= Stage.LOAD
         torque = sense * float(row["output_torque_Nmm"]) / 1000.0 if loaded else 0.0
         if stress >= strength:
+            if loaded and not number:
+                return None
             share = (strength - stress_before) / (stress - stress_before)
             return torque_before + share * (torque - torque_before)
         torque_before, stress_before = torque, stress

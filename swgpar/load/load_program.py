@@ -185,10 +185,20 @@ class StiffnessProgram:
         return way
 
 
+def begins_with_rotation(points: Sequence[ProgramPoint]) -> bool:
+    """Whether a program rotates the output first: that is followed from the assembled drive on."""
+    return bool(points) and points[0].control == "rotation" and points[0].value != 0.0
+
+
 def ratcheting_points(section: Ratcheting, kinematics: Kinematics) -> list[ProgramPoint]:
-    """The points of the section [ratcheting]."""
+    """The points of the section [ratcheting]; rotations of the output that the torque at the start
+    has passed are among them."""
     count = int(np.ceil(round(section.limit / section.increment, 9)))
     shares = [min(i * section.increment, section.limit) for i in range(1, count + 1)]
-    start, pitch = section.wave_generator / kinematics.ratio, kinematics.output_pitch
-    angles = [start + kinematics.torque_direction * share * pitch for share in shares]
-    return [ProgramPoint(RATCHETING, section.wave_generator, "rotation", angle) for angle in angles]
+    angle, pitch = section.wave_generator, kinematics.output_pitch
+    start = angle / kinematics.ratio
+    rotations = [start + kinematics.torque_direction * share * pitch for share in shares]
+    points = [ProgramPoint(RATCHETING, angle, "rotation", rotation) for rotation in rotations]
+    if section.start_torque is not None:
+        points.insert(0, ProgramPoint(RATCHETING, angle, "torque", section.start_torque))
+    return points

@@ -16,6 +16,7 @@ from swgpar.geometry.cams import pin_travel
 from swgpar.load.load_program import (
     ProgramPoint,
     StiffnessProgram,
+    begins_with_rotation,
     ratcheting_points,
     stage_points,
 )
@@ -91,7 +92,8 @@ class LoadSequence:
 
     @property
     def loaded(self) -> LoadState:
-        """The fully loaded state, in a load program that of its first point."""
+        """The fully loaded state, in a load program that of its first point; the assembled drive
+        where the program is a rotation of the output, which is followed from there."""
         return self.from_loaded[0]
 
     @property
@@ -99,7 +101,8 @@ class LoadSequence:
         """The states from the fully loaded one on."""
         stages = [state.stage for state in self.states]
         if Stage.PROGRAM in stages:
-            return self.states[stages.index(Stage.PROGRAM) :]
+            first = stages.index(Stage.PROGRAM)
+            return self.states[first - begins_with_rotation(self.points) :]
         return self.states[len(stages) - 1 - stages[::-1].index(Stage.LOAD) :]
 
 

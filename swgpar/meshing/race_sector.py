@@ -11,24 +11,24 @@ from swgpar.meshing.sweep import grid_quads, sweep_line, sweep_quads
 OUTER_RACE = "outer_race"
 """Name of a bearing's outer race as a body."""
 
+RADIAL = 1
+"""Elements through the thickness of the race: with incompatible modes one is exact in bending."""
+
 SAME = 1e-9
 """Share of a sector below which coordinates are the same."""
 
 
-def race_sector(
-    spline: SectorMesh, outer: float, thickness: float, width: float, radial: int
-) -> SectorMesh:
+def race_sector(spline: SectorMesh, outer: float, thickness: float, width: float) -> SectorMesh:
     """Sector of a bearing's outer race, with outer nodes opposite those of the flexible spline.
 
-    spline : tooth sector of the flexible spline
-    outer, thickness, width : mm;  radial : elements through the thickness
+    spline : tooth sector of the flexible spline;  outer, thickness, width : mm
 
     In the plane the mesh is as wide as the spline's.
     """
     angle, z = _grid(spline)
     if not spline.plane:
         z = np.unique(np.clip(z, -0.5 * width, 0.5 * width))
-    radius = np.linspace(outer - thickness, outer, radial + 1)
+    radius = np.linspace(outer - thickness, outer, RADIAL + 1)
     return annular_sector(OUTER_RACE, radius, angle, z, spline.n_sectors, spline.plane)
 
 

@@ -5,11 +5,13 @@ They follow from the blocks of half a tooth (`half_tooth.py`) and the sweep (`to
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from swgpar.meshing.cup import joined_columns, last_full_station, meridian
 from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.meshing.housing import housing_radii
+from swgpar.meshing.race_sector import RADIAL
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
 from swgpar.meshing.tooth_sector import gap_elements, require_sections, tooth_recipe
 
@@ -78,3 +80,19 @@ def _counts(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> SectorCounts
             nodes += (2 * threes + (joined + 1) * behind) * (depth + 1)
         side += (depth + 1) * stations
     return SectorCounts(n_sectors, elements, nodes, side, 0 if external else around * (layers + 1))
+
+
+def race_counts(drive: DriveGeometry, recipe: MeshRecipe, width: float) -> SectorCounts:
+    """Counts of a sector of a bearing's outer race, of so many mm along z; as far as it covers the
+    teeth."""
+    teeth, n_sectors = (
+        recipe.flexible_spline,
+        drive.gears["flexible_spline"].profile.n_teeth,
+    )
+    around, layers = 2 * (teeth.tip + teeth.layers + teeth.root), 1
+    nodes, side = (around + 1) * (RADIAL + 1), RADIAL + 1
+    if drive.model != "plane":
+        share = min(width / drive.face_width, 1.0)
+        layers = math.ceil(round(recipe.face_width.elements * share, 9))
+        nodes, side = nodes * (layers + 1), side * (layers + 1)
+    return SectorCounts(n_sectors, around * RADIAL * layers, nodes, side, 0)

@@ -19,15 +19,11 @@ from swgpar.materials import contact_modulus
 from swgpar.meshing.race_sector import opposite_cells, race_grid, race_sector
 from swgpar.meshing.sector import SectorMesh
 
-RADIAL = 1
-"""Elements through the thickness of the outer race: with incompatible modes one is exact in
-bending."""
-
 
 def build_race(design: DriveDesign, spline: SectorMesh) -> Body:
     """The outer race. Its sectors lie opposite to those of the flexible spline."""
     mesh = race_sector(
-        spline, design.inner_radius, design.bearing.race_thickness, design.race_width, RADIAL
+        spline, design.inner_radius, design.bearing.race_thickness, design.race_width
     )
     materials, grown = (design.materials["bearing"],), (design.growths["bearing"],)
     return Body(mesh, materials, design.race_width, grown)

@@ -96,8 +96,9 @@ NO_STRENGTHS = "no strengths are given: [fatigue]"
 NO_BEARING = "the wave generator has no bearing: [wave_generator.bearing]"
 NO_LOSSES = "no coefficients of losses are given: [losses]"
 
-SUFFICIENT = 2.0
-"""Torque at which a run with [ratcheting] ends, over the least one of the sheet."""
+SUFFICIENT = 1.25
+"""Torque at which a run with [ratcheting] ends, over the least one of the sheet: more than the
+errors by the mesh that stiffness and forces have."""
 
 IDENTITY = 8
 """Letters of an identity that tell the runs of one case apart."""
@@ -288,11 +289,15 @@ def _program(design: DriveDesign, loads: RatingLoads, case: LoadCase) -> Planned
     section = getattr(design, name)
     keys = {} if section is None else section.model_dump(exclude_unset=True)
     if case == LoadCase.STIFFNESS:
-        keys = {"torque": loads.rated, "rated_torque": loads.rated} | keys
+        # no further points than those that the values of the sheet need
+        keys = {"torque": loads.rated, "rated_torque": loads.rated, "points": 1} | keys
     elif loads.ratcheting is not None:
         keys = {"sufficient_torque": SUFFICIENT * loads.ratcheting} | keys
-        if design.fatigue is not None:
-            keys = {"yield_strength": design.fatigue.yield_strength} | keys
+        start = min(loads.momentary or 0.0, loads.ratcheting)
+        # with friction a state depends on the path; the first yield may be below the start
+        skips = not design.contact.friction and "yield_strength" not in keys
+        if skips and start < keys["sufficient_torque"]:
+            keys = {"start_torque": start} | keys
     content = _content(design, loads, loads.rated, ()) | {name: keys}
     content["output"] = {**content["output"], "root_stress": False}
     try:

@@ -216,15 +216,23 @@ def ratcheting() -> list[DriveResult]:
 
 
 def test_ratcheting_ends_where_the_torque_is_sufficient(ratcheting: list[DriveResult]) -> None:
-    """Before the peak, with a lower bound of it."""
-    enough = 0.25 * ratcheting[1].summary.ratcheting.peak_torque_Nm
+    """Before the peak, with a lower bound of it. It may begin under a torque: the states are those
+    of the rotation from the assembled drive on."""
+    peak = ratcheting[1].summary.ratcheting.peak_torque_Nm
+    start, enough = 0.1 * peak, 0.25 * peak
     keys = {"ratcheting.increment": 0.01, "ratcheting.sufficient_torque": enough}
+    keys["ratcheting.start_torque"] = start
     result = run(small("plane").with_values({**LOW_TEETH, **keys}))
     found, torque = result.summary.ratcheting, result.program["torque_Nm"]
     assert found.ended == SUFFICIENT and not found.is_peak
-    assert torque[-2] < enough <= found.peak_torque_Nm == pytest.approx(torque[-1])
-    same = ratcheting[1].program["torque_Nm"][: len(torque)]
-    assert torque[:-1] == pytest.approx(same[:-1], rel=1e-6, abs=1e-6)
+    assert torque[0] == pytest.approx(start) and torque[-2] < enough
+    assert enough <= found.peak_torque_Nm == pytest.approx(torque[-1])
+    whole = ratcheting[1].program
+    same = np.isin(whole["step"] + 1, result.program["step"][1:-1])  # the start is a point too
+    assert whole["torque_Nm"][same].min() > start
+    assert torque[1:-1] == pytest.approx(whole["torque_Nm"][same], rel=1e-6, abs=1e-6)
+    rotation = result.program["rotation_arcmin"]
+    assert rotation[1:-1] == pytest.approx(whole["rotation_arcmin"][same])
 
 
 def test_ratcheting_ends_by_itself(ratcheting: list[DriveResult]) -> None:

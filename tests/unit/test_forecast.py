@@ -9,9 +9,12 @@ import pytest
 from mpi4py import MPI
 
 import swgpar
+from support.bearing import BEARING
 from support.paths import DESIGN, DRIVERS, RECIPE, REFERENCE
 from support.small_drive import PLANE
 from swgpar.analysis.forecast import (
+    NEEDS,
+    WITH_BEARING,
     Forecast,
     forecast,
     free_memory,
@@ -26,6 +29,7 @@ from swgpar.petsc import PETSc
 THICK_CUP = ("cup.thickness_coef=0.9", "cup.fillet_radius=2.0")
 BACK_FILLET = ("cup.back_fillet=0.1",)
 HOUSING = ("ring_gear.housing.thickness=4",)
+BALLS = (*BEARING, "micro_geometry.wg_slope=0")
 HELD = (*HOUSING, "ring_gear.housing.outside=held")
 
 
@@ -42,6 +46,9 @@ HELD = (*HOUSING, "ring_gear.housing.outside=held")
         (*PLANE, *HOUSING),
         (*PLANE, *HELD),
         (*PLANE, *HELD, "drive.layout=spline_fixed"),
+        BALLS,
+        (*BALLS, "wave_generator.bearing.race_width=2.5"),
+        (*PLANE, *BALLS),
     ],
 )
 def test_counts_are_those_of_the_model(overrides: tuple[str, ...]) -> None:
@@ -133,5 +140,20 @@ def test_time_grows_with_increments_programs_and_turns() -> None:
     assert program == pytest.approx((4 + 96) / (4 + 6) * usual)
     loop = seconds("steps.rotation=0", "stiffness.torque=0.2", "stiffness.positions=50")
     assert loop > 20.0 * usual
-    turns = seconds("steps.rotation=0", "deviations.turns=5")
-    assert turns == pytest.approx((4 + 1 + 5 * 42) / (4 + 6) * usual)
+    # angles of turns: on their own mesh, with the linear model or without
+    plain, model = "deviations.linear_model=false", "deviations.linear_model=true"
+    turns = {
+        (count, linear): seconds("steps.rotation=0", f"deviations.turns={count}", linear) - usual
+        for count in (5, 10)
+        for linear in (plain, model)
+    }
+    assert turns[10, plain] == pytest.approx(2.0 * turns[5, plain])
+    assert 0.0 < turns[10, model] < 0.5 * turns[10, plain]
+
+
+def test_balls_take_time() -> None:
+    recipe = load_recipe(RECIPE)
+    rigid, balls = (forecast(swgpar.load_design(DESIGN, more), recipe) for more in ((), BALLS))
+    growing, more = (one.seconds - NEEDS["cup"].seconds_base for one in (rigid, balls))
+    assert balls.unknowns > rigid.unknowns
+    assert more == pytest.approx(WITH_BEARING * growing * balls.unknowns / rigid.unknowns)

@@ -332,6 +332,20 @@ def test_the_torque_of_the_first_yield_lies_between_two_rows() -> None:
     assert yield_torque(rows, -1.0, 800.0) == pytest.approx(2.0 + 2.0 * 300.0 / 400.0)
     assert yield_torque(rows, -1.0, 350.0) == 0.0
     assert yield_torque(rows, -1.0, 901.0) is None
+    # a history that begins under a torque does not show what was before
+    assert yield_torque(rows[2:], -1.0, 450.0) is None
+    assert yield_torque(rows[2:], -1.0, 800.0) == yield_torque(rows, -1.0, 800.0)
+
+
+def test_a_rotation_is_followed_from_the_assembled_drive_or_from_a_torque() -> None:
+    keys = {"ratcheting.increment": 0.1, "ratcheting.sufficient_torque": 2.0}
+    assembled = load_sequence(small("plane").with_values(keys))
+    assert assembled.loaded.stage == Stage.ENGAGE and assembled.loaded.flank_clearance == 0.0
+    assert assembled.from_loaded[1].stage == Stage.PROGRAM
+    loaded = small("plane").with_values({**keys, "ratcheting.start_torque": 1.0})
+    assert load_sequence(loaded).loaded.control == "torque"
+    with pytest.raises(InputError, match="start_torque = 3 .* below 2 N·m .ratcheting.suff"):
+        loaded.with_values({"ratcheting.start_torque": 3.0})
 
 
 @pytest.mark.parametrize("turn", [0.35, 0.5, 0.62])
