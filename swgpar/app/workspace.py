@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Mapping
 from contextlib import suppress
@@ -17,7 +18,7 @@ from swgpar.errors import InputError, OutputError
 from swgpar.input.commented_file import commented_toml
 from swgpar.input.quantities import show
 from swgpar.input.toml_file import apply_overrides, read_toml
-from swgpar.results.atomic import write_file
+from swgpar.results.atomic import to_json, write_file
 
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,59}")
 """Names of variants, which name files and folders."""
@@ -25,8 +26,11 @@ NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,59}")
 KEPT = "variants"
 """Folder of the workspace with the design files of all variants as they are."""
 
-UNDONE = 200
-"""Changes of a variant that can be undone."""
+UNDONE, KEPT_CHANGES = 200, 20
+"""Changes of a variant that can be undone, and those of them that the next server knows."""
+
+HISTORY = "history.json"
+"""End of the name of the file with these changes."""
 
 
 def require_name(name: str) -> str:
@@ -63,14 +67,14 @@ def has_section(path: Path, section: str) -> bool:
 class Variant:
     """A design under a name, and its former and later states.
 
-    before, after : designs that undo and redo lead to, the nearest one last
+    before, after : contents of design files that undo and redo lead to, the nearest one last
     dragged : key that a slider changes while it moves; one step of undo is its whole way
     """
 
     name: str
     design: DriveDesign
-    before: list[DriveDesign] = field(default_factory=list)
-    after: list[DriveDesign] = field(default_factory=list)
+    before: list[dict[str, Any]] = field(default_factory=list)
+    after: list[dict[str, Any]] = field(default_factory=list)
     dragged: str = ""
 
     def change(self, values: Mapping[str, Any], *, dragged: str = "") -> None:
@@ -79,7 +83,7 @@ class Variant:
 
         dragged : key that a slider goes on changing
         """
-        table = self.design.model_dump(exclude_unset=True)
+        table = self.table
         for key in [key for key, value in values.items() if value is None]:
             *sections, name = key.split(".")
             inner = table
@@ -91,7 +95,7 @@ class Variant:
         if changed.model_dump() == self.design.model_dump():
             return
         if not dragged or dragged != self.dragged:
-            self.before = [*self.before[1 - UNDONE :], self.design]
+            self.before = [*self.before[1 - UNDONE :], self.table]
         self.after.clear()
         self.design, self.dragged = changed, dragged
 
@@ -103,12 +107,19 @@ class Variant:
         """Take back an undo; whether there was one."""
         return self._step(self.after, self.before)
 
-    def _step(self, source: list[DriveDesign], other: list[DriveDesign]) -> bool:
+    def _step(self, source: list[dict[str, Any]], other: list[dict[str, Any]]) -> bool:
         if not source:
             return False
-        other.append(self.design)
-        self.design, self.dragged = source.pop(), ""
+        design = drive_of(source[-1], {})
+        source.pop()
+        other.append(self.table)
+        self.design, self.dragged = design, ""
         return True
+
+    @property
+    def table(self) -> dict[str, Any]:
+        """Content of its design file."""
+        return self.design.model_dump(exclude_unset=True)
 
     @property
     def text(self) -> str:
@@ -164,16 +175,20 @@ class Workspace:
         return self.add(path.stem, drive_of(read_toml(path), {}))
 
     def keep(self) -> None:
-        """Write the variant that is shown into `KEPT`."""
-        folder = self.folder / KEPT
+        """Write the variant that is shown into `KEPT`, with its last changes."""
+        folder, variant = self.folder / KEPT, self.variant
         folder.mkdir(exist_ok=True)
-        write_file(folder / f"{self.shown}.toml", self.variant.text.encode())
+        write_file(folder / f"{self.shown}.toml", variant.text.encode())
+        changes = {name: getattr(variant, name)[-KEPT_CHANGES:] for name in ("before", "after")}
+        write_file(folder / f"{self.shown}.{HISTORY}", to_json(changes))
 
     def bring_back(self) -> None:
         """Open what an earlier server has kept; files that are no design any more are left."""
         for path in sorted((self.folder / KEPT).glob("*.toml")):
-            with suppress(InputError):
-                self.open(path)
+            with suppress(InputError, OSError, ValueError, KeyError):
+                variant = self.open(path)
+                changes = json.loads(path.with_suffix(f".{HISTORY}").read_text(encoding="utf-8"))
+                variant.before, variant.after = changes["before"], changes["after"]
 
     def open_all(self) -> None:
         """Open the designs of drives in the folder; other files and links are left. The first

@@ -231,7 +231,8 @@ def test_a_key_is_left_out() -> None:
 
 
 def test_a_workspace_keeps_every_change(tmp_path: Path) -> None:
-    """A later one brings all variants back; a file of the user is not replaced unasked."""
+    """A later one brings all variants back, with their changes; a file of the user is not replaced
+    unasked."""
     workspace = Workspace(tmp_path)
     workspace.add("one", drive())
     workspace.variant.change({ADDENDUM: 0.55})
@@ -243,6 +244,7 @@ def test_a_workspace_keeps_every_change(tmp_path: Path) -> None:
     assert drive(path).drive.addendum_coef == 0.55
     with pytest.raises(OutputError, match="exists"):
         later.save()
+    assert later.variant.undo() and later.variant.design.model_dump() == drive().model_dump()
 
 
 @pytest.mark.parametrize("name", ["../out", "", "a b", ".hidden", "x" * 61, "a/b", "--help"])
