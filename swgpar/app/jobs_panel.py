@@ -95,8 +95,7 @@ class JobsPanel:
         """The last jobs, with their commands and states."""
         self._logs.clear()
         last = self.state.queue.jobs[-LAST:]
-        said = ", ".join(f"{job.number} {job.state}" for job in last[-SAID:])
-        say(self.said, f"jobs: {said}" if said else "")
+        say(self.said, ", ".join(f"job {job.number} {job.state}" for job in last[-SAID:]))
         for job in reversed(last):
             with ui.card().tight().classes("w-full q-pa-sm swgpar-job"):
                 self._job(job)

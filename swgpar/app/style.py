@@ -10,6 +10,7 @@ STYLE = """
   .text-positive { color: #1a7f37 !important }
   .text-warning, .text-orange-9 { color: #8a5a00 !important }
   .text-grey { color: #6b6b6b !important }
+  .q-notification.bg-warning .q-btn { color: black !important }
   .body--dark .text-primary { color: #7db4ea !important }
   .body--dark .text-negative { color: #ff8a80 !important }
   .body--dark .text-positive { color: #5fd38a !important }
