@@ -289,7 +289,7 @@ class ToothProfile:
         # the normal of a sharp tip end does not tell a point in the tooth from one over its top
         # land
         beyond = self.sign * (np.linalg.norm(points, axis=1) - self.r_tip_circle) >= 0.0
-        side[(foot == 0.0) & beyond] = 1.0
+        side[(nearest == 0) & (found[0].place == 0.0) & beyond] = 1.0
         return np.copysign(gaps[nearest, every], side), foot
 
     def polar_angle(self, s: ArrayLike) -> Floats:
