@@ -11,7 +11,8 @@ from swgpar.app.fields import FormField
 from swgpar.app.slider import Slider
 
 SLIDERS = 3.0
-"""A slider goes from 0 to this multiple of the value that its key has when it is drawn."""
+"""A slider goes from 0 to this multiple of the value that its key has when it is drawn, and to both
+sides where a value may be below 0."""
 
 SMALL = 0.2
 """Length over the module to which the slider of a length goes that is 0 when it is drawn."""
@@ -29,7 +30,8 @@ def slider_range(field: FormField, module: float) -> tuple[float, float] | None:
     module : mm, of the design
     """
     if field.value > 0.0:
-        return max(0.0, field.low), min(SLIDERS * field.value, field.high)
+        far = SLIDERS * field.value
+        return max(-far if field.low < 0.0 else 0.0, field.low), min(far, field.high)
     if field.high - field.low <= WIDE:
         return field.low, field.high
     if field.unit == "mm":

@@ -28,6 +28,7 @@ from swgpar.app.durations import durations
 from swgpar.app.fields import FormField, form_fields, is_optional, missing_sections
 from swgpar.app.flank_gaps import NEAR, flank_gaps
 from swgpar.app.jobs import AppJob, JobQueue, JobState, shell_environment
+from swgpar.app.key_control import slider_range
 from swgpar.app.loaded_states import (
     PLANE,
     SOLID,
@@ -206,6 +207,20 @@ def test_a_picture_is_drawn_again_where_it_changes() -> None:
         TeethPicture(drive(), 3.0, loaded=True),
     ):
         assert not picture.shows_the_same(other)
+
+
+def test_sliders_reach_both_sides_where_values_may_be_negative() -> None:
+    """None where neither the value nor its range says how large a change is."""
+    fields = {one.key: one for one in form_fields(drive())}
+    crowning, slope = (
+        dataclasses.replace(fields[f"micro_geometry.wg_{name}"], value=value)
+        for name, value in (("crowning", 0.0), ("slope", 0.1))
+    )
+    assert slider_range(crowning, 0.5) == (0.0, 0.1)
+    assert slider_range(slope, 0.5) == pytest.approx((-0.3, 0.3))
+    assert slider_range(fields["contact.friction"], 0.5) == (0.0, 1.0)
+    torque = dataclasses.replace(fields["load.torque"], value=0.0)
+    assert slider_range(torque, 0.5) is None
 
 
 def test_changes_are_undone_and_redone() -> None:
