@@ -170,8 +170,11 @@ class _RingOnCam:
         # the integral's transpose, of the forces
         back = np.fft.fft(np.fft.ifft(around * np.conj(normal) * pressure) / (1j * order))
         bent = (back * along[:, 0]).real[:, None]
-        sideways = (hessian * pressure)[:, None] * moved.imag
-        curved = waves.T @ (bent * waves) - moved.imag.T @ sideways
+        along_cam = np.ascontiguousarray(
+            moved.imag
+        )  # products of parts of complex numbers are slow
+        sideways = (hessian * pressure)[:, None] * along_cam
+        curved = waves.T @ (bent * waves) - along_cam.T @ sideways
         return gap / self.radius, moved.real / self.radius, curved / self.radius
 
 

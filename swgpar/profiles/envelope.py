@@ -182,7 +182,7 @@ class Envelope:
         reach = REACH / self.motion.line.lobes
         psi = np.linspace(-reach, reach, 1601)
         index = int(self._segment_of(s[middle : middle + 1])[0])
-        local = np.full_like(psi, s[middle] - self.given.breaks[index])
+        local = s[middle : middle + 1] - self.given.breaks[index]  # one point at all angles
         value = self.contacts(self.given.segments[index], local, psi).value
         changes = np.flatnonzero(np.sign(value[1:]) != np.sign(value[:-1]))
         return float(psi[changes[np.argmin(np.abs(psi[changes]))]]) if changes.size else np.nan
