@@ -108,10 +108,13 @@ def narrowed(
     first_tooth, count : of the modelled teeth, of which others are images
     share : see `SAME_WINDOW`
 
-    A tooth that windows of two places read has one narrow window.
+    A tooth that windows of two places read has one narrow window, in that with the larger stress;
+    of equal ones in the first, on any number of ranks.
     """
     taken, narrow = set[tuple[int, bool]](), dict[Followed, list[int]]()
-    for place in sorted(found, key=lambda place: -found[place][0].value):
+    top = max((of_teeth[0].value for of_teeth in found.values()), default=0.0)
+    shares = {place: round((top - found[place][0].value) / abs(top), 5) for place in found}
+    for place in sorted(found, key=lambda place: shares[place]):
         close = [one for one in found[place] if one.value >= share * found[place][0].value]
         for one in close:
             modelled = (one.tooth - first_tooth) % count, place[1]
