@@ -113,7 +113,7 @@ def narrowed(
     """
     taken, narrow = set[tuple[int, bool]](), dict[Followed, list[int]]()
     top = max((of_teeth[0].value for of_teeth in found.values()), default=0.0)
-    shares = {place: round((top - found[place][0].value) / abs(top), 5) for place in found}
+    shares = {place: round((top - found[place][0].value) / (abs(top) or 1.0), 5) for place in found}
     for place in sorted(found, key=lambda place: shares[place]):
         close = [one for one in found[place] if one.value >= share * found[place][0].value]
         for one in close:
