@@ -293,7 +293,8 @@ def _program(design: DriveDesign, loads: RatingLoads, case: LoadCase) -> Planned
         keys = {"torque": loads.rated, "rated_torque": loads.rated, "points": 1} | keys
     elif loads.ratcheting is not None:
         keys = {"sufficient_torque": SUFFICIENT * loads.ratcheting} | keys
-        start = min(loads.momentary or 0.0, loads.ratcheting)
+        # a small one: behind a jump there may be an equilibrium under more than the drive carries
+        start = min(loads.rated, loads.average)
         # with friction a state depends on the path; the first yield may be below the start
         skips = not design.contact.friction and "yield_strength" not in keys
         if skips and start < keys["sufficient_torque"]:

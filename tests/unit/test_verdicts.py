@@ -531,7 +531,7 @@ def test_sections_that_exclude_each_other_may_stand_in_one_file() -> None:
     assert (loop.stiffness.positions, loop.stiffness.torque) == (2, RATING["rated_torque"])
     assert jump is not None and jump.ratcheting is not None and jump.ratcheting.increment == 0.05
     assert jump.ratcheting.sufficient_torque == 1.25 * 1.5 * RATING["momentary_torque"]
-    assert jump.ratcheting.start_torque == RATING["momentary_torque"]
+    assert jump.ratcheting.start_torque == RATING["average_torque"]
     keys["ratcheting"] |= {"yield_strength": 600.0}  # the first yield may be before that
     jump = next(run.design for run in plan_runs(rated(**keys)).runs if run.name == "ratcheting")
     assert jump is not None and jump.ratcheting.start_torque is None
