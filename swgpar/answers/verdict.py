@@ -50,6 +50,7 @@ class Verdict:
     is_lower_bound : of the number that counts. It cannot pass where the limit is the largest value,
     nor fail where it is the least one
     of_strength : whether it is about the strength of the drive
+    of_computation : whether it is about the computation and not about the drive
     """
 
     name: str
@@ -58,6 +59,7 @@ class Verdict:
     reason: str = ""
     is_lower_bound: bool = False
     of_strength: bool = False
+    of_computation: bool = False
 
     @property
     def judgement(self) -> Judgement:

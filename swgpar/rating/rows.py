@@ -67,6 +67,7 @@ class RatingRow:
     missing : why no run gives an answer, or why there is no limit; empty otherwise
     lower_bound : says of a summary why the answer is a lower bound; empty where it is none
     of_strength : whether it is about the strength of the drive
+    of_computation : whether it is about the computation and not about the drive
     unit : of the answer
     """
 
@@ -77,6 +78,7 @@ class RatingRow:
     missing: str = ""
     lower_bound: Callable[[DriveSummary], str] = lambda _: ""
     of_strength: bool = False
+    of_computation: bool = False
     unit: str = ""
 
     def verdict(self, summary: DriveSummary | None, without: str) -> Verdict:
@@ -94,6 +96,7 @@ class RatingRow:
             bound or (lacking if answer is None or self.limit is None else ""),
             is_lower_bound=bool(bound),
             of_strength=self.of_strength,
+            of_computation=self.of_computation,
         )
 
 
@@ -323,4 +326,4 @@ def _computation(design: DriveDesign, accuracy: float) -> Iterator[RatingRow]:
         "the error of the largest tension at the teeth has no estimate on this mesh; the usual "
         f"mesh or --accuracy {accuracy:g} gives one"
     )
-    yield RatingRow("resolution", LoadCase.LARGEST, resolution, limit, answer)
+    yield RatingRow("resolution", LoadCase.LARGEST, resolution, limit, answer, of_computation=True)

@@ -44,13 +44,14 @@ def further_text(verdict: Verdict) -> str:
 
 def headline_text(sheet: RatingSheet) -> str:
     """The headline in a sentence, with the rows that it comes from."""
-    rows = [one.name for one in counted(sheet.verdicts) if one.judgement == sheet.headline]
-    named = ", ".join(rows)
+    rows = [one for one in counted(sheet.verdicts) if one.judgement == sheet.headline]
+    named = ", ".join(one.name for one in rows)
+    failing = "computation" if all(one.of_computation for one in rows) else "drive"
     sentences = {
         Judgement.PASSES: "The drive passes.",
         Judgement.NOT_JUDGED: f"The drive is not judged. No verdict on {named or 'any row'}.",
         Judgement.WITHIN_ERROR: f"The drive is within its errors of a limit: {named}.",
-        Judgement.FAILS: f"The drive fails: {named}.",
+        Judgement.FAILS: f"The {failing} fails: {named}.",
     }
     return sentences[sheet.headline]
 

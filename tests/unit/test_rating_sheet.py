@@ -73,6 +73,14 @@ def test_the_headline_names_the_rows_that_it_comes_from(sheet: RatingSheet) -> N
             Verdict("free", STRESS, None),
             Verdict("too", STRESS, limit),
         ),
+        "The computation fails: mesh.": (
+            below,
+            Verdict("mesh", STRESS, limit, of_computation=True),
+        ),
+        "The drive fails: bad, mesh.": (
+            Verdict("bad", STRESS, limit),
+            Verdict("mesh", STRESS, limit, of_computation=True),
+        ),
     }
     for words, verdicts in rows.items():
         rated = tuple(RatedVerdict(one, "rated torque") for one in verdicts)
