@@ -95,9 +95,8 @@ def test_two_ranks_give_the_same(whole: Path, tmp_path: Path) -> None:
     done = execute(study_command(study_file(tmp_path), tmp_path / "out", ranks=2))
     assert done.returncode == 5
     assert_same_table(tmp_path / "out", whole)
-    assert (tmp_path / "out/cases" / GOOD[0] / "tiny/run.log").read_text(encoding="utf-8").count(
-        "1 ranks"
-    ) == 1
+    log = (tmp_path / "out/cases" / GOOD[0] / "tiny/run.log").read_text(encoding="utf-8")
+    assert log.count("; 1 rank\n") == 1
 
 
 def test_kill_and_restart(whole: Path, tmp_path: Path) -> None:
