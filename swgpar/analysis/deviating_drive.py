@@ -18,11 +18,11 @@ from swgpar.analysis.coarse_start import MeshedDrive
 from swgpar.analysis.deviation_guess import DeviationGuess, ModelledState
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.turn_drive import (
-    CHECKED,
-    LEAST_CHECKED,
     WORTH_GUESSES,
+    checked_share,
     turn_design,
     turn_mesh,
+    turned_pitches,
 )
 from swgpar.constraints.distributing_coupling import TILT_X, TILT_Y, X, Y
 from swgpar.constraints.supports import SPLINE_COUPLING
@@ -74,7 +74,7 @@ class DeviatingDrive:
 
     def __init__(self, design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> None:
         self.design, self.deviations = turn_design(design), design.deviations
-        mesh = turn_mesh(recipe) if self.deviations.mesh == "coarse" else recipe
+        mesh = turn_mesh(design, recipe)
         self.model: DriveModel = MeshedDrive(self.design, comm).load(mesh)
         problem = self.model.problem
         near = NEAR * design.drive.module + design.backlash
@@ -96,10 +96,9 @@ class DeviatingDrive:
         spline, ring = self.tables.periods()
         cup = self.deviations.cup
         self.periods = (design.drive.teeth_fs if cup.eccentricity or cup.tilt else spline, ring)
-        kinematics, per_pitch = design.kinematics, self.deviations.angles_per_pitch
-        self.per_period = kinematics.pitches * per_pitch
-        pitches = self.deviations.turns * kinematics.teeth(kinematics.standing_gear)
-        self.angles = pitches * per_pitch
+        per_pitch = self.deviations.angles_per_pitch
+        self.per_period = design.kinematics.pitches * per_pitch
+        self.angles = turned_pitches(design) * per_pitch
         self.ideals: list[tuple[LoadState, PETSc.Vec]] = []
 
     def destroy(self) -> None:
@@ -133,7 +132,7 @@ class DeviatingDrive:
                 different.add(renamed)
                 if index not in known:
                     states.setdefault(renamed, []).append(index)
-            checked = max(CHECKED, LEAST_CHECKED / len(different)) if linear_model else 1.0
+            checked = checked_share(len(different)) if linear_model else 1.0
             start = split(len(states), share[1])
             mine = list(states.values())[start[share[0]] : start[share[0] + 1]]
             worth = mine and len(different) >= WORTH_GUESSES

@@ -17,11 +17,11 @@ from mpi4py import MPI
 
 from swgpar.analysis.shortcuts import SAMPLES, with_shortcuts
 from swgpar.analysis.turn_drive import (
-    CHECKED,
-    LEAST_CHECKED,
     WORTH_GUESSES,
+    checked_share,
     turn_design,
     turn_mesh,
+    turned_pitches,
 )
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutOfMemoryError
@@ -97,13 +97,14 @@ def forecast(design: DriveDesign, recipe: MeshRecipe) -> Forecast:
     elements, unknowns = _counts(design, recipe)
     needs = NEEDS[design.drive.model]
     usual = SAMPLES[design.drive.model]
-    longer = max((START + _increments(design, recipe)) / (START + usual), 1.0)
+    shortened = with_shortcuts(design, recipe).design
+    longer = max((START + _increments(shortened)) / (START + usual), 1.0)
     seconds = longer * (needs.seconds_base + _growing(design, unknowns))
     return Forecast(
         elements=elements,
         unknowns=unknowns,
         memory=needs.memory_base + needs.memory * unknowns / 1e5,
-        seconds=seconds + _turn_seconds(design, recipe),
+        seconds=seconds + _turn_seconds(shortened, recipe),
     )
 
 
@@ -130,11 +131,10 @@ def _growing(design: DriveDesign, unknowns: int) -> float:
     return share * NEEDS[design.drive.model].seconds * unknowns / 1e5
 
 
-def _increments(design: DriveDesign, recipe: MeshRecipe) -> int:
-    """Increments of a run with shortcuts from the loaded state on."""
-    shortened = with_shortcuts(design, recipe).design
-    steps = shortened.steps
-    if points := program_points(shortened):
+def _increments(design: DriveDesign) -> int:
+    """Increments of a run from the loaded state on."""
+    steps = design.steps
+    if points := program_points(design):
         return len(points)
     if steps.samples:
         return steps.samples * design.periods
@@ -143,21 +143,18 @@ def _increments(design: DriveDesign, recipe: MeshRecipe) -> int:
 
 def _turn_seconds(design: DriveDesign, recipe: MeshRecipe) -> float:
     """Seconds of the angles of [deviations]; 0 without them."""
-    shortened = with_shortcuts(design, recipe).design
-    deviations, kinematics = shortened.deviations, design.kinematics
+    deviations = design.deviations
     if deviations is None:
         return 0.0
-    pitches = deviations.turns * kinematics.teeth(kinematics.standing_gear)
-    share, at_a_place = 1.0, pitches // kinematics.pitches
+    pitches = turned_pitches(design)
+    share, at_a_place = 1.0, pitches // design.kinematics.pitches
     if design.drive.model == "plane" and design.bearing is None and at_a_place >= WORTH_GUESSES:
         newton = 1.0
         if deviations.linear_model:
-            newton = min(max(CHECKED, LEAST_CHECKED / at_a_place) + EXTREME, 1.0)
+            newton = min(checked_share(at_a_place) + EXTREME, 1.0)
         share = newton * BY_GUESS + (1.0 - newton) * BY_LINEAR_MODEL
-    turning = turn_design(shortened)
-    mesh = turn_mesh(recipe) if deviations.mesh == "coarse" else recipe
-    increments = START + SAMPLES[design.drive.model]
-    of_increment = _growing(design, _counts(turning, mesh)[1]) / increments
+    unknowns = _counts(turn_design(design), turn_mesh(design, recipe))[1]
+    of_increment = _growing(design, unknowns) / (START + SAMPLES[design.drive.model])
     return share * pitches * deviations.angles_per_pitch * of_increment
 
 

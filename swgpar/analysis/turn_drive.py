@@ -32,10 +32,25 @@ MAX_ITERATIONS = 50
 take many."""
 
 
-def turn_mesh(recipe: MeshRecipe) -> MeshRecipe:
-    """The coarsest mesh, by halves, that finds the contacts of the flanks: the output's angle needs
-    no more. In the plane also by two thirds; in a cup drive so few elements along the face width
+def turned_pitches(design: DriveDesign) -> int:
+    """Pitches of the standing gear by which the wave generator turns."""
+    kinematics = design.kinematics
+    return design.deviations.turns * kinematics.teeth(kinematics.standing_gear)
+
+
+def checked_share(different: int) -> float:
+    """Share of the states at one place that Newton's iteration gives, 1 or more for all of them.
+    different : of them, by the deviations"""
+    return max(CHECKED, LEAST_CHECKED / different)
+
+
+def turn_mesh(design: DriveDesign, recipe: MeshRecipe) -> MeshRecipe:
+    """The mesh of whole turns: that of the recipe, or where `deviations.mesh` is "coarse" the
+    coarsest one, by halves, that finds the contacts of the flanks: the output's angle needs no
+    more. In the plane also by two thirds; in a cup drive so few elements along the face width
     change the forces of the teeth by a fifth."""
+    if design.deviations.mesh != "coarse":
+        return recipe
     ways = (coarser, coarsened) if recipe.model == "plane" else (coarser,)
     for fewer in ways:
         simpler = fewer(recipe)

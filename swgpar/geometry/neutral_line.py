@@ -170,9 +170,8 @@ class _RingOnCam:
         # the integral's transpose, of the forces
         back = np.fft.fft(np.fft.ifft(around * np.conj(normal) * pressure) / (1j * order))
         bent = (back * along[:, 0]).real[:, None]
-        along_cam = np.ascontiguousarray(
-            moved.imag
-        )  # products of parts of complex numbers are slow
+        # products of parts of complex numbers are slow
+        along_cam = np.ascontiguousarray(moved.imag)
         sideways = (hessian * pressure)[:, None] * along_cam
         curved = waves.T @ (bent * waves) - along_cam.T @ sideways
         return gap / self.radius, moved.real / self.radius, curved / self.radius

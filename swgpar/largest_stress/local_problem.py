@@ -318,13 +318,9 @@ class LocalProblem:
         named = {f"{prefix}_s1": s1, f"{prefix}_s3": -s3, f"{prefix}_vm": mises}
         return named, sectors[inside]
 
-    def largest(self, ends: bool = False) -> WindowStress:
-        """Largest s1 of the teeth at their ends or between them that has a limit, one pitch or more
-        inside of the cuts; collective."""
-        return self.by_tooth(ends)[0]
-
     def by_tooth(self, ends: bool = False) -> list[WindowStress]:
-        """The same of every tooth, the largest first; collective."""
+        """Largest s1 of every tooth at its ends or between them that has a limit, one pitch or more
+        inside of the cuts; the largest first. Collective."""
         nodes = tooth_nodes(self.layout.mesh, self.model.geometry, ends)
         return self._tension(nodes[~self._no_limit(nodes)])
 

@@ -85,10 +85,8 @@ def _counts(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> SectorCounts
 def race_counts(drive: DriveGeometry, recipe: MeshRecipe, width: float) -> SectorCounts:
     """Counts of a sector of a bearing's outer race, of so many mm along z; as far as it covers the
     teeth."""
-    teeth, n_sectors = (
-        recipe.flexible_spline,
-        drive.gears["flexible_spline"].profile.n_teeth,
-    )
+    teeth = recipe.flexible_spline
+    n_sectors = drive.gears["flexible_spline"].profile.n_teeth
     around, layers = 2 * (teeth.tip + teeth.layers + teeth.root), 1
     nodes, side = (around + 1) * (RADIAL + 1), RADIAL + 1
     if drive.model != "plane":

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from swgpar.design.sections import GEARS
 from swgpar.geometry.arrays import Floats
 from swgpar.presentation.sections import PlaneBody
 
@@ -65,7 +64,7 @@ def loaded_outline(result: DriveData) -> LoadedOutline:
         moved = points + result.field("displacement", -1, gear)
         body = PlaneBody.of(moved, cells, result.field("s1", -1, gear), copies)
         surface = body.surface()
-        if gear == GEARS[0]:
+        if gear == "flexible_spline":
             before = PlaneBody.of(moved, cells, np.hypot(*points[:, :2].T), copies).mises
             spline = body.points[surface], before[surface]
         places.append(body.points[surface])

@@ -12,7 +12,8 @@ from pytest_mpi import parallel_assert
 from support.cup_shapes import ATTACHMENTS, bolted, shaped
 from support.paths import RECIPE
 from support.stepping import WORLD, loaded, rotate
-from swgpar.analysis.deviating_drive import DeviatingDrive, turn_design
+from swgpar.analysis.deviating_drive import DeviatingDrive
+from swgpar.analysis.turn_drive import turn_design
 from swgpar.constraints.distributing_coupling import X, Y
 from swgpar.constraints.supports import SPLINE_COUPLING
 from swgpar.design.drive_design import DriveDesign

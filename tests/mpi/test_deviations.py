@@ -14,9 +14,10 @@ from pytest_mpi import parallel_assert
 import swgpar
 from support.paths import RECIPE
 from support.stepping import WORLD, load_stepper, rotate, small
-from swgpar.analysis import deviating_drive
-from swgpar.analysis.deviating_drive import DeviatingDrive, TurnPoint, turn_design
+from swgpar.analysis import deviating_drive, turn_drive
+from swgpar.analysis.deviating_drive import DeviatingDrive, TurnPoint
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.turn_drive import turn_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.transmission_error import spectrum
@@ -185,7 +186,7 @@ def test_a_linear_model_knows_the_contacts(monkeypatch: pytest.MonkeyPatch) -> N
     assert counts[0] <= 0.5 * counts[1]
     # the states of the model itself, but for the first, which checks it
     monkeypatch.setattr(deviating_drive, "WORTH_GUESSES", 1)
-    monkeypatch.setattr(deviating_drive, "LEAST_CHECKED", 1)
+    monkeypatch.setattr(turn_drive, "LEAST_CHECKED", 1)
     modelled = points(deviating(*keys), guessed, linear_model=True)
     assert [point.by_linear_model for _, point in sorted(modelled.items())] == [False] + [True] * 3
     assert modelled[0].output_angle == pytest.approx(guessed[0].output_angle, rel=1e-6)

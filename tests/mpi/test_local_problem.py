@@ -71,7 +71,7 @@ def test_a_window_has_its_share_of_a_large_torque(tooth: int) -> None:
     other tests."""
     stepper, _ = loaded(small("plane", "load.torque=20"))
     window = solved(stepper, tooth)
-    found = window.largest().value
+    found = window.by_tooth()[0].value
     window.destroy()
     expected = on_the_drive(stepper, tooth + np.arange(MARGIN, SECTORS - MARGIN) - SECTORS // 2)
     print(f"tooth {tooth}: {found:.2f} and {expected:.2f} MPa")
@@ -83,7 +83,7 @@ def test_a_window_that_reaches_the_closed_end_has_its_clamping() -> None:
     """Without the clamping the stress is 3 % lower."""
     stepper, _ = loaded(shaped(CLAMPED | {"length": 5.0}))
     window = solved(stepper, 0)
-    found = window.largest().value
+    found = window.by_tooth()[0].value
     window.destroy()
     expected = on_the_drive(stepper, np.arange(MARGIN, SECTORS - MARGIN) - SECTORS // 2, END)
     print(f"{found:.2f} and {expected:.2f} MPa")
@@ -110,7 +110,7 @@ def test_on_the_drive_s_mesh_a_window_has_the_drive_s_stress(
     stepper = drive(model)
     window = solved(stepper, tooth)
     found = max(
-        window.largest(ends).value for ends in ((False,) if model == "plane" else (False, True))
+        window.by_tooth(ends)[0].value for ends in ((False,) if model == "plane" else (False, True))
     )
     window.destroy()
     inside = tooth + np.arange(MARGIN, SECTORS - MARGIN) - SECTORS // 2
@@ -128,7 +128,7 @@ def test_a_window_lies_on_the_race_of_a_bearing(model: str) -> None:
     ends = (False,) if model == "plane" else (False, True)
     for tooth in (1, 18):
         window = solved(stepper, tooth)
-        found = max(window.largest(at).value for at in ends)
+        found = max(window.by_tooth(at)[0].value for at in ends)
         window.destroy()
         inside = tooth + np.arange(MARGIN, SECTORS - MARGIN) - SECTORS // 2
         expected = on_the_drive(stepper, inside)
@@ -150,11 +150,11 @@ def test_a_window_on_the_mesh_of_another_one_has_its_own_stress(model: str) -> N
     for tooth in (1, 7, 1):
         window = solved(stepper, tooth)
         turns.append(window.solver.system.turn)
-        found.append(window.largest().value)
+        found.append(window.by_tooth()[0].value)
         window.destroy()
     stepper.model.release_windows()
     alone = solved(stepper, 7)
-    expected = alone.largest().value
+    expected = alone.by_tooth()[0].value
     alone.destroy()
     print(f"{found} and {expected:.6f} MPa")
     parallel_assert(found[1] == pytest.approx(expected, rel=rel), f"{found} and {expected}")
@@ -175,7 +175,7 @@ def test_a_narrow_window_has_the_stress_of_the_one_around_it(
     drive's coarser mesh on its cuts it has another one."""
     stepper, recipe = drive(model), window_recipe(model, 0)
     wide = solved(stepper, 1, recipe)
-    largest, coarser = wide.largest(), wide.equilibrium()
+    largest, coarser = wide.by_tooth()[0], wide.equilibrium()
     wide.destroy()
     found = []
     for narrow in (True, False):
@@ -189,7 +189,7 @@ def test_a_narrow_window_has_the_stress_of_the_one_around_it(
             narrow=narrow,
         )
         window.solve()
-        found.append(window.largest().value)
+        found.append(window.by_tooth()[0].value)
         window.destroy()
     print(f"{largest.value:.3f}, narrow {found[0]:.3f}, cuts of the drive {found[1]:.3f} MPa")
     parallel_assert(found[0] == pytest.approx(largest.value, rel=rel), f"{found}")
