@@ -15,17 +15,16 @@ IN_ROOT = (0.82, 0.92, 0.97)
 """Shares of the largest stress, which is not in a root, from which one in a root is followed after
 the first windows: there up to 15, 8 and 2 % are still to come."""
 
-SAME_REGION, AT_ENDS, BETWEEN_ENDS = (0.97, 0.995), (0.9, 1.0), 0.88
+SAME_REGION, AT_ENDS, BETWEEN_ENDS = 0.97, (0.9, 1.0), 0.88
 """Shares of the largest stress from which another is followed on finer windows. In the same region,
-after the first window, which changes the ratio of two stresses by up to 2 %, and after later ones:
-these change it by up to 0.3 %.
+after the first window, which changes the ratio of two stresses by up to 2 %.
 At the ends of teeth, after the first window, and after later ones. Between them, while an end has
 the largest. At the ends the second window gives the most, up to 12 % too much."""
 
 
-SAME_WINDOW = {"plane": 0.995, "cup": 0.985}
-"""Share of the largest stress of a window from which another tooth in it has a narrow window too:
-the third window of the reference cup changes the ratio of two teeth by 1.2 %."""
+LATER = {"plane": 0.995, "cup": 0.985}
+"""The same in one region after later windows, in one window or in two. In the plane these change
+the ratio of two stresses by up to 0.3 %, in the reference cup the third one by 1.2 %."""
 
 ROUND_OFF = 1e-6
 """Share by which equal stresses differ: that of Newton's iteration."""
@@ -75,10 +74,10 @@ def candidates(
     return teeth
 
 
-def may_be_largest(one: WindowStress, best: WindowStress, level: int) -> bool:
+def may_be_largest(one: WindowStress, best: WindowStress, level: int, later: float) -> bool:
     """Whether a stress may overtake the largest one on windows finer than `level`; one region
-    converges alike."""
-    share = SAME_REGION[min(level, 1)]
+    converges alike. later : see `LATER`"""
+    share = SAME_REGION if level == 0 else later
     if one.region != best.region:
         share = BETWEEN_ENDS if best.region in END_REGIONS else AT_ENDS[min(level, 1)]
         if one.region == TOOTH_ROOT and best.region not in END_REGIONS:
@@ -86,27 +85,27 @@ def may_be_largest(one: WindowStress, best: WindowStress, level: int) -> bool:
     return one is best or one.value > share * best.value
 
 
-def followed(found: Mapping[Followed, WindowStress], level: int) -> list[Followed]:
+def followed(found: Mapping[Followed, WindowStress], level: int, later: float) -> list[Followed]:
     """Places that may have the largest stress on windows finer than `level`: each may overtake the
-    first of both parts."""
+    first of both parts. later : see `LATER`"""
     firsts: dict[bool, WindowStress] = {}
     for (_, ends), stress in found.items():
         firsts[ends] = max(firsts.get(ends, stress), stress, key=lambda s: s.value)
     return [
         place
         for place, stress in found.items()
-        if all(may_be_largest(stress, f, level) for f in firsts.values())
+        if all(may_be_largest(stress, f, level, later) for f in firsts.values())
     ]
 
 
 def narrowed(
-    found: Mapping[Followed, Sequence[WindowStress]], first_tooth: int, count: int, share: float
+    found: Mapping[Followed, Sequence[WindowStress]], first_tooth: int, count: int, later: float
 ) -> dict[Followed, list[int]]:
     """Teeth around which narrow windows lie, by place, and places that need none any more.
 
     found : stresses of the teeth in the windows of a place, the largest first
     first_tooth, count : of the modelled teeth, of which others are images
-    share : see `SAME_WINDOW`
+    later : see `LATER`
 
     A tooth that windows of two places read has one narrow window, in that with the larger stress;
     of equal ones in the first, on any number of ranks.
@@ -115,7 +114,7 @@ def narrowed(
     top = max((of_teeth[0].value for of_teeth in found.values()), default=0.0)
     shares = {place: round((top - found[place][0].value) / (abs(top) or 1.0), 5) for place in found}
     for place in sorted(found, key=lambda place: shares[place]):
-        close = [one for one in found[place] if one.value >= share * found[place][0].value]
+        close = [one for one in found[place] if one.value >= later * found[place][0].value]
         for one in close:
             modelled = (one.tooth - first_tooth) % count, place[1]
             if modelled not in taken:

@@ -29,7 +29,7 @@ from swgpar.answers.answer import (
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.largest_stress.candidate_teeth import (
-    SAME_WINDOW,
+    LATER,
     Followed,
     candidates,
     first_of_largest,
@@ -255,13 +255,13 @@ def resolve_root_stress(
         for place, stress in found.items():
             values[place].append(stress.value)
         best = max(places, key=lambda place: found[place].value)
-        places = followed(found, level)
+        places = followed(found, level, LATER[kind])
         further, mises_there = readings.window_with_largest("fs_vm")
         if level + 2 < count and all(tooth != further for tooth, _ in places):
             places.append((further, False))  # as far as the last window but one
         if level + 1 >= NARROW_FROM:
             at = {place: by_tooth.get(place, [mises_there]) for place in places}
-            narrow = narrowed(at, layout.first_tooth, layout.count, SAME_WINDOW[kind])
+            narrow = narrowed(at, layout.first_tooth, layout.count, LATER[kind])
             places = [place for place in places if place in narrow]
         _release(model)
     stresses = ", ".join(f"{value:.1f}" for value in values[best][skipped:])

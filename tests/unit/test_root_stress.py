@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from swgpar.largest_stress.candidate_teeth import (
-    SAME_WINDOW,
+    LATER,
     candidates,
     followed,
     may_be_largest,
@@ -88,30 +88,32 @@ def test_a_root_is_followed_below_a_stress_that_falls() -> None:
         (2, 96.0, False),
     ):
         root = WindowStress(value, 5, np.zeros(3), "tooth root", "", 1)
-        assert may_be_largest(root, rim, level) == expected
+        assert may_be_largest(root, rim, level, LATER["plane"]) == expected
 
 
 @pytest.mark.parametrize(
-    ("region", "value", "level", "expected"),
+    ("model", "region", "value", "level", "expected"),
     [
-        ("tooth root", 97.5, 0, True),
-        ("tooth root", 96.5, 0, False),
-        ("tooth root", 99.4, 1, False),
-        ("tooth root", 99.9, 1, True),
-        ("tooth end", 91.0, 0, True),
-        ("tooth end", 89.0, 0, False),
-        ("tooth end", 99.0, 1, False),
-        ("tooth end", 100.1, 1, True),
+        ("plane", "tooth root", 97.5, 0, True),
+        ("plane", "tooth root", 96.5, 0, False),
+        ("plane", "tooth root", 99.4, 1, False),
+        ("plane", "tooth root", 99.9, 1, True),
+        ("cup", "tooth root", 97.5, 0, True),
+        ("cup", "tooth root", 98.4, 1, False),
+        ("cup", "tooth root", 98.6, 1, True),
+        ("cup", "tooth end", 91.0, 0, True),
+        ("cup", "tooth end", 89.0, 0, False),
+        ("cup", "tooth end", 99.0, 1, False),
+        ("cup", "tooth end", 100.1, 1, True),
     ],
 )
 def test_stresses_of_one_region_converge_alike(
-    region: str, value: float, level: int, expected: bool
+    model: str, region: str, value: float, level: int, expected: bool
 ) -> None:
     best = WindowStress(100.0, 0, np.zeros(3), "tooth root", "", 1)
-    assert (
-        may_be_largest(WindowStress(value, 5, np.zeros(3), region, "", 1), best, level) == expected
-    )
-    assert may_be_largest(best, best, level)
+    other = WindowStress(value, 5, np.zeros(3), region, "", 1)
+    assert may_be_largest(other, best, level, LATER[model]) == expected
+    assert may_be_largest(best, best, level, LATER[model])
 
 
 @pytest.mark.parametrize(
@@ -124,7 +126,9 @@ def test_a_root_is_followed_while_the_end_of_a_tooth_gives_more(
     for region in ("tooth end", "notch", "fillet at the back"):
         end = WindowStress(100.0, 0, np.zeros(3), region, "", 1)
         assert (
-            may_be_largest(WindowStress(value, 0, np.zeros(3), "tooth root", "", 1), end, level)
+            may_be_largest(
+                WindowStress(value, 0, np.zeros(3), "tooth root", "", 1), end, level, LATER["cup"]
+            )
             == expected
         )
 
@@ -137,7 +141,8 @@ def test_the_first_of_each_part_is_followed_and_others_only_where_they_may_overt
         (0, True): WindowStress(265.0, 0, np.zeros(3), "tooth end", "", 1),
         (5, True): WindowStress(293.0, 5, np.zeros(3), "tooth end", "", 1),
     }
-    assert followed(found, 1) == [(0, False), (9, False), (5, True)]
+    assert followed(found, 1, LATER["plane"]) == [(0, False), (9, False), (5, True)]
+    assert followed(found, 1, LATER["cup"]) == [(0, False), (5, False), (9, False), (5, True)]
 
 
 def test_teeth_with_nearly_the_largest_stress_have_a_narrow_window_each() -> None:
@@ -156,13 +161,13 @@ def test_teeth_with_nearly_the_largest_stress_have_a_narrow_window_each() -> Non
         (7, False): of(t8=279.5),
         (1, True): of(t0=250.0),
     }
-    share = SAME_WINDOW["cup"]
+    later = LATER["cup"]
     expected = {(1, False): [0, 1], (7, False): [8], (1, True): [0]}
-    assert narrowed(found, 0, 60, share) == expected
+    assert narrowed(found, 0, 60, later) == expected
     for round_off in (-1e-7, 1e-7):  # the number of ranks changes it
         equal = {(1, False): of(t0=280.0), (58, False): of(t60=280.0 + round_off)}
-        assert narrowed(equal, 0, 60, share) == {(1, False): [0]}
-    alone = narrowed({(1, False): of(t0=280.0, t1=275.0)}, 0, 60, share)
+        assert narrowed(equal, 0, 60, later) == {(1, False): [0]}
+    alone = narrowed({(1, False): of(t0=280.0, t1=275.0)}, 0, 60, later)
     assert alone == {(1, False): [0]}
 
 
