@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from swgpar.analysis.bent_start import bend
-from swgpar.analysis.predictor import KnownState, predict, predict_guided
+from swgpar.analysis.predictor import KnownState, add_change, predict, predict_guided
 from swgpar.analysis.snapshot import ProgramState, Snapshot
 from swgpar.analysis.step_bounds import steps_needed
+from swgpar.analysis.torque_steps import TorqueSteps
 from swgpar.errors import ConvergenceError
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.load.load_sequence import load_sequence
@@ -57,12 +58,14 @@ class LoadStepper:
         self.residual = 0.0
         self.known_states: list[KnownState] = []
         self.guides: list[KnownState] = []
+        self._steps = TorqueSteps()
         self._last: ProgramState = None
         self._before: ProgramState = None
 
     def reset(self) -> None:
         """Go back to the undeformed drive."""
         self.load_state, self.known_states, self.guides = self.sequence.start, [], []
+        self._steps = TorqueSteps()
         self._last = self._before = None
         self.problem.x.set(0.0)
         self.problem.resume({})
@@ -251,6 +254,8 @@ class LoadStepper:
         before, self.load_state, self.residual = self.load_state, state, result.residual
         if state.stage == Stage.PROGRAM:
             self._before, self._last = self._last, (state, self.problem.x.copy())
+            if self.design.stiffness and not self.design.contact.friction:
+                self._steps.keep(state, self.problem.x)
         if state.is_periodic:
             known = (
                 self.known_states
@@ -287,10 +292,13 @@ class LoadStepper:
             ):
                 drift = (state.angle - here.angle) / self.design.kinematics.ratio
                 self._rotate_output(state.output_rotation - here.output_rotation - drift)
-        elif (factor := self._extrapolation(state)) > 0.0:
+        elif (factor := self._extrapolation(state)) > 0.0 and not self._bends(state, factor):
             (_, older), (_, last) = self._before, self._last
             self.problem.x.axpy(factor, last)
             self.problem.x.axpy(-factor, older)
+        elif (known := self._steps.elsewhere([here, state])) is not None:
+            partition, fixed = self.model.partition, self.model.fixed_body
+            add_change(partition, fixed, known[0], known[1], self.problem.x, state.angle)
         elif state.control == "rotation" and state.output_rotation != here.output_rotation:
             if not self._presses(here):
                 self._rotate_output(state.output_rotation - here.output_rotation)
@@ -301,6 +309,10 @@ class LoadStepper:
                 for s in (self.sequence.start, here, state)
             )
             self.problem.x.scale((first - new) / (first - old))
+
+    def _bends(self, state: LoadState, factor: float) -> bool:
+        """Whether the straight line to `state` by this share of the last step is a poor guess."""
+        return self._steps.bends([self._before[0], self.load_state, state], factor)
 
     def _presses(self, here: LoadState) -> bool:
         """Whether flanks press under the first rotation of a program: a rotated pattern would press

@@ -129,6 +129,28 @@ def predict_guided(
     predicted.destroy()
 
 
+def add_change(
+    partition: Partition,
+    fixed_body: str,
+    before: list[KnownState],
+    after: list[KnownState],
+    x: PETSc.Vec,
+    angle: float,
+) -> None:
+    """Add to x by what a step has changed it at other angles of the wave generator, moved to this
+    one (rad); collective.
+
+    before, after : states at both ends of the step, at the same angles
+    """
+    start, end = x.copy(), x.copy()  # what is no displacement stays
+    predict(partition, fixed_body, before, start, angle)
+    predict(partition, fixed_body, after, end, angle)
+    x.axpy(1.0, end)
+    x.axpy(-1.0, start)
+    start.destroy()
+    end.destroy()
+
+
 def _pattern(
     partition: Partition,
     fixed_body: str,

@@ -11,6 +11,7 @@ from support.small_drive import PLANE
 from swgpar import load_design
 from swgpar.analysis.predictor import (
     KnownState,
+    add_change,
     interpolation_points,
     predict,
     predict_guided,
@@ -134,6 +135,18 @@ def test_guides_add_what_their_own_prediction_misses(model: DriveModel) -> None:
     assert guided == pytest.approx(0.5 * alone, rel=1e-6)
     lacking = guided_error(model, known, [0.0, middle], middle)
     assert lacking == pytest.approx(alone, rel=1e-12)
+
+
+@pytest.mark.parallel([1, 2, 3])
+def test_a_change_elsewhere_moves_along(model: DriveModel) -> None:
+    """A wave that has grown by half at one angle does so at another, exactly after a pitch."""
+    pitch = model.design.kinematics.period_angle
+    before, after = (KnownState(0.0, wave(model, 0.0, height=high)) for high in (1.0, 1.5))
+    for angle, left in ((pitch, 0.0), (0.5 * pitch, 0.5 * error(model, [0.0], 0.5 * pitch))):
+        x = wave(model, angle)
+        add_change(model.partition, model.fixed_body, [before], [after], x, angle)
+        missed = distance(model, x, wave(model, angle, height=1.5))
+        assert missed == pytest.approx(left, rel=1e-6, abs=1e-11)
 
 
 def test_weights_reproduce_cubic_polynomials_and_the_latest_state_counts() -> None:
