@@ -121,12 +121,16 @@ def resolution(summary: DriveSummary) -> Answer | None:
     if root is None or root.total_error is None or not root.s1:
         return None
     error = root.total_error / abs(root.s1)
-    advice = f"--accuracy {RESOLUTION:g} refines the meshes until it is at most that"
+    remark = ""
+    if summary.accuracy is not None:
+        remark = summary.accuracy.remark
+    elif error > RESOLUTION:
+        remark = f"--accuracy {RESOLUTION:g} refines the meshes until it is at most that"
     return Answer(
         name="root.relative_error",
         value=error,
         unit="",
         text="error of the largest tension at the teeth over its value",
         place=root.place,
-        remark=advice if error > RESOLUTION else "",
+        remark=remark,
     )

@@ -23,6 +23,7 @@ from swgpar.drive_results.strength_checks import FIRST_YIELD
 from swgpar.drive_results.summary import DriveSummary
 from swgpar.errors import InputError
 from swgpar.input.toml_file import read_toml
+from swgpar.largest_stress.accuracy import Accuracy
 from swgpar.rating.planned_runs import LoadCase, plan_runs, rating_loads
 from swgpar.rating.rate_drive import accuracy_of
 from swgpar.rating.rated_answers import STATIC_PRESSURE
@@ -448,6 +449,12 @@ def test_resolution() -> None:
     root = SimpleNamespace(total_error=2.1, s1=100.0, place="")
     verdict = last.verdict(summary("none", 0.0, root_stress=root), "")
     assert verdict.judgement == FAILS
+    # an accuracy that was asked for is no advice
+    asked = Accuracy(asked=0.02, estimated=0.2, reached=False)
+    root = SimpleNamespace(total_error=20.0, s1=100.0, place="")
+    for accuracy, remark in ((None, "--accuracy 0.05"), (asked, "NOT reached")):
+        found = summary("none", 0.0, root_stress=root, accuracy=accuracy)
+        assert last.verdict(found, "").answer.remark.startswith(remark)
     root = SimpleNamespace(total_error=None, s1=100.0, place="")
     assert judged("resolution", rated(), summary("none", 0.0, root_stress=root)) == OPEN
 
