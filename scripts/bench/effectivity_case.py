@@ -7,9 +7,8 @@ ones). The output is JSON, by stage ("usual" and, where `times` is not 1, "refer
 the value, the error that the run states, why there is none, and the place; what the run says of
 itself; elements, seconds and memory. The log of the run goes to standard error.
 
-A reference has one window more than the usual run, with smaller elements than the last usual one,
-in the ring gear of the plane, where windows converge slower, two. In the wall of a cup its rings
-are finer by 1.5, and there is one more slice. That of a cup drive
+A reference has one window more than the usual run, with smaller elements than the last usual one.
+In the wall of a cup its rings are finer by 1.5, and there is one more slice. That of a cup drive
 under load starts from the state of the usual run, so that this is computed first.
 """
 
@@ -104,7 +103,7 @@ def reference_recipe(recipe: MeshRecipe, times: float) -> MeshRecipe:
 def with_finer_windows(model: str) -> None:
     """Resolve stresses with one window more."""
     window_recipes.LEVELS[model] += 1
-    window_recipes.RING_LEVELS[model] += 2 if model == "plane" else 1
+    window_recipes.RING_LEVELS[model] += 1
     wall_stress.RINGS = FINER_RINGS
     wall_stress.SLICES = (*wall_stress.SLICES, FINER_SLICE)
 

@@ -64,10 +64,9 @@ root, which change such a stress by 2.5 and 1.8 % (docs/verification/effectivity
 
 LEAST_IN_RING = {"plane": 0.1, "cup": 0.3}
 """Least error in the ring gear, as a share of its largest stress; in the plane not in the tooth
-root where no contact lies on an edge. Its meshes have one element in the rim and below the root,
-which no coarser one has fewer of: more of them change these stresses by up to a tenth, the largest
-one in a root by 0.9 %. There windows beside a contact on an edge may rise by 14 % after three that
-seem to converge. In a cup drive there are two windows, of which the finer one misses 3 to 30 %
+root. Its meshes have one element in the rim and below the root, which no coarser one has fewer of:
+more of them change these stresses by up to a tenth, the largest one in a root by 0.9 %. In a cup
+drive there are two windows, of which the finer one misses 3 to 30 %
 (docs/verification/effectivity.md)."""
 
 FEWEST_ALONG_FLANKS = 6
@@ -218,7 +217,7 @@ def region_errors(
             continue
         share = least
         if stress.place.body != FLEXIBLE_SPLINE:
-            if model == "cup" or region != TOOTH_ROOT or on_edge:
+            if model == "cup" or region != TOOTH_ROOT:
                 share = LEAST_IN_RING[model]
             share = max(share, _force_error(coarser, recipe, contacts, stress.place, ring_teeth))
         floor = share * _largest_apart(fine.regions, kind)
@@ -236,9 +235,9 @@ def _force_error(
     place: Place,
     ring_teeth: int,
 ) -> float:
-    """Largest error of the force of a pair at a place of the ring gear, of the pairs on its tooth
-    and on those beside it, as a share of the largest force of these: what a pair of a small force
-    adds to the stress is as small."""
+    """Error of the forces beside a place of the ring gear, of the pairs on its tooth and on those
+    beside it, as a share of their sum. Each of them adds to the stress in proportion to its force,
+    and their errors are independent."""
     forces = [(one.recipe, {pair.key: pair.force_N for pair in one.contacts}) for one in coarser]
     forces.append((recipe, {pair.key: pair.force_N for pair in contacts}))
     near = [
@@ -250,8 +249,8 @@ def _force_error(
         shown_error([(one, by_pair.get(pair.key, 0.0)) for one, by_pair in forces], of_contact=True)
         for pair in near
     ]
-    largest = max((pair.force_N for pair in near), default=0.0)
-    return max(errors) / largest if largest > 0.0 else 0.0
+    total = sum(pair.force_N for pair in near)
+    return math.hypot(*errors) / total if total > 0.0 else 0.0
 
 
 def _largest_apart(regions: Mapping[str, RegionStress], kind: str) -> float:

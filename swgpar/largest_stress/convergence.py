@@ -13,9 +13,9 @@ seen, but it rests on two differences only, at the ends of teeth about 1. With t
 error of most windows is 0.5 to 3 times the true one (docs/verification/effectivity.md)."""
 
 
-def error_of(levels: Sequence[float], ratio: float) -> float:
+def error_of(levels: Sequence[float], ratio: float, highest: float = HIGHEST_ORDER) -> float:
     """Error of the last value on meshes whose element sizes have this ratio, by the order observed
-    on the last three.
+    on the last three. highest : order that is not exceeded
 
     Two values are judged by `ASSUMED_ORDER`; a single one, the others being left out, has no bound.
     """
@@ -23,13 +23,13 @@ def error_of(levels: Sequence[float], ratio: float) -> float:
         return np.inf
     last = levels[-1] - levels[-2]
     if len(levels) == 2:
-        return abs(last) / (ratio**ASSUMED_ORDER - 1.0)
+        return abs(last) / (ratio ** min(ASSUMED_ORDER, highest) - 1.0)
     before = levels[-2] - levels[-3]
     # a last change that is small by chance is no convergence
-    change = max(abs(last), abs(before) / ratio**HIGHEST_ORDER)
+    change = max(abs(last), abs(before) / ratio**highest)
     order = LOWEST_ORDER  # changes of different signs show none
     if before * last > 0.0:
-        order = float(np.clip(np.log(before / last) / np.log(ratio), LOWEST_ORDER, HIGHEST_ORDER))
+        order = float(np.clip(np.log(before / last) / np.log(ratio), LOWEST_ORDER, highest))
     return change / (ratio**order - 1.0)
 
 

@@ -26,6 +26,7 @@ from swgpar.fem.stress import principal
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.rotation import rotated
 from swgpar.largest_stress.places import OF_REGION
+from swgpar.largest_stress.surface_stress import surface_mises
 from swgpar.largest_stress.window_loads import WindowLoads
 from swgpar.largest_stress.window_regions import read_regions, tooth_nodes
 from swgpar.largest_stress.window_state import WindowState
@@ -72,6 +73,7 @@ class WindowStress:
 
     value : MPa;  tooth : where;  position : (3,) mm, undeformed, with the tooth at +y
     region, warning : as of a `Place`;  elements : of the window
+    beside : whether it is where the distance from a contact ends
     """
 
     value: float
@@ -80,15 +82,17 @@ class WindowStress:
     region: str
     warning: str
     elements: int
+    beside: bool = False
 
 
 @dataclass(frozen=True)
 class _Found:
-    """A largest stress (MPa), the tooth and the node of its sector."""
+    """A largest stress (MPa), the tooth and the node of its sector; beside : of `WindowStress`."""
 
     value: float
     tooth: int
     node: int
+    beside: bool = False
 
 
 def window_sector(
@@ -314,6 +318,8 @@ class LocalProblem:
         both = np.arange(len(mesh.coords)) if mesh.lower_nodes is None else mesh.lower_nodes
         nodes, index = np.unique(both, return_inverse=True)  # both layers of the plane are alike
         s1, s3, mises = (values[:, index] for values in principal(stress[:, nodes]))
+        if mesh.plane:
+            mises = surface_mises(s1, s3, mises, self._loads.unloaded()[sectors[inside]])
         prefix = STRESS_PREFIXES[self.gear][0]
         named = {f"{prefix}_s1": s1, f"{prefix}_s3": -s3, f"{prefix}_vm": mises}
         return named, sectors[inside]
@@ -355,16 +361,17 @@ class LocalProblem:
         length = CUP_LENGTH * geometry.wall_decay if "cut" in mesh.node_sets else 0.0
         regions = read_regions(geometry, mesh, length, self._shared.regions)
         stresses, sectors = self._stresses
-        near, mine = self._loads.near(geometry.module)[sectors], list[tuple[str, str, _Found]]()
+        beside, mine = self._loads.beside(geometry.module), list[tuple[str, str, _Found]]()
+        read = {name: beside.read(values, sectors) for name, values in stresses.items()}
         for region in sorted(set(regions) - {""}):
             nodes = np.flatnonzero(regions == region)
-            for name, values in stresses.items():
-                read = np.where(near[:, nodes], -np.inf, values[:, nodes])
-                for sector, of_sector in zip(sectors, read, strict=True):
-                    tooth, best = self.layout.first_tooth + int(sector), int(of_sector.argmax())
-                    value = float(of_sector[best])
+            for name, values in read.items():
+                for k, sector in enumerate(sectors):
+                    node = int(nodes[values[k, nodes].argmax()])
+                    value, tooth = float(values[k, node]), self.layout.first_tooth + int(sector)
                     if value > 0.0:
-                        mine.append((name, region, _Found(value, tooth, int(nodes[best]))))
+                        at_end = bool(value > stresses[name][k, node])
+                        mine.append((name, region, _Found(value, tooth, node, at_end)))
         found: dict[int, dict[str, WindowStress]] = {}
         for name, region, one in chain(*self.model.comm.allgather(mine)):
             of_tooth = found.setdefault(one.tooth, {})
@@ -376,7 +383,9 @@ class LocalProblem:
         position = mesh.coords[found.node]
         warning = warning_of(self.model.geometry, region, position)
         elements = self.layout.count * len(mesh.hexes)
-        return WindowStress(found.value, found.tooth, position, region, warning, elements)
+        return WindowStress(
+            found.value, found.tooth, position, region, warning, elements, found.beside
+        )
 
     def destroy(self) -> None:
         """Release what further windows on this mesh do not take over; collective."""

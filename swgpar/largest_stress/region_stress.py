@@ -19,7 +19,7 @@ from swgpar.answers.answer import joined_error
 from swgpar.fem.body import FLEXIBLE_SPLINE, STRESS_PREFIXES
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.stress import principal
-from swgpar.largest_stress.convergence import error_of
+from swgpar.largest_stress.convergence import HIGHEST_ORDER, LOWEST_ORDER, error_of
 from swgpar.largest_stress.local_problem import WindowStress
 from swgpar.largest_stress.places import (
     APART_DISTANCE,
@@ -29,6 +29,7 @@ from swgpar.largest_stress.places import (
     pressed_nodes,
     working_flanks,
 )
+from swgpar.largest_stress.surface_stress import surface_edges, surface_mises
 from swgpar.largest_stress.window_regions import tooth_nodes
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
@@ -220,14 +221,17 @@ class WindowReadings:
 
         The stress of a flank beside its root is that of the end of the root, and at most the
         largest in the root. Coarser windows may have no node between the root and the contact.
+        Where the distance from a contact ends, the tractions that nodal averages have on a free
+        surface are largest, and fall in first order.
         """
         levels, (stress, _, region) = self.levels[tooth][name], name.partition(OF_REGION)
         root = self.levels[tooth].get(f"{stress}{OF_REGION}{TOOTH_ROOT}")
-        reach = BESIDE_ROOT * model.geometry.module
-        if region == FLANK and root and _to_root(layout, self.last[tooth][name].position) < reach:
+        reach, last = BESIDE_ROOT * model.geometry.module, self.last[tooth][name]
+        highest = LOWEST_ORDER if last.beside else HIGHEST_ORDER
+        if region == FLANK and root and _to_root(layout, last.position) < reach:
             below = max(root[-1] - levels[-1], 0.0)
-            return min(error_of(levels, ratio), error_of(root, ratio) + below)
-        return error_of(levels, ratio)
+            return min(error_of(levels, ratio, highest), error_of(root, ratio) + below)
+        return error_of(levels, ratio, highest)
 
 
 def _of_teeth_and_rim(stress: str) -> list[str]:
@@ -285,6 +289,10 @@ def nodal_by_sector(
     else:
         near = near_contact(mesh, working_flanks(mesh)[None], distance)
         near = np.broadcast_to(near, s1.shape)
+    if mesh.plane:
+        # that near the contact is left out
+        surface = np.isin(mesh.lower_nodes, surface_edges(mesh))
+        mises = surface_mises(s1, s3, mises, surface)
     found = {}
     prefix = STRESS_PREFIXES[gear][0]
     for region in np.unique(regions):

@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from swgpar.fem.body import RING_GEAR
 from swgpar.flank_pressure.flank_loads import (
@@ -21,6 +20,7 @@ from swgpar.flank_pressure.flank_loads import (
 )
 from swgpar.flank_pressure.pressed_cells import PressedCells, pressed_cells
 from swgpar.largest_stress.places import APART_DISTANCE, TOUCHED, near_contact
+from swgpar.largest_stress.surface_stress import BesideContact, surface_edges
 from swgpar.load.load_states import LoadState
 from swgpar.meshing.sector import SectorMesh
 from swgpar.model.drive_model import DriveModel
@@ -64,32 +64,30 @@ class WindowLoads:
             nodal[sector, side] = forces.reshape(-1, 3)
         return cls(mesh, len(teeth), nodal, cells)
 
-    def near(self, module: float) -> np.ndarray:
-        """Nodes (count, n_node) bool within `APART_DISTANCE` of the contact of flanks. module : mm
+    def beside(self, module: float) -> BesideContact:
+        """Where stresses are read: beyond `APART_DISTANCE` from the contact of flanks. module : mm
 
         In the plane from the ends of the cells on, so that finer windows read up to the same
         distance. Elsewhere from loaded nodes on; smaller forces are what a load shares with the
         next node.
         """
-        mesh, distance = self.mesh, APART_DISTANCE * module
+        mesh, forces, distance = self.mesh, self._forces(), APART_DISTANCE * module
         if mesh.plane:
-            near = np.zeros((self.count, len(mesh.coords)), dtype=bool)
-            for (sector, side), cells in self.cells.items():
-                near[sector] |= _within(mesh, side, cells.ends, distance)
-            return near
-        forces = np.zeros((self.count, len(mesh.coords)))
-        for grid in mesh.flanks:
+            return BesideContact.of_cells(mesh, self.count, self.cells, distance, forces > 0.0)
+        touched = forces > TOUCHED * forces.max(initial=0.0)
+        return BesideContact.of_nodes(near_contact(mesh, touched, distance))
+
+    def unloaded(self) -> np.ndarray:
+        """Nodes (count, n_node) bool of tooth and root on which no force acts, in the plane."""
+        surface = np.isin(self.mesh.lower_nodes, surface_edges(self.mesh))
+        return surface & (self._forces() == 0.0)
+
+    def _forces(self) -> np.ndarray:
+        """Sizes (count, n_node) N of the forces."""
+        forces = np.zeros((self.count, len(self.mesh.coords)))
+        for grid in self.mesh.flanks:
             for sector in range(self.count):
                 if (sector, grid.side) in self.nodal:
                     size = np.linalg.norm(self.nodal[sector, grid.side], axis=1)
                     forces[sector, grid.nodes.ravel()] = size
-        return near_contact(mesh, forces > TOUCHED * forces.max(initial=0.0), distance)
-
-
-def _within(mesh: SectorMesh, side: int, s: np.ndarray, distance: float) -> np.ndarray:
-    """Nodes (n_node,) bool of a plane sector within a distance (mm) of places `s` (n,) mm of a
-    flank."""
-    profile = mesh.profile
-    points = profile.point(np.clip(s, 0.0, profile.length)) * [side, 1.0]
-    nearest, _ = cKDTree(points).query(mesh.coords[:, :2])
-    return nearest < distance
+        return forces

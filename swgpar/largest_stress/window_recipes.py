@@ -68,8 +68,9 @@ LEVELS = {"plane": 4, "cup": 3}
 FEWEST_LEVELS = {"plane": 4, "cup": 2}
 """The same for a rough answer."""
 
-RING_LEVELS = {"plane": 3, "cup": 2}
-"""Windows of the ring gear: its stresses are far below those of the flexible spline."""
+RING_LEVELS = {"plane": 4, "cup": 2}
+"""Windows of the ring gear. In the plane the first one is too coarse to show an order beside a
+contact near the root (docs/verification/effectivity.md)."""
 
 NARROW_FROM = 2
 """Index of the first window of the flexible spline that is a narrow one of the one before."""
