@@ -317,7 +317,7 @@ class LoadStepper:
     def _presses(self, here: LoadState) -> bool:
         """Whether flanks press under the first rotation of a program: a rotated pattern would press
         them deeper, and the first iteration follows the tangent. Collective."""
-        first = self._before is None and self._last is not None and self._last[0] == here
+        first = self._before is None and (self._last is None or self._last[0] == here)
         return first and self.problem.touching_pairs() > 0
 
     def hold_output(self) -> None:

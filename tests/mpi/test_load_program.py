@@ -170,6 +170,20 @@ def test_lost_motion_of_a_stiff_drive_is_its_clearance() -> None:
     assert half == pytest.approx(closed, rel=5e-3)
 
 
+def test_a_first_rotation_of_flanks_that_press_follows_the_tangent() -> None:
+    """Teeth that fill their slots press without a torque. A cup that is rotated as a whole at first
+    presses all of them in by the rotation, and takes 16 iterations back."""
+    on = {"name": "on", "output_rotation": 0.02 * 360.0 / 42.0}
+    design = small("cup").with_values({**LOW_TEETH, "ring_gear.c_P": 1.0, "load.program": [on]})
+    stepper = load_stepper(design.with_values({"steps.subdivide": False}))
+    *states, rotated = load_sequence(design).states
+    for state in states:
+        stepper.advance(state)
+    assert stepper.row()["pairs_in_contact"] > 0
+    stepper.advance(rotated)
+    assert stepper.iterations <= 10
+
+
 def follow(design: DriveDesign) -> list[PointRow]:
     stepper, rows = load_stepper(design), []
     for state in load_sequence(design).states:
