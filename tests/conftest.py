@@ -35,7 +35,8 @@ for _number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         )
 
 SLOW = Path(__file__).with_name("slow.txt")
-"""Tests that take ten seconds or more, one on a line."""
+"""Tests that take ten seconds or more, and longer ones that a test of the same on fewer or more
+ranks, or of another drive, stands beside; one on a line."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
