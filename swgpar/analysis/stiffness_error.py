@@ -3,10 +3,12 @@
 Two groups of counts have an error each: those that are smaller on a coarser mesh, and in the plane
 those that are too small to be: along the flanks, in the layers below them, and in the ring gear.
 These are doubled on another mesh. The sizes of both errors are added (docs/theory/stiffness.md).
+In a cup drive the wall decides with the face width; the coarser mesh has at least 1/1.5 of it.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -20,7 +22,12 @@ from swgpar.evaluation.stiffness import CHORDS, NAMES, StiffnessValues, by_posit
 from swgpar.load.load_sequence import stiffness_program
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
-from swgpar.meshing.recipe_counts import body_ratio, with_equal_doubled
+from swgpar.meshing.recipe_counts import (
+    body_ratio,
+    wall_ratio,
+    with_equal_doubled,
+    with_wall_rounded_up,
+)
 
 LEAST = 0.003
 """Least error of a stiffness, and of the lost motion without the backlash, as a share of it:
@@ -50,7 +57,8 @@ def stiffness_error(
         )
         return None
     first = replace(drive, design=_first_position(drive.design))
-    coarse, ratio = coarser[0], smallest_ratio(coarser[0], recipe)
+    coarse = with_wall_rounded_up(coarser[0], recipe)
+    ratio = min(smallest_ratio(coarse, recipe), wall_ratio(coarse, recipe) or math.inf)
     fine = by_position(stiffness_program(first.design), rows)[0.0]
     try:
         found = _stiffness_on(first, coarse)

@@ -73,6 +73,17 @@ def coarsened(recipe: MeshRecipe) -> MeshRecipe:
     return with_counts(recipe, count)
 
 
+def with_wall_rounded_up(coarse: MeshRecipe, recipe: MeshRecipe) -> MeshRecipe:
+    """The coarser recipe with 1/RATIO of the counts of the cup, rounded up: a cylinder of two
+    elements is too stiff to tell what four leave."""
+    return with_counts(
+        coarse,
+        lambda section, name, own: (
+            math.ceil(getattr(recipe.cup, name) / RATIO - ROUND_OFF) if section == "cup" else own
+        ),
+    )
+
+
 def refined(recipe: MeshRecipe) -> MeshRecipe:
     """The recipe with RATIO times every count, rounded up; InputError if too many."""
     return with_counts(recipe, lambda _, name, count: math.ceil(RATIO * count - ROUND_OFF))

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
 from support.bearing import BEARING
 from support.stepping import small
+from swgpar.analysis import stiffness_error
+from swgpar.analysis.coarse_start import MeshedDrive
+from swgpar.analysis.drive_mesh_error import SAFETY
 from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.answers.answer import NO_ESTIMATE
 from swgpar.errors import InputError
@@ -27,7 +32,12 @@ from swgpar.evaluation.ratcheting import (
     overshoot,
     why_ended,
 )
-from swgpar.evaluation.stiffness import ARC_MINUTE, by_position, torsional_stiffness
+from swgpar.evaluation.stiffness import (
+    ARC_MINUTE,
+    StiffnessValues,
+    by_position,
+    torsional_stiffness,
+)
 from swgpar.load.load_program import (
     NO_TORQUE,
     POSITIVE_UNLOADING,
@@ -35,7 +45,8 @@ from swgpar.load.load_program import (
 )
 from swgpar.load.load_sequence import load_sequence, program_points, stiffness_program
 from swgpar.load.load_states import Stage
-from swgpar.meshing import load_recipe
+from swgpar.meshing import MeshRecipe, load_recipe
+from swgpar.meshing.recipe_counts import coarsened, with_wall_rounded_up
 
 
 def program(*stages: dict[str, Any]) -> dict[str, Any]:
@@ -229,6 +240,32 @@ def test_stiffness_of_a_given_loop(points: int) -> None:
         0.0, abs=1e-6
     )
     assert summary.mesh_error is None and len(summary.positions) == 2
+
+
+def test_the_coarser_mesh_for_the_stiffness_of_a_cup_keeps_most_of_its_wall(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two elements along the cylinder make a drive up to 3 % stiffer than three."""
+    design = small("cup").with_values({"stiffness.torque": TORQUE, "stiffness.positions": 1})
+    rows, recipe, meshes = rows_of(design), load_recipe("forces"), list[MeshRecipe]()
+    fine = by_position(stiffness_program(design), rows)[0.0]
+    assert fine.K1 is not None and fine.K2 is not None
+
+    def on_coarser(_: MeshedDrive, coarse: MeshRecipe) -> StiffnessValues:
+        meshes.append(coarse)
+        return replace(fine, K1=1.05 * fine.K1)
+
+    monkeypatch.setattr(stiffness_error, "_stiffness_on", on_coarser)
+    drive = MeshedDrive(design, MPI.COMM_SELF)
+    found = stiffness_error.stiffness_error(drive, recipe, rows)
+    (coarse,) = meshes
+    assert recipe.cup.cylinder == 4 and coarse.cup.cylinder == 3
+    assert coarse.flexible_spline == coarsened(recipe).flexible_spline
+    assert found is not None
+    assert found["K1"] == pytest.approx(SAFETY * 0.05 * fine.K1 / ((4 / 3) ** 2 - 1.0))
+    assert found["K2"] == pytest.approx(stiffness_error.LEAST * fine.K2)
+    plane = load_recipe("plane_coarse")
+    assert with_wall_rounded_up(coarsened(plane), plane) == coarsened(plane)
 
 
 def test_one_way_of_the_loop_stands_for_both() -> None:
