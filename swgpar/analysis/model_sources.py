@@ -220,6 +220,10 @@ class LoadedDrives(ModelSource):
             x.copy(stepper.problem.x)
         else:
             transfer(nearest.model, x, stepper.model, stepper.problem.x, alike=alike)
+            if alike:
+                # the same sectors of the ring gear in full, where they will do
+                stepper.problem.resume_sectors(nearest.model.problem.modelled.chosen())
+                stepper.solver.take_over_factor(nearest.model.solver)
         larger = max(abs(target.torque), abs(drive.period_torque))
         if abs(target.torque - drive.period_torque) <= LIKE_TORQUE * larger:
             stepper.guides = drive.period

@@ -78,6 +78,5 @@ def bearing_shares(model: DriveModel, state: LoadState) -> dict[str, ComplianceS
     pushed.array.reshape(-1, 3)[: model.partition.n_own] = change[own] / (2.0 * STEP)
     found = {"torsional": shares(system.border[-1], 0.0), "radial": shares(pushed, 1.0)}
     pushed.destroy()
-    system.discard_factor()
     balls.evaluate(u, state, None, None)
     return found

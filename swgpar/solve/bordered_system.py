@@ -38,6 +38,7 @@ class BorderedSystem:
 
     Attributes:
     turn : rad, by which the present problem is turned against that of the factor, counter-clockwise
+    is_taken_over : whether the factor is that of another problem, near the solution of this one
     """
 
     def __init__(self, partition: Partition, solver: LinearSolver, *, reuse: bool = False) -> None:
@@ -56,6 +57,7 @@ class BorderedSystem:
         self.small_system = np.zeros((0, 0))
         self.failed = False
         self.turn = 0.0
+        self.is_taken_over = False
         self.reused: ReusedFactor | None = None
         if reuse and solver.is_factor:
             self.reused = ReusedFactor(
@@ -97,6 +99,24 @@ class BorderedSystem:
         if self.reused is not None and not self.solver.failure:
             self.turn = turn
             self.reused.renew(self._layout())
+
+    def take_over(self, other: BorderedSystem) -> bool:
+        """Exchange the solvers with another system of the same nodes, if this one has made no
+        factor yet and the other one has one that may serve; whether it has. Collective."""
+        if self.reused is None or other.reused is None or self.into is not None:
+            return False
+        if other.reused.discarded or other.solver.failure:
+            return False
+        mine, others = self.solver, other.solver
+        mine.kind, others.kind = others.kind, mine.kind
+        self.solver, other.solver = others, mine
+        self.active, self.into, self.out = other.active, other.into, other.out
+        self.columns, self.small_system = other.columns, other.small_system
+        self.reused.renew(other.reused.layout)
+        self.turn, self.is_taken_over = other.turn, True
+        other.into, other.out, other.columns = None, None, []
+        other.discard_factor()
+        return True
 
     def _turned(self, values: np.ndarray, angle: float) -> np.ndarray:
         """Vectors in the rows of the matrix, turned by an angle (rad), counter-clockwise."""
@@ -163,7 +183,7 @@ class BorderedSystem:
     def factorise(self) -> None:
         """Prepare the solver for the present matrix, and solve for the borders."""
         self.solver.prepare(self.matrix, self.active, keep=self.reused is not None)
-        self.turn = 0.0
+        self.turn, self.is_taken_over = 0.0, False
         sides = self.grounding + self.border
         if len(self.columns) != len(sides):
             self.columns = [vector.duplicate() for vector in sides]

@@ -156,7 +156,8 @@ class NewtonSolver:
         state.pattern_misses = problem.tangent(u, state.load_state)
         missing = int(len(state.pattern_misses) > 0)
         state.incomplete_pattern = bool(problem.partition.comm.allreduce(missing, op=MPI.MAX))
-        if state.load_state.stage < Stage.ROTATE and state.residuals[-1] > SETTLED:
+        unsettled = state.load_state.stage < Stage.ROTATE and state.residuals[-1] > SETTLED
+        if unsettled and not self.system.is_taken_over:
             self.system.discard_factor()
         p.stateIncrease()
         bound = problem.torque_control.output_step_bound(state.load_state)
@@ -177,6 +178,13 @@ class NewtonSolver:
         problem.complete_tangent(u, state)
         self._set_system(system, u, state, np.inf if state.control == "torque" else None)
         system.factorise()
+
+    def take_over_factor(self, other: NewtonSolver) -> None:
+        """Begin with the factor of a problem that is near, with the same numbers of the same nodes;
+        the other solver, if it solves again, makes a new one. Collective."""
+        if self.system.take_over(other.system):
+            linear, others = self.problem.blocks, other.problem.blocks
+            linear.linear, others.linear = others.linear, linear.linear
 
     def _test_convergence(
         self, snes: PETSc.SNES, its: int, norms: tuple[float, float, float]

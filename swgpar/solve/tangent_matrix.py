@@ -19,8 +19,8 @@ class TangentMatrix:
     elements : of the model
 
     Attributes:
-    pattern : keys row * n_global + column (n,) of the contact blocks; None where the elements have
-    changed since the last `make_room`
+    pattern : keys row * n_global + column (n,) of the contact blocks, sorted; None where the
+    elements have changed since the last `make_room`
     rows : blocks of the owned rows;  block_indices : of the element blocks among them
     matrix : of the last `fill`;  matrix_rows : which of the rows it has
     linear : solves with it, of the first Newton solver that needs it; later ones take it over
@@ -43,12 +43,13 @@ class TangentMatrix:
         self.pattern = self.matrix = self.linear = None
 
     def make_room(self, pattern: np.ndarray, local: LocalNodes, exchange: Exchange) -> None:
-        """Make room for contact blocks with these keys (n,); collective.
+        """Make room for contact blocks with these keys (n,), sorted; collective. Where there is
+        room for them and others, as after an extension, the matrix stays, and its factor.
 
         local, exchange : the nodes that this rank sees, and their values of a vector
         """
-        changed = self.pattern is None or not np.array_equal(pattern, self.pattern)
-        if not self.partition.comm.allreduce(int(changed), op=MPI.MAX):
+        lacks = self.pattern is None or not np.isin(pattern, self.pattern, True).all()
+        if not self.partition.comm.allreduce(int(lacks), op=MPI.MAX):
             self.rows.number = local.number
             return
         self.pattern = pattern
