@@ -16,9 +16,11 @@ from pathlib import Path
 
 from playwright.sync_api import Page, sync_playwright
 
-CHANGES, SOLID_CHANGES, WARMING = 8, 5, 2
-"""Changes of each key, for plane states and for those in 3D; the first ones warm up and are left
-out."""
+CHANGES, WARMING = 8, 2
+"""Changes of each key for plane states; the first ones warm up and are left out."""
+
+SOLID_CHANGES, SOLID_WARMING = 3, 1
+"""The same for states in 3D: one of a drive with balls takes some ten seconds."""
 
 KEYS = {"load.torque": -0.004, "drive.addendum_coef": -0.002, "flexible_spline.rim": -0.002}
 """Keys that are changed, and the relative size of a change: the load, which leaves the picture of
@@ -69,13 +71,14 @@ def seconds(page: Page, key: str, text: str) -> tuple[float, float]:
     return picture, answer
 
 
-def medians(page: Page, key: str, changes: int) -> tuple[float, float]:
-    """Median seconds to the picture and to the answer, after changes of a key."""
+def medians(page: Page, key: str, changes: int, warming: int) -> tuple[float, float]:
+    """Median seconds to the picture and to the answer, after changes of a key; the first ones are
+    left out."""
     first = float(page.locator(f'input[data-key="{key}"]').input_value() or 0.0)
     if not first:
         return math.nan, math.nan
     values = [first * (1.0 + KEYS[key] * (k + 1)) for k in range(changes)]
-    found = [seconds(page, key, f"{value:.8g}") for value in values][WARMING:]
+    found = [seconds(page, key, f"{value:.8g}") for value in values][warming:]
     picture, answer = (statistics.median(one) for one in zip(*found, strict=True))
     return picture, answer
 
@@ -88,14 +91,14 @@ def measure(page: Page, name: str) -> None:
         page.get_by_text(f"[{section}]", exact=True).click()
         page.wait_for_selector(f'input[data-key^="{section}."]')
     page.evaluate(OBSERVE)
-    plane = {key: medians(page, key, CHANGES) for key in KEYS}
+    plane = {key: medians(page, key, CHANGES, WARMING) for key in KEYS}
     in_space = page.get_by_role("button", name="3D model", exact=True)
     solid = dict.fromkeys(KEYS, math.nan)
     if in_space.is_visible():
         in_space.click()
         page.wait_for_selector('[data-loaded-state="busy"]')
         page.wait_for_selector('[data-loaded-state="computed"]', timeout=WARM)
-        solid = {key: medians(page, key, SOLID_CHANGES)[1] for key in KEYS}
+        solid = {key: medians(page, key, SOLID_CHANGES, SOLID_WARMING)[1] for key in KEYS}
     for key, (picture, answer) in plane.items():
         if not math.isnan(answer):
             cells = (name, f"`{key}`", *map(_text, (picture, answer, solid[key])))

@@ -10,7 +10,7 @@ from nicegui import app, ui
 
 from swgpar.api.designs import new
 from swgpar.app.access import TokenGate
-from swgpar.app.choices import read_choices
+from swgpar.app.choices import Choices, read_choices
 from swgpar.app.drawings import ADDRESS, FOLDER
 from swgpar.app.jobs import JobQueue
 from swgpar.app.page import Page
@@ -50,15 +50,15 @@ def require_port(port: int) -> int:
     return port
 
 
-def open_workspace(source: Path) -> Workspace:
-    """The workspace of a folder, or that of the folder of a design file.
+def open_workspace(source: Path) -> tuple[Workspace, Choices]:
+    """The workspace of a folder, or that of the folder of a design file, and its choices.
 
     A folder without designs gets a new one. Raises InputError where there is no such folder.
     """
     folder = source if source.is_dir() else source.parent
     if not folder.is_dir():
         raise InputError(f"{source} is not there: give a folder or a design file")
-    workspace = Workspace(folder)
+    workspace, choices = Workspace(folder), read_choices(folder)
     workspace.bring_back()
     if source.is_file():
         if source.stem not in workspace.variants:
@@ -66,11 +66,11 @@ def open_workspace(source: Path) -> Workspace:
         workspace.shown = source.stem
     else:
         workspace.open_all()
-        workspace.show_again(read_choices(folder))
+        workspace.show_again(choices)
     if not workspace.variants:
         workspace.add("drive", new(ratio=50.0, diameter=50.0, torque=15.0))
         workspace.keep()
-    return workspace
+    return workspace, choices
 
 
 def serve(source: Path, port: int | None = None, *, show: bool = True) -> None:
@@ -79,8 +79,8 @@ def serve(source: Path, port: int | None = None, *, show: bool = True) -> None:
     source : folder, or design file in it;  port : default a free one
     show : whether to open a browser
     """
-    workspace = open_workspace(source)
-    state = AppState(workspace, JobQueue(workspace.folder))
+    workspace, choices = open_workspace(source)
+    state = AppState(workspace, JobQueue(workspace.folder), choices)
     for worker in state.workers.values():
         app.on_shutdown(worker.close)
     state.want_states()

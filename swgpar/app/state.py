@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from swgpar.api.runs import load_mesh
-from swgpar.app.choices import read_choices
+from swgpar.app.choices import Choices
 from swgpar.app.fields import FormField
 from swgpar.app.jobs import AppJob, JobQueue
 from swgpar.app.loaded_states import PLANE, SOLID, ShownState, StateModel
@@ -59,10 +59,10 @@ class AppState:
     windows : that are open;  was_busy : whether they show that a state is computed
     """
 
-    def __init__(self, workspace: Workspace, queue: JobQueue) -> None:
+    def __init__(self, workspace: Workspace, queue: JobQueue, choices: Choices) -> None:
         self.workspace, self.queue = workspace, queue
         self.workers = {model: StateWorker(model) for model in (PLANE, SOLID)}
-        self.choices = read_choices(workspace.folder)
+        self.choices = choices
         self.angle_deg, self.plays, self.loaded = 0.0, False, False
         self.refused: dict[str, tuple[Any, str]] = {}
         self.windows: list[Window] = []

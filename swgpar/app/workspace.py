@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
 from swgpar.input.commented_file import commented_toml
 from swgpar.input.quantities import show
-from swgpar.input.toml_file import apply_overrides, read_toml
+from swgpar.input.toml_file import apply_overrides, read_toml, validate
 from swgpar.results.atomic import to_json, write_file
 
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,59}")
@@ -61,6 +60,31 @@ def has_section(path: Path, section: str) -> bool:
     except (OSError, ValueError):
         return False
     return any(line.strip().startswith(f"[{section}]") for line in lines)
+
+
+def read_changes(path: Path) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    """Contents of design files that undo and redo lead to; none where there is no such file.
+
+    Raises InputError where a user has changed it into something else. What a design says about
+    the fit of its keys is left to undo, which takes a profile for each of them.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return [], []
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path.name} cannot be read: {error}") from None
+    try:
+        changes = json.loads(text)
+        before, after = changes["before"], changes["after"]
+        tables = [*before, *after]
+    except (ValueError, TypeError, KeyError):
+        raise InputError(f'{path.name} has no lists "before" and "after"') from None
+    for table in tables:
+        if not isinstance(table, dict):
+            raise InputError(f"{path.name}: {show(table)} is no design: allowed are its sections")
+        validate(DriveDesign, table)
+    return before, after
 
 
 @dataclass
@@ -183,12 +207,18 @@ class Workspace:
         write_file(folder / f"{self.shown}.{HISTORY}", to_json(changes))
 
     def bring_back(self) -> None:
-        """Open what an earlier server has kept; files that are no design any more are left."""
+        """Open what an earlier server has kept; files that are no design any more are refused."""
         for path in sorted((self.folder / KEPT).glob("*.toml")):
-            with suppress(InputError, OSError, ValueError, KeyError):
+            try:
                 variant = self.open(path)
-                changes = json.loads(path.with_suffix(f".{HISTORY}").read_text(encoding="utf-8"))
-                variant.before, variant.after = changes["before"], changes["after"]
+            except InputError as error:
+                self.refused[f"{KEPT}/{path.name}"] = str(error)
+                continue
+            changes = path.with_suffix(f".{HISTORY}")
+            try:
+                variant.before, variant.after = read_changes(changes)
+            except InputError as error:
+                self.refused[f"{KEPT}/{changes.name}"] = f"{error}; undo begins anew"
 
     def open_all(self) -> None:
         """Open the designs of drives in the folder; other files and links are left. The first

@@ -262,6 +262,30 @@ def test_a_workspace_keeps_every_change(tmp_path: Path) -> None:
     assert later.variant.undo() and later.variant.design.model_dump() == drive().model_dump()
 
 
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("[]", 'no lists "before" and "after"'),
+        ('{"before": [], "after": [', 'no lists "before" and "after"'),
+        ('{"before": [3], "after": []}', "is no design"),
+        ('{"before": [{"drives": {}}], "after": []}', "drives"),
+    ],
+)
+def test_changes_that_a_user_has_edited_are_refused_at_the_start(
+    tmp_path: Path, text: str, sentence: str
+) -> None:
+    """With a sentence; the variant is there, and undo begins anew."""
+    workspace = Workspace(tmp_path)
+    workspace.add("one", drive())
+    workspace.keep()
+    (tmp_path / "variants" / "one.history.json").write_text(text)
+    later = Workspace(tmp_path)
+    later.bring_back()
+    assert sentence in later.refused["variants/one.history.json"]
+    assert "undo begins anew" in later.refused["variants/one.history.json"]
+    assert not later.variants["one"].undo()
+
+
 @pytest.mark.parametrize("name", ["../out", "", "a b", ".hidden", "x" * 61, "a/b", "--help"])
 def test_names_that_are_no_files_of_the_workspace_are_refused(tmp_path: Path, name: str) -> None:
     with pytest.raises(InputError, match="is not allowed"):
