@@ -26,6 +26,11 @@ from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import coarser
 from swgpar.model.drive_model import DriveModel
 
+LIKE_LOAD = 0.1
+"""Difference of two torques, over the larger one, up to which the state under one is a better start
+for the other than that of a coarser mesh. In a cup with balls a step from 16 to 34 N·m takes 22
+iterations, the way from a coarser mesh 7."""
+
 
 def levels(count: int, recipe: MeshRecipe) -> list[MeshRecipe]:
     """Recipes of at most so many coarser meshes, the coarsest first."""
@@ -189,8 +194,8 @@ def start_loaded(
     kept: StartStates | None = None,
     compared: int = 0,
 ) -> None:
-    """Bring `stepper` to the loaded state: from that under another load where it has one, by way of
-    coarser meshes, the coarsest of `recipes` first, or bent at once.
+    """Bring `stepper` to the loaded state: from that under another load where it has one that is
+    `LIKE_LOAD`, by way of coarser meshes, the coarsest of `recipes` first, or bent at once.
 
     drive : that of the stepper, on any mesh
     on_coarse : called with the model on each of the last `compared` ones of the coarser meshes; it
@@ -206,15 +211,22 @@ def start_loaded(
             coarse = drive.load(recipe, coarse, kept)
             if left <= compared:
                 on_coarse(coarse)
-        if stepper.load_state != stepper.sequence.start:  # that under another load
+        known = stepper.load_state != stepper.sequence.start  # that under another load
+        if coarse is not None and not (known and _is_like_load(stepper)):
+            take_over(coarse, stepper, models)
+        elif known:
             if coarse is not None:
                 models.give_back(coarse)
             _advance(stepper)
-        elif coarse is not None:
-            take_over(coarse, stepper, models)
         else:
             _jump(stepper)
     models.keep_loaded(stepper)
+
+
+def _is_like_load(stepper: LoadStepper) -> bool:
+    """Whether the torque of the state is nearly that of the loaded one."""
+    here, loaded = stepper.load_state.torque, stepper.sequence.loaded.torque
+    return abs(loaded - here) <= LIKE_LOAD * max(abs(here), abs(loaded))
 
 
 def take_over(coarse: DriveModel, stepper: LoadStepper, models: ModelSource) -> int:

@@ -92,7 +92,7 @@ class RatchetingTorque(AnswerGroup):
     def peak_remark(self) -> str:
         """What to know of the largest torque."""
         if not self.is_peak:
-            return "no peak: not fallen from"
+            return f"no peak up to the end of the run ({self.ended})"
         by_steps = "" if self.peak_error_Nm is None else f" ± {self.peak_error_Nm:.2g} N·m"
         return f"by the steps{by_steps}; the error by the mesh is not known"
 
