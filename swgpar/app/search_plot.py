@@ -97,7 +97,8 @@ def parallel_figure(tried: TriedDesigns) -> dict[str, Any]:
         for y, text, anchor in ((0.0, axis.low, "top"), (1.0, axis.high, "bottom"))
     ]
     titles = [axis.title.replace("\n", "<br>") for axis in axes]
-    ticks = {"tickvals": list(range(len(axes))), "ticktext": titles, "tickangle": 0}
+    # in a narrow window titles are turned, and take the room that they need
+    ticks = {"tickvals": list(range(len(axes))), "ticktext": titles, "automargin": True}
     bare = {"showgrid": False, "zeroline": False}
     layout = {
         "xaxis": {**bare, **ticks, "range": [-0.5, len(axes) - 0.5]},
