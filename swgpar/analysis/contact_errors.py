@@ -13,7 +13,12 @@ from functools import partial
 
 import numpy as np
 
-from swgpar.analysis.drive_mesh_error import SAFETY, CoarserMesh, shown_error
+from swgpar.analysis.drive_mesh_error import (
+    SAFETY,
+    CoarserMesh,
+    least_error_of_force,
+    shown_error,
+)
 from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares
 from swgpar.flank_pressure.pair_contact import PairContact, touches_edges
 from swgpar.meshing import MeshRecipe
@@ -29,15 +34,6 @@ to 1.7 %."""
 
 LEAST_PRESSURE_WITH_EDGES = 0.05
 """The same where another contact lies on an edge."""
-
-LEAST_FORCE = {"plane": 0.02, "cup": 0.07}
-"""Least error of a force, as a share of it: elements along the flank, below it and in the ring
-gear, of which no coarser mesh has fewer, change it by up to 2 % in the plane. In a cup drive the
-forces of some ten pairs move with the layers along the face width, by 1 to 6.5 %
-(docs/verification/effectivity.md)."""
-
-LEAST_FORCE_WITH_EDGES = 0.03
-"""The same in the plane where a contact lies on an edge, whose compliance no mesh resolves."""
 
 HERTZ = 0.5
 """Error of a pressure that a force brings with it, as shares of both: a pressure goes with the root
@@ -69,7 +65,7 @@ def contact_errors(
     alone = any(lobes * pair.force_share > ALONE for pair in contacts)
     meshes = [*((one.recipe, one.contacts) for one in coarser), (recipe, contacts)]
 
-    least = LEAST_FORCE_WITH_EDGES if on_edge and model == "plane" else LEAST_FORCE[model]
+    least = least_error_of_force(model, contacts)
     least_pressure = LEAST_PRESSURE_WITH_EDGES if on_edge else LEAST_PRESSURE
 
     def of_force(measure: Measure) -> float | None:

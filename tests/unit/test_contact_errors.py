@@ -10,13 +10,13 @@ import pytest
 
 from swgpar.analysis.contact_errors import (
     LAW,
-    LEAST_FORCE,
-    LEAST_FORCE_WITH_EDGES,
     LEAST_PRESSURE,
     LEAST_PRESSURE_WITH_EDGES,
     contact_errors,
 )
 from swgpar.analysis.drive_mesh_error import (
+    LEAST_FORCE,
+    LEAST_FORCE_WITH_EDGES,
     ORDER,
     SAFETY,
     CoarserMesh,

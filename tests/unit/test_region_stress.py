@@ -259,6 +259,11 @@ def test_small_stresses_are_as_uncertain_as_the_largest_one_of_their_body(
     root = 0.004 if model == "plane" else LEAST_IN_RING[model]
     assert found["rg_s1 in tooth root"].drive_error == pytest.approx(root * 50.0)
     assert found["fs_s1 in tip"].drive_error == pytest.approx(0.004 * 100.0)
+    # forces whose error no mesh shows
+    found = region_errors(meshes, fine, rooted(regions), 0.004, [pair(0)], 20, 0.02)
+    root = max(root, 0.02)
+    assert found["rg_s1 in tooth root"].drive_error == pytest.approx(root * 50.0)
+    assert found["fs_s1 in tooth root"].drive_error == pytest.approx(0.004 * 100.0)
 
 
 def test_a_contact_on_an_edge_leaves_no_estimate_in_the_tips() -> None:
