@@ -110,6 +110,9 @@ class BorderedSystem:
         Collective."""
         if self.reused is None or other.reused is None or self.into is not None:
             return False
+        # half of a drive may be near one that is modelled in full
+        if other.partition.n_global != self.partition.n_global:
+            return False
         if other.reused.discarded or other.solver.failure:
             return False
         if other.solver.price(other.solver.matrix) < DEAR:
