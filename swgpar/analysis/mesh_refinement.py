@@ -15,7 +15,6 @@ from swgpar.analysis.coarse_start import MeshedDrive
 from swgpar.analysis.coarse_wall import coarse_wall
 from swgpar.analysis.compare_meshes import compare_meshes
 from swgpar.analysis.drive_mesh_error import (
-    ORDER,
     MeshComparison,
     coarser_mesh,
     coarser_recipes,
@@ -37,15 +36,6 @@ from swgpar.model.drive_model import DriveModel
 
 LARGEST = {"plane": 1_500_000, "cup": 700_000}
 """Elements of the whole drive beyond which no finer mesh is taken; they need about 7 and 12 GB."""
-
-DIMENSIONS = {"plane": 2, "cup": 3}
-"""In which a mesh of the drive has more elements than a coarser one."""
-
-HOPELESS = 2.0
-"""Error that the largest mesh would leave by second order, over the one that is allowed, from which
-on no finer mesh is taken: it would take most of the time and not give what is asked for. The
-largest mesh of a cup has 1.9 times the elements of `forces` in every direction: third order would
-leave half as much on it."""
 
 
 @dataclass(frozen=True)
@@ -180,23 +170,6 @@ class Refinement:
         self._log(self.known.found)
         return True
 
-    def is_hopeless(self, error: float, allowed: float) -> bool:
-        """Whether the largest mesh would leave far more of an error (MPa) by the mesh of the drive
-        than is allowed; says so."""
-        elements, dimensions = self.model.n_elements(), DIMENSIONS[self.kind]
-        most = (self.largest / elements) ** (ORDER / dimensions)
-        if not math.isfinite(error) or error / most <= HOPELESS * allowed:
-            return False
-        logger.info(
-            "no finer mesh is taken: an error of %.2g by that of the drive falls to %.2g in second "
-            "order on %.2g elements, and at most %.2g are taken",
-            error / self.known.found.s1,
-            allowed / self.known.found.s1,
-            elements * (error / allowed) ** (dimensions / ORDER),
-            self.largest,
-        )
-        return True
-
     def refine_drive(self) -> bool:
         """Take a finer mesh of the drive; False where there is none, or where it is too large."""
         recipe, limit = self.known.comparison.recipe, self.design.solver.memory_limit
@@ -255,8 +228,6 @@ def choose_mesh(
             )
             break
         part = max(refine, key=lambda part: errors[part])
-        if part == "mesh" and present.is_hopeless(errors[part], allowed):
-            break
         if not refine[part]():
             del refine[part]
     known = present.known

@@ -48,7 +48,7 @@ class TangentMatrix:
 
         local, exchange : the nodes that this rank sees, and their values of a vector
         """
-        lacks = self.pattern is None or not np.isin(pattern, self.pattern, True).all()
+        lacks = self.pattern is None or not np.isin(pattern, self.pattern, assume_unique=True).all()
         if not self.partition.comm.allreduce(int(lacks), op=MPI.MAX):
             self.rows.number = local.number
             return
