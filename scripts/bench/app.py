@@ -116,21 +116,23 @@ def main() -> None:
     given = parser.parse_args()
     heads = ("design", "key", "to picture, s", "to plane state, s", "to 3D state, s", "processes")
     print(f"| {' | '.join(heads)} |\n|{'---|' * len(heads)}")
-    with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
+    with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
             executable_path=shutil.which("chromium"), args=["--no-sandbox"]
         )
         for design in given.designs:
-            shutil.copy(design, folder)
-            process, address = serve(Path(folder) / design.name)
-            try:
-                page = browser.new_page(viewport={"width": 1300, "height": 850})
-                page.goto(address)
-                measure(page, design.stem)
-                page.close()
-            finally:
-                process.terminate()
-                process.wait()
+            # a folder keeps what was shown, of another design too
+            with tempfile.TemporaryDirectory() as folder:
+                shutil.copy(design, folder)
+                process, address = serve(Path(folder) / design.name)
+                try:
+                    page = browser.new_page(viewport={"width": 1300, "height": 850})
+                    page.goto(address)
+                    measure(page, design.stem)
+                    page.close()
+                finally:
+                    process.terminate()
+                    process.wait()
         browser.close()
 
 
