@@ -123,11 +123,8 @@ class MeshComparison:
         may find the largest stress in another part of the teeth, of another error."""
         least = least_error(self.recipe, self.contacts, found.part)
         error = drive_error(self.coarser, self.recipe, found, least, self.before)
-        # a force without an estimate is that of a pair alone, which follows from the torque
-        known = self.contact_errors.force is not None
-        of_force = least_error_of_force(self.recipe.model, self.contacts) if known else 0.0
         regions = region_errors(
-            self.coarser, self.recipe, found, least, self.contacts, self.ring_teeth, of_force
+            self.coarser, self.recipe, found, least, self.contacts, self.ring_teeth
         )
         return replace(found, drive_error=error, regions=regions)
 
@@ -214,15 +211,17 @@ def region_errors(
     least: float,
     contacts: Sequence[PairContact],
     ring_teeth: int,
-    of_force: float = 0.0,
 ) -> dict[str, RegionStress]:
     """The stresses of the regions with their errors by the mesh of the drive, where the coarser
     meshes show them. Tips have none where a contact lies on an edge: the stress has no limit there.
 
     contacts : of all touching pairs;  ring_teeth : modelled teeth of the ring gear
-    of_force : least error of a force, as a share of it, which the ring gear's stresses follow
     others : see `drive_error`
+
+    The ring gear's stresses follow the forces of the flanks. That of a pair which carries a lobe
+    alone follows from the torque, but its place moves with the mesh as others do.
     """
+    of_force = least_error_of_force(recipe.model, contacts)
     found, model, on_edge = {}, recipe.model, touches_edges(contacts)
     for name, stress in fine.regions.items():
         kind, _, region = name.partition(OF_REGION)
