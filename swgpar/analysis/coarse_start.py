@@ -8,6 +8,7 @@ that the result is the same to the solver's tolerance.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -226,7 +227,7 @@ def start_loaded(
 def _is_like_load(stepper: LoadStepper) -> bool:
     """Whether the torque of the state is nearly that of the loaded one."""
     here, loaded = stepper.load_state.torque, stepper.sequence.loaded.torque
-    return abs(loaded - here) <= LIKE_LOAD * max(abs(here), abs(loaded))
+    return math.isclose(here, loaded, rel_tol=LIKE_LOAD)
 
 
 def take_over(coarse: DriveModel, stepper: LoadStepper, models: ModelSource) -> int:

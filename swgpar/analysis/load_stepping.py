@@ -253,9 +253,10 @@ class LoadStepper:
     def _take(self, state: LoadState, result: SolveResult) -> None:
         before, self.load_state, self.residual = self.load_state, state, result.residual
         if state.stage == Stage.PROGRAM:
-            self._before, self._last = self._last, (state, self.problem.x.copy())
+            x = self.problem.x.copy()
+            self._before, self._last = self._last, (state, x)
             if self.design.stiffness and not self.design.contact.friction:
-                self._steps.keep(state, self.problem.x)
+                self._steps.keep(state, x)
         if state.is_periodic:
             known = (
                 self.known_states

@@ -3,6 +3,7 @@ loads."""
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -224,8 +225,7 @@ class LoadedDrives(ModelSource):
                 # the same sectors of the ring gear in full, where they will do
                 stepper.problem.resume_sectors(nearest.model.problem.modelled.chosen())
                 stepper.solver.take_over_factor(nearest.model.solver)
-        larger = max(abs(target.torque), abs(drive.period_torque))
-        if abs(target.torque - drive.period_torque) <= LIKE_TORQUE * larger:
+        if math.isclose(target.torque, drive.period_torque, rel_tol=LIKE_TORQUE):
             stepper.guides = drive.period
         return True
 

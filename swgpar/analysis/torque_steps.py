@@ -26,8 +26,8 @@ class TorqueSteps:
         self._known: list[tuple[LoadState, PETSc.Vec]] = []
 
     def keep(self, state: LoadState, x: PETSc.Vec) -> None:
-        """Keep x as that of a state."""
-        self._known.append((state, x.copy()))
+        """Keep x, which nobody changes any more, as that of a state."""
+        self._known.append((state, x))
 
     def elsewhere(self, loads: Sequence[LoadState]) -> list[list[KnownState]] | None:
         """The states under each of these loads of one angle, at the same other angles; None where

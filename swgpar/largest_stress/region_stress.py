@@ -29,7 +29,7 @@ from swgpar.largest_stress.places import (
     pressed_nodes,
     working_flanks,
 )
-from swgpar.largest_stress.surface_stress import surface_edges, surface_mises
+from swgpar.largest_stress.surface_stress import surface_mises
 from swgpar.largest_stress.window_regions import tooth_nodes
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
@@ -291,7 +291,7 @@ def nodal_by_sector(
         near = np.broadcast_to(near, s1.shape)
     if mesh.plane:
         # that near the contact is left out
-        surface = np.isin(mesh.lower_nodes, surface_edges(mesh))
+        surface = np.isin(mesh.lower_nodes, mesh.surface_edges)
         mises = surface_mises(s1, s3, mises, surface)
     found = {}
     prefix = STRESS_PREFIXES[gear][0]

@@ -18,16 +18,6 @@ from swgpar.geometry.rotation import rotated
 from swgpar.meshing.sector import SectorMesh
 
 
-def surface_edges(mesh: SectorMesh) -> np.ndarray:
-    """Edges (n, 2) of the elements of a plane sector on the surface of tooth and root: neither on
-    its cuts nor on the inner surface of the flexible spline or the outer one of the ring gear."""
-    edges = np.stack([mesh.elements, np.roll(mesh.elements, -1, axis=1)], axis=-1).reshape(-1, 2)
-    edges, times = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
-    edges = edges[times == 1]
-    others = (mesh.ccw_nodes, mesh.cw_nodes, *mesh.node_sets.values())
-    return edges[~np.any([np.isin(edges, nodes).all(axis=1) for nodes in others], axis=0)]
-
-
 def surface_mises(
     s1: np.ndarray, s3: np.ndarray, mises: np.ndarray, free: np.ndarray
 ) -> np.ndarray:
@@ -76,7 +66,7 @@ class BesideContact:
         loaded : nodes (count, n_node) bool with a force, whose stress is that of the contact
         """
         far = _distances(mesh, count, cells)
-        near, edges = far < distance, surface_edges(mesh)
+        near, edges = far < distance, mesh.surface_edges
         one, other = np.concatenate([edges, edges[:, ::-1]]).T
         sector, k = np.nonzero(near[:, one] & ~near[:, other] & ~loaded[:, one])
         within, beyond = one[k], other[k]

@@ -20,7 +20,7 @@ from swgpar.flank_pressure.flank_loads import (
 )
 from swgpar.flank_pressure.pressed_cells import PressedCells, pressed_cells
 from swgpar.largest_stress.places import APART_DISTANCE, TOUCHED, near_contact
-from swgpar.largest_stress.surface_stress import BesideContact, surface_edges
+from swgpar.largest_stress.surface_stress import BesideContact
 from swgpar.load.load_states import LoadState
 from swgpar.meshing.sector import SectorMesh
 from swgpar.model.drive_model import DriveModel
@@ -79,7 +79,7 @@ class WindowLoads:
 
     def unloaded(self) -> np.ndarray:
         """Nodes (count, n_node) bool of tooth and root on which no force acts, in the plane."""
-        surface = np.isin(self.mesh.lower_nodes, surface_edges(self.mesh))
+        surface = np.isin(self.mesh.lower_nodes, self.mesh.surface_edges)
         return surface & (self._forces() == 0.0)
 
     def _forces(self) -> np.ndarray:

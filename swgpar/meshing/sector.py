@@ -105,6 +105,18 @@ class SectorMesh:
                 found.update(dict.fromkeys(row.tolist(), float(s)))
         return found
 
+    @cached_property
+    def surface_edges(self) -> Ints:
+        """Edges (n, 2) of the elements of a plane sector on the surface of tooth and root: neither
+        on its cuts nor on the inner surface of the flexible spline or the outer one of the ring
+        gear."""
+        elements = self.elements
+        edges = np.stack([elements, np.roll(elements, -1, axis=1)], axis=-1).reshape(-1, 2)
+        edges, times = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
+        edges = edges[times == 1]
+        others = (self.ccw_nodes, self.cw_nodes, *self.node_sets.values())
+        return edges[~np.any([np.isin(edges, nodes).all(axis=1) for nodes in others], axis=0)]
+
     def nodes_of(self, part: int) -> Ints:
         """Nodes (n,) of a part, those on its boundary included; in the plane of both layers."""
         return np.unique(self.hexes[self.parts[part]])

@@ -11,7 +11,7 @@ from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.flank_pressure.pressed_cells import PressedCells
 from swgpar.geometry.rotation import rotated
 from swgpar.largest_stress.local_problem import window_sector
-from swgpar.largest_stress.surface_stress import BesideContact, surface_edges, surface_mises
+from swgpar.largest_stress.surface_stress import BesideContact, surface_mises
 from swgpar.largest_stress.window_recipes import window_recipe
 from swgpar.meshing.sector import SectorMesh
 
@@ -49,7 +49,7 @@ def test_a_stress_is_read_as_far_as_the_distance_on_any_mesh(
     loaded = np.zeros(far.shape, dtype=bool)
     beside = BesideContact.of_cells(mesh, COUNT, cells(mesh, share), distance, loaded)
     read = beside.read(-far, np.arange(COUNT))
-    surface = np.unique(surface_edges(mesh))
+    surface = np.unique(mesh.surface_edges)
     assert read[:, surface].max() == pytest.approx(-distance)
     assert np.where(beside.near, -np.inf, -far)[:, surface].max() < -1.005 * distance
     # the node between two teeth is near in both, or in none
@@ -66,7 +66,7 @@ def test_a_stress_is_read_as_far_as_the_distance_on_any_mesh(
 def test_the_surface_is_that_of_tooth_and_root(gear: str) -> None:
     """From cut to cut, with the land between two root arcs."""
     mesh = sector(1, gear)
-    edges = surface_edges(mesh)
+    edges = mesh.surface_edges
     nodes, times = np.unique(edges, return_counts=True)
     on_cuts = np.isin(nodes, [mesh.ccw_nodes, mesh.cw_nodes])
     assert sorted(times[on_cuts]) == [1, 1] and set(times[~on_cuts]) == {2}
