@@ -39,7 +39,7 @@ ORDER = 2
 SAFETY = 2.0
 """Factor on the errors that two meshes show. Layers below the flank and counts of the ring gear are
 too small to be coarsened, and the orders that are seen are 1.3 to 2
-(docs/verification/effectivity.md)."""
+(docs/verification/error_sources_plane.md)."""
 
 COMPARED_LEVELS = 2
 """Windows of which the last one shows what the mesh of the drive changes."""
@@ -60,7 +60,7 @@ plane_coarse by 0.7 to 2.7 % of the stress."""
 LEAST_AT_LOADED_ENDS = 0.05
 """The same of the stress at the ends of teeth where a contact lies on an end of the face width. How
 much of the load is there follows from the layers along the face width and from those below the
-root, which change such a stress by 2.5 and 1.8 % (docs/verification/effectivity.md)."""
+root, which change such a stress by 2.5 and 1.8 % (docs/verification/error_sources_cup.md)."""
 
 LEAST_IN_RING = {"plane": 0.1, "cup": 0.3}
 """Least error in the ring gear, as a share of its largest stress; in the plane not in the tooth
@@ -73,7 +73,7 @@ LEAST_FORCE = {"plane": 0.02, "cup": 0.07}
 """Least error of a force, as a share of it: elements along the flank, below it and in the ring
 gear, of which no coarser mesh has fewer, change it by up to 2 % in the plane. In a cup drive the
 forces of some ten pairs move with the layers along the face width, by 1 to 6.5 %
-(docs/verification/effectivity.md)."""
+(docs/verification/error_sources_cup.md)."""
 
 LEAST_FORCE_WITH_EDGES = 0.03
 """The same in the plane where a contact lies on an edge, whose compliance no mesh resolves."""
@@ -81,7 +81,7 @@ LEAST_FORCE_WITH_EDGES = 0.03
 FEWEST_ALONG_FLANKS = 6
 """Elements along a flank in the plane below which no coarser mesh is taken: pressures on four are
 off by 5 %, and by a multiple where the curvature of the profile changes. With the contact law six
-and nine differ by 0.1 % in the stress (docs/verification/effectivity.md)."""
+and nine differ by 0.1 % in the stress (docs/verification/error_sources_plane.md)."""
 
 
 @dataclass(frozen=True)

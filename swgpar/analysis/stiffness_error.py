@@ -35,8 +35,8 @@ contacts move between nodes, and changes may be small by chance."""
 
 CAUTIOUS_ORDER = 1.3
 """Order of displacements in the plane, of which 1 to 2 are seen
-(docs/verification/effectivity.md). It takes the place of a factor: both meshes together change all
-counts."""
+(docs/verification/error_sources_plane.md). It takes the place of a factor: both meshes together
+change all counts."""
 
 DOUBLED = 1.0 / (1.0 - 2.0**-CAUTIOUS_ORDER)
 """Error of a mesh over the change that twice the elements make."""

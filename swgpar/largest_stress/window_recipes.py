@@ -70,7 +70,7 @@ FEWEST_LEVELS = {"plane": 4, "cup": 2}
 
 RING_LEVELS = {"plane": 4, "cup": 2}
 """Windows of the ring gear. In the plane the first one is too coarse to show an order beside a
-contact near the root (docs/verification/effectivity.md)."""
+contact near the root (docs/verification/error_sources_plane.md)."""
 
 NARROW_FROM = 2
 """Index of the first window of the flexible spline that is a narrow one of the one before."""
