@@ -166,7 +166,8 @@ class Recorder(ABC):
             self.record.balls += ball_rows(self.model, state, len(rows), rows[-1]["step"])
             if state.is_periodic:
                 keep_largest(self.record.race_stress, race)
-            if state.stage == Stage.LOAD or self._has_largest_torque(state):
+            asked = self.model.design.output.bearing_shares
+            if asked and (state.stage == Stage.LOAD or self._has_largest_torque(state)):
                 self.record.bearing_shares = bearing_shares(self.model, state)
 
     def _has_largest_torque(self, state: LoadState) -> bool:

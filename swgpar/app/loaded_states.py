@@ -22,8 +22,11 @@ PLANE_SECTIONS = "drive", "flexible_spline", "ring_gear", "wave_generator", "mat
 MORE = "stiffness", "ratcheting", "fatigue", "losses", "frequencies", "rating"
 """Sections that ask for more than the loaded state."""
 
-ONE_STATE = {"steps": {"rotation": 0.0}, "output": {"root_stress": False}}
-"""One angle of the cam, without windows."""
+ONE_STATE = {
+    "steps": {"rotation": 0.0},
+    "output": {"root_stress": False, "bearing_shares": False},
+}
+"""One angle of the cam, without windows and without what is not shown."""
 
 KEPT_MODELS = 2
 """Models that a process keeps: that of a design under several torques, and another one."""

@@ -308,6 +308,11 @@ class Output(Section):
         text="without root_stress: load the drive on a coarser mesh too, for the errors of "
         "contacts and bearing",
     )
+    bearing_shares: bool = quantity(
+        True,
+        text="give the shares of the bearing in the compliance of the loaded drive, which take a "
+        "factor of its last tangent",
+    )
 
 
 class Fatigue(Section):

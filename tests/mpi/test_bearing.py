@@ -238,3 +238,7 @@ def test_run_and_restart(tmp_path) -> None:
     assert len(whole.plot.ball_loads().axes) == 2
     assert whole.field("vm", body="outer_race").max() > 0.0
     assert (tmp_path / "whole" / "balls.csv").exists()
+    asked = {"steps.rotation": 0.0, "output.bearing_shares": False}
+    alone = swgpar.run(design.with_values(asked), mesh=str(RECIPE)).summary.bearing
+    assert alone.largest_load_N > 0.0
+    assert alone.torsional_share is None and alone.radial_share is None
