@@ -157,15 +157,21 @@ class CellPlacement:
         np.maximum.at(deepest, of_line, -least)
         depth = deepest[of_line]
         deeper = np.clip(least + depth, 0.0, CLOSED * depth)[of_row]
-        lengths = _negative_parts(of_cell, coarse.middle.ravel(), (mean - deeper[:, None]).ravel())
+        along = (
+            (coarse.middle * size[:, None]).ravel(),
+            ((1.0 - coarse.middle) * size[:, None]).ravel(),
+        )
+        lengths = _negative_parts(of_cell, *along, (mean - deeper[:, None]).ravel())
         np.add.at(overlap, of_cell[:-1], lengths)
         closing = np.minimum(closest, gap.min(axis=(1, 2))) - deeper
         np.minimum.at(nearest, of_row, closing / size)
-        wanted = np.minimum(across / np.maximum(PIECES * overlap, 1e-3), FINEST * across)
+        # a face beside one of another length has cells of the same width
+        shares = overlap[of_row] / size
+        wanted = np.minimum(across / np.maximum(PIECES * shares, 1e-3), FINEST * across)
         fine = PARTS[np.searchsorted(PARTS, wanted)]
-        fine[nearest >= TOUCHES] = 1
+        fine[nearest[of_row] >= TOUCHES] = 1
         within = gap.min(axis=2) < (TOUCHES * size + CLOSED * depth[of_row])[:, None]
-        return np.where(within, fine[of_row][:, None], 1)
+        return np.where(within, fine[:, None], 1)
 
     def _divided(
         self, row: np.ndarray, ends: np.ndarray, parts: np.ndarray
@@ -190,14 +196,17 @@ def _least(gap: np.ndarray) -> np.ndarray:
     return np.minimum(gap.min(axis=1), np.where(inside, vertex, np.inf))
 
 
-def _negative_parts(line: np.ndarray, middle: np.ndarray, gap: np.ndarray) -> np.ndarray:
-    """Lengths (n - 1,), in faces, where the gap is negative between the middles of neighbouring
-    cells of a line.
+def _negative_parts(
+    line: np.ndarray, behind: np.ndarray, ahead: np.ndarray, gap: np.ndarray
+) -> np.ndarray:
+    """Lengths (n - 1,) mm where the gap is negative between the middles of neighbouring cells of a
+    line.
 
-    line, middle, gap : (n,) of the cells, their middles in [0, 1] on a face, their gaps mm
+    line, gap : (n,) of the cells, their gaps mm;  behind, ahead : (n,) mm, of their middles from
+    both ends of the face
     """
-    step = np.diff(middle)
-    step = np.where(step > 0.0, step, 1.0 + step)
+    step = np.diff(behind)
+    step = np.where(step > 0.0, step, ahead[:-1] + behind[1:])
     depth = np.maximum(-gap, 0.0)
     height = np.where(np.isfinite(gap), np.maximum(gap, 0.0), np.inf)
     deep, high = depth[:-1] + depth[1:], height[:-1] + height[1:]

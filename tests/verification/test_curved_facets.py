@@ -107,3 +107,18 @@ def test_contact_beside_a_joint(joint: float) -> None:
     assert 0.49 < between < 1.01
     assert peak == pytest.approx(exact.peak, rel=0.01)
     assert 0.5 * width == pytest.approx(exact.half_width, rel=0.02)
+
+
+@pytest.mark.parametrize("joint", [-1.3, -0.9, 0.0])
+@pytest.mark.parametrize("ratio", [4, 20])
+def test_contact_on_a_short_element(joint: float, ratio: int) -> None:
+    """An element of a fraction of its neighbours' length, in the contact or beside it, as on the
+    short straight part of a profile. Cells have one width on all elements: with a number of cells
+    for every element pressures are up to 4 % high."""
+    at, long = joint * HALF_WIDTH, 0.25 * np.arange(7)
+    nodes = at + np.concatenate([-long[::-1], 0.25 / ratio + long])
+    surface = TwoArcs((0.0, 0.0), nodes[0], -1, joint=at, curvatures=(1.0, 0.25))
+    load, peak, _ = pressed(nodes, surface)
+    exact = line_contact(surface.gap, 0.0, HALF_WIDTH, load, MODULUS)
+    print(f"joint {joint}, ratio {ratio}: peak {peak / exact.peak:.4f}")
+    assert peak == pytest.approx(exact.peak, rel=0.011)
