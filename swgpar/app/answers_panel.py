@@ -8,10 +8,15 @@ from swgpar.app.loaded_states import PLANE, SOLID, ShownState
 from swgpar.app.state import AppState
 from swgpar.app.tables import heading, live_label, say, table
 from swgpar.app.verdict_panel import VerdictPanel
+from swgpar.checks.clearance import clearances
 from swgpar.checks.derived_geometry import derived_geometry
 from swgpar.input.differences import differences
 from swgpar.input.quantities import show, unit_of_key
 from swgpar.results.quantity import with_unit
+
+LONG = 2.0
+"""Seconds of a computation from which it can be cancelled: a shorter one would show a button that
+goes at once."""
 
 
 class AnswersPanel:
@@ -50,7 +55,7 @@ class AnswersPanel:
         if self.said.props.get("data-loaded-state") != busy:
             self.said.props["data-loaded-state"] = busy
             self.said.update()
-        self.cancel.set_visibility(worker.is_busy and worker.model is SOLID)
+        self.cancel.set_visibility(worker.is_busy and worker.seconds > LONG)
         self.go_on.set_visibility(worker.is_cancelled)
         if worker.is_busy:
             say(self.said, " ".join(filter(None, ("computing", worker.progress, "…"))))
@@ -66,6 +71,9 @@ class AnswersPanel:
         self.model.set_visibility(state.variant.design.drive.model != "plane")
         self.model.value = state.choices.is_solid
         self.draw_progress()
+        if any(clearances(one.design.rigid_pairs)[0].overlaps for one in state.shown):
+            text = "teeth overlap before they are loaded: a state takes longer, or is not found"
+            ui.label(text).classes("text-negative text-caption")
         shown = [(one.name, state.loaded_state(one)) for one in state.shown]
         if len(shown) == 1:
             model = state.model_of(state.variant)

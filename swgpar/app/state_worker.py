@@ -29,6 +29,9 @@ PATIENCE = 10.0
 """Seconds in which a computation ends that was given up; else its process is ended, and the next
 one begins without what this one knows."""
 
+SAID = 0.5
+"""Seconds from one count of Newton iterations to the next one that is said."""
+
 NICE = 5
 """Steps by which the priority of the process is below that of the server."""
 
@@ -75,13 +78,18 @@ class StateWorker:
         return any(key in self._cancelled for key in self._wanted)
 
     @property
+    def seconds(self) -> float:
+        """For how long a state is computed, s; 0 without one."""
+        return time.monotonic() - self._running.begun if self._running is not None else 0.0
+
+    @property
     def progress(self) -> str:
         """For how long the state is computed, and where the run is; empty without one."""
         if self._running is None:
             return ""
         if self._running.given_up:
             return "after the one that is given up"
-        seconds = f"for {time.monotonic() - self._running.begun:.0f} s"
+        seconds = f"for {self.seconds:.0f} s"
         return f"{seconds}: {self._running.line}" if self._running.line else seconds
 
     @property
@@ -175,26 +183,39 @@ class StateWorker:
             self._states.pop(next(iter(self._states)))
 
 
-class _Lines(logging.Handler):
-    """Sends the lines of a run's log."""
+class RunProgress(logging.Handler):
+    """Sends the lines of a run's log, and how many Newton iterations have followed the last one."""
 
     def __init__(self, pipe: Connection) -> None:
         super().__init__(logging.INFO)
         self._pipe = pipe
+        self._line, self._iterations, self._said = "", 0, 0.0
 
     def emit(self, record: logging.LogRecord) -> None:
         """Send a line."""
-        self._pipe.send(record.getMessage().strip())
+        self._line, self._iterations = record.getMessage().strip(), 0
+        self._send(self._line)
+
+    def stops(self) -> bool:
+        """Count a Newton iteration; whether the state is given up: whatever comes while one is
+        computed does that."""
+        self._iterations += 1
+        if time.monotonic() > self._said + SAID:
+            self._send(f"{self._line}; Newton iteration {self._iterations}")
+        return self._pipe.poll()
+
+    def _send(self, text: str) -> None:
+        self._said = time.monotonic()
+        self._pipe.send(text)
 
 
 def _compute(pipe: Connection, mesh: str) -> None:
     """Compute the states that are asked for, until the server ends."""
     os.nice(NICE)  # pictures of the server come first
     threading.Thread(target=_end_with_the_server, daemon=True).start()
-    logger = logging.getLogger("swgpar")
-    logger.addHandler(_Lines(pipe))
-    # whatever comes while a state is computed gives it up
-    session = open_session(stop=pipe.poll)
+    progress = RunProgress(pipe)
+    logging.getLogger("swgpar").addHandler(progress)
+    session = open_session(stop=progress.stops)
     gc.freeze()  # each run looks for what nobody refers to any more, but not among all modules
     while True:
         try:

@@ -109,6 +109,10 @@ def depth_of_hollows(cam: Cam, depth: float) -> float:
     depth : mm, of the curve inside of the cam's
     """
     curve = OffsetCam(cam, -depth).outline(OUTLINE_POINTS)
+    x, y = (np.roll(curve, -1, axis=0) - curve).T
+    turns = x * np.roll(y, -1) - y * np.roll(x, -1)
+    if turns.min() * turns.max() > 0.0:
+        return 0.0  # a convex curve; its hull takes five times as long
     hull = scipy.spatial.ConvexHull(curve)
     spanned = np.delete(curve, hull.vertices, axis=0)  # none of a convex curve
     normals, heights = hull.equations[:, :2], hull.equations[:, 2]

@@ -5,11 +5,13 @@ from __future__ import annotations
 import asyncio
 import dataclasses
 import json
+import logging
 import re
 import shutil
 import time
 import tomllib
 from collections.abc import Callable
+from multiprocessing import Pipe
 from pathlib import Path
 from typing import Any, get_args
 
@@ -41,6 +43,7 @@ from swgpar.app.search_plot import EVALUATION, pair_figure, parallel_figure
 from swgpar.app.section_panel import TeethPicture
 from swgpar.app.section_plot import section_figure
 from swgpar.app.state import recipes_of
+from swgpar.app.state_worker import RunProgress
 from swgpar.app.workspace import Variant, Workspace, drive_of
 from swgpar.checks.clearance import clearances
 from swgpar.design.drive_design import DriveDesign
@@ -590,3 +593,17 @@ def test_jobs_have_nothing_of_the_mpi_of_their_server(monkeypatch: pytest.Monkey
     found = shell_environment()
     assert found["OMPI_ALLOW_RUN_AS_ROOT"] == "1"
     assert not names & found.keys()
+
+
+def test_progress_of_a_state_counts_newton_iterations(monkeypatch: pytest.MonkeyPatch) -> None:
+    """After the last line of the log; a message from the server gives the state up."""
+    ours, theirs = Pipe()
+    progress = RunProgress(theirs)
+    progress.emit(logging.LogRecord("swgpar", logging.INFO, "", 0, " 24 elements", None, None))
+    assert not progress.stops()
+    monkeypatch.setattr("swgpar.app.state_worker.SAID", -1.0)
+    assert not progress.stops()
+    assert [ours.recv(), ours.recv()] == ["24 elements", "24 elements; Newton iteration 2"]
+    assert not ours.poll()
+    ours.send(None)
+    assert progress.stops()
