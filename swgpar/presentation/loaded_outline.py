@@ -92,6 +92,9 @@ def _pairs(result: DriveData, points: Floats, before: Floats) -> LoadedPairs:
     points : (n, 2) mm, deformed nodes on the surface of the flexible spline
     before : (n,) mm, their radii in the undeformed one
     """
+    if not result.pairs:  # no flanks touch, as without a torque
+        none = np.empty(0)
+        return LoadedPairs(none, none, np.empty((0, 2)), none, none, none)
     last = result.pairs["increment"] == result.field_increments[-1]
     own = {name: np.asarray(values)[last] for name, values in result.pairs.items()}
     copies, drive = result.summary.copies, result.summary.design.drive

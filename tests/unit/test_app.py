@@ -595,6 +595,15 @@ def test_jobs_have_nothing_of_the_mpi_of_their_server(monkeypatch: pytest.Monkey
     assert not names & found.keys()
 
 
+def test_a_state_without_a_torque_has_no_pairs() -> None:
+    """Its picture has the tension by the cam alone."""
+    idle = drive(DESIGN).with_values({"load.torque": 0.0})
+    state = solve_state(plane_table(idle), RECIPE, open_session())
+    assert state.reason == "" and state.answers and state.outline is not None
+    assert state.outline.s1.size and not state.outline.pairs.force.size
+    assert section_figure(idle, loaded=state.outline)["data"]
+
+
 def test_progress_of_a_state_counts_newton_iterations(monkeypatch: pytest.MonkeyPatch) -> None:
     """After the last line of the log; a message from the server gives the state up."""
     ours, theirs = Pipe()
