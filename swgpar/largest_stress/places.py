@@ -129,7 +129,8 @@ def region_kind(body: str, stress: str, region: str) -> AnswerKind:
 
 @evaluation
 class LargestStresses(AnswerGroup):
-    """Largest stresses under load, by windows where they resolve them, else nodal averages.
+    """Largest stresses of all increments under load, by windows where they resolve them, else nodal
+    averages.
 
     places : by column of the history, and with `APART`;  regions : by names with `OF_REGION`
     """
@@ -149,7 +150,7 @@ class LargestStresses(AnswerGroup):
     )
     regions: Mapping[str, Place]
 
-    TITLE = "largest stresses under load"
+    TITLE = "largest stresses of all increments under load"
     OF_REGIONS = tuple(
         region_kind(body, stress, "") for body in ("fs", "rg") for stress in STRESSES
     )
