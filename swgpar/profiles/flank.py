@@ -199,6 +199,11 @@ class ToothProfile:
         ends = [float(one.at(np.array([one.length])).angle[0]) for one in self.segments]
         return np.angle(np.exp(1j * np.subtract(begins[1:], ends[:-1])))
 
+    @property
+    def has_corners(self) -> bool:
+        """Whether segments join with an angle, as pieces of a swept area and parts of points do."""
+        return bool(np.any(np.abs(self.kinks) > MISMATCH))
+
     def thinned(self, c_P: float) -> ToothProfile:
         """The flank of a tooth that is thinner by (1 - c_P) of half a pitch (eq. 3.22): turned
         about the axis, towards the centre line of its tooth."""

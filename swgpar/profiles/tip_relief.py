@@ -86,7 +86,7 @@ def relieved(profile: ToothProfile, relief: float, height: float, gear: str) -> 
             segments.append(segment if whole else segment.part(inside, segment.length))
     changed = replace(profile, segments=tuple(segments))
     try:
-        check_flank(changed)
+        check_flank(changed, corners=profile.has_corners)
     except InputError as error:
         raise InputError(f"{gear}.tip_relief = {relief:g} cannot be made: {error}") from None
     return changed

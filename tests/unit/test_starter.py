@@ -172,6 +172,16 @@ def test_a_cam_fits_a_ratio_or_is_refused(ratio: float, cam: CamType) -> None:
         assert abs(stretch) < 2e-4  # chosen for it, and rounded
 
 
+@pytest.mark.parametrize("ratio", [55.0, 80.0])
+def test_s_shaped_teeth_on_a_parabolic_cam_have_their_relief(ratio: float) -> None:
+    """Their conjugate flank has a corner, which a relief keeps."""
+    design = swgpar.new(ratio=ratio, diameter=50.0, torque=5.0, cam="parabolic", profile="s_shaped")
+    assert design.ring_gear.tip_relief > 0.0
+    relieved, given = design.profile("ring_gear"), design.profile("ring_gear", relief=False)
+    corners = [np.abs(flank.kinks).max() for flank in (relieved, given)]
+    assert corners[1] > 0.1 and corners[0] == pytest.approx(corners[1], rel=0.01)
+
+
 @pytest.mark.parametrize("layout, ratio", [("ring_fixed", -40.0), ("spline_fixed", 40.0)])
 @pytest.mark.parametrize("profile", PROFILE_KEYS)
 def test_three_lobes_give_whole_ratios(profile: Profile, layout: str, ratio: float) -> None:
