@@ -68,11 +68,13 @@ class SectionPanel:
             self.slider.show(state.angle_deg)
             self.angle = ui.label(f"{state.angle_deg:.0f}°").classes("swgpar-angle")
             self.play = ui.button("play", on_click=self._play).props("flat dense")
+        self._show_view()
         with ui.element("div").props("role=status"):
             self.clearance()
 
     def draw(self) -> None:
         """Draw the pictures, others where variants come or go."""
+        self._show_view()
         self.angle.text = f"{self.state.angle_deg:.0f}°"
         if not self._moves:
             self.slider.show(self.state.angle_deg)
@@ -138,10 +140,16 @@ class SectionPanel:
         self.state.draw_sections()
 
     def _view(self) -> None:
-        self.state.loaded = bool(self.view.value)
-        self.slider.props["disabled"] = self.state.loaded
-        self.slider.update()
-        self.state.draw_sections()
+        if bool(self.view.value) != self.state.loaded:
+            self.state.loaded = bool(self.view.value)
+            self.state.draw_sections()
+
+    def _show_view(self) -> None:
+        """Show what another window may have chosen; a loaded state has one angle."""
+        self.view.value = self.state.loaded
+        if self.slider.props.get("disabled", False) != self.state.loaded:
+            self.slider.props["disabled"] = self.state.loaded
+            self.slider.update()
 
     def _play(self) -> None:
         self.state.plays = not self.state.plays

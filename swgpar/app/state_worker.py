@@ -29,6 +29,9 @@ PATIENCE = 10.0
 """Seconds in which a computation ends that was given up; else its process is ended, and the next
 one begins without what this one knows."""
 
+STARTS = "the solvers are loaded, once"
+"""Said of the first state, before its run has a line."""
+
 SAID = 0.5
 """Seconds from one count of Newton iterations to the next one that is said."""
 
@@ -146,7 +149,9 @@ class StateWorker:
         self._process = self._pipe = self._running = None
 
     def _begin(self, key: str) -> None:
+        line = ""
         if self._pipe is None:
+            line = STARTS
             context = get_context("spawn")
             self._pipe, theirs = context.Pipe()
             self._process = context.Process(
@@ -155,7 +160,7 @@ class StateWorker:
             self._process.start()
             theirs.close()
         self._pipe.send(self._wanted[key])
-        self._running = _Running(key, time.monotonic())
+        self._running = _Running(key, time.monotonic(), line)
 
     def _receive(self) -> bool:
         """Take over lines of the log and states; whether there is a state."""

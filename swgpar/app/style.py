@@ -28,6 +28,7 @@ STYLE = """
   flex-wrap: nowrap }
 .swgpar-answers > * { flex-shrink: 0 }
 .swgpar-answers td { overflow-wrap: anywhere }
+.swgpar-loaded td:not(:first-child) { white-space: nowrap }
 .swgpar-answers th:first-child, .swgpar-answers td:first-child { padding-left: 0 }
 .swgpar-slider { width: 100%; height: 4px; border-radius: 2px; appearance: none;
   background: #8c8c8c80; margin: 8px 0; cursor: pointer }
