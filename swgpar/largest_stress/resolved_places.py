@@ -86,12 +86,16 @@ def _of_root(root_stress: RootStress) -> dict[str, Place]:
 def _risen(place: Place, nodal: Place | None, loaded: float | None) -> Place:
     """A place of the loaded state with what nodal averages rise by at other angles.
 
+    Its error rises in proportion. Of the rise it has the share that nodal averages do not show, as
+    they do not show all of the stress of the loaded state.
+
     nodal : the largest average under load;  loaded : MPa, that of the loaded state
     """
     if nodal is None or not loaded:
         return place
     rise = max(nodal.value / loaded, 1.0)
-    error = None if place.error is None else rise * place.error
+    unseen = (rise - 1.0) * abs(place.value - loaded)
+    error = None if place.error is None else rise * place.error + unseen
     return replace(place, value=rise * place.value, error=error, on_mesh=nodal.value)
 
 
