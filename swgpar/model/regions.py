@@ -86,11 +86,15 @@ def regions_of(
 ) -> np.ndarray:
     """Regions (n,) of nodes (n,) of a sector. touched : whether a contact of flanks presses on
     them, or close to them"""
-    found = np.array([_smooth_region(geometry, mesh, int(node), touched) for node in nodes])
-    found = found.astype(object)
-    points = mesh.coords[np.asarray(nodes, dtype=int)]
+    nodes = np.asarray(nodes, dtype=int)
+    points = mesh.coords[nodes]
+    # both layers of the plane are alike
+    lower = nodes if mesh.lower_nodes is None else mesh.lower_nodes[nodes]
+    once, index = np.unique(lower, return_inverse=True)
+    of_each = [_smooth_region(geometry, mesh, int(node), touched) for node in once]
+    found = np.array(of_each, dtype=object)[index]
     found[_at_the_cam_edge(geometry, points) & (found == RIM_INSIDE)] = CAM_EDGE
-    found[_beside_the_wall(geometry, mesh)[np.asarray(nodes, dtype=int)]] = NOTCH_REGION
+    found[_beside_the_wall(geometry, mesh)[nodes]] = NOTCH_REGION
     at_held_edge = _at_a_held_edge(geometry, mesh, points)
     found[at_held_edge & np.isin(found, (RIM, OUTER))] = ATTACHED
     of_wall = np.isin(found, (*WALL, RIM_INSIDE))
