@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import nnls
+import scipy
 
 from swgpar.analysis.cam_faces import cam_faces
 from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION
@@ -365,7 +365,7 @@ class DeviationGuess:
         weight = BALANCE * np.linalg.norm(lower) / np.linalg.norm(arm)
         rows = np.vstack([lower.T, weight * arm])
         right = np.append(-np.linalg.solve(lower, side), weight * torque)
-        found, _ = nnls(rows, right)
+        found, _ = scipy.optimize.nnls(rows, right)
         carries = found > 0.0
         closed, lever = (side + matrix @ found)[carries], arm[carries]
         return found, float(lever @ closed / (lever @ lever))

@@ -15,10 +15,12 @@ with the complete elliptic integrals K and E of 1 - 1 / e² (Harris, Rolling Bea
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
-from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
+
+from swgpar.geometry.bracketed_root import root_between
 
 ROUND, LONGEST = 1e-9, 1e7
 """Relative difference of the curvatures below which the ellipse is a circle; largest ratio of its
@@ -51,7 +53,7 @@ def point_contact(along: float, across: float, modulus: float) -> PointContact:
     ratio = (
         1.0
         if difference < ROUND
-        else float(np.exp(brentq(_excess, 1e-6, np.log(LONGEST), (difference,))))
+        else float(np.exp(root_between(partial(_excess, difference), 1e-6, np.log(LONGEST))))
     )
     first, second = ellipk(1.0 - ratio**-2), ellipe(1.0 - ratio**-2)
     size = np.cbrt(1.5 / (total * modulus))
@@ -62,7 +64,7 @@ def point_contact(along: float, across: float, modulus: float) -> PointContact:
     return PointContact(float(approach), major, major / ratio)
 
 
-def _excess(log_ratio: float, difference: float) -> float:
+def _excess(difference: float, log_ratio: float) -> float:
     square = np.exp(2.0 * log_ratio)
     first, second = ellipk(1.0 - 1.0 / square), ellipe(1.0 - 1.0 / square)
     return float(((square + 1.0) * second - 2.0 * first) / ((square - 1.0) * second) - difference)

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
-from scipy.interpolate import CubicSpline
+import scipy
 
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.cup_wall import CupWall, decay_length
@@ -131,7 +130,7 @@ def refined(lines: PairedLines, usual: Floats, fixed: Floats, counts: WallCounts
         way = np.linspace(low, high, SAMPLES)
         beyond = np.maximum(np.maximum(begin - way[:, None], way[:, None] - end), 0.0)
         size = np.column_stack([_spacing(known, way), step + (GROWTH - 1.0) * beyond]).min(axis=1)
-        number = cumulative_trapezoid(1.0 / size, way, initial=0.0)
+        number = scipy.integrate.cumulative_trapezoid(1.0 / size, way, initial=0.0)
         count = max(1, int(np.ceil(number[-1] - CLOSE)))
         stations += np.interp(np.arange(1, count + 1) * number[-1] / count, number, way).tolist()
     return lines.at_length(np.array(stations))
@@ -247,7 +246,8 @@ class WallSector:
         for piece in range(3):
             knots, on = slice(ends[piece], ends[piece + 1] + 1), of_piece == piece
             if on.any():
-                spline = CubicSpline(stations[knots], field[:, self.number[knots]], axis=1)
+                along_knots = field[:, self.number[knots]]
+                spline = scipy.interpolate.CubicSpline(stations[knots], along_knots, axis=1)
                 values[:, on] = spline(along[on])
         through = _linear(values, layers, depth)
         return _linear(through, columns, angle)

@@ -17,6 +17,7 @@ import numpy as np
 
 from swgpar.load.load_states import Stage
 from swgpar.results.atomic import to_json
+from swgpar.results.periodic_curve import periodic_curve
 from swgpar.results.table import as_rows, format_csv, read_columns
 from swgpar.version import __version__
 
@@ -314,8 +315,6 @@ def curves(
         loaded = loaded_increments(history)
         values = {name: column[loaded] for name, column in shown.items()}
         return Curves(values["wg_angle_deg"], values, values["wg_angle_deg"], values)
-    from scipy.interpolate import CubicSpline  # a run needs no splines
-
     values = {name: column[increments - samples : increments] for name, column in shown.items()}
     angle = values["wg_angle_deg"]
     knots = np.append(angle, angle[0] + period)
@@ -325,7 +324,7 @@ def curves(
         name: np.append(column, column[0]) for name, column in values.items() if name in periodic
     }
     fine = {
-        name: CubicSpline(knots, column, bc_type="periodic")(fine_angle)
+        name: periodic_curve(knots, column, fine_angle)
         if np.isfinite(column).all()
         else np.full(FINE, np.nan)
         for name, column in closed.items()
