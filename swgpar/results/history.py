@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
+import scipy
 
 from swgpar.load.load_states import Stage
 from swgpar.results.atomic import to_json
-from swgpar.results.periodic_curve import periodic_curve
 from swgpar.results.table import as_rows, format_csv, read_columns
 from swgpar.version import __version__
 
@@ -324,7 +324,7 @@ def curves(
         name: np.append(column, column[0]) for name, column in values.items() if name in periodic
     }
     fine = {
-        name: periodic_curve(knots, column, fine_angle)
+        name: scipy.interpolate.CubicSpline(knots, column, bc_type="periodic")(fine_angle)
         if np.isfinite(column).all()
         else np.full(FINE, np.nan)
         for name, column in closed.items()
