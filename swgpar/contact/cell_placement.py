@@ -157,11 +157,9 @@ class CellPlacement:
         np.maximum.at(deepest, of_line, -least)
         depth = deepest[of_line]
         deeper = np.clip(least + depth, 0.0, CLOSED * depth)[of_row]
-        along = (
-            (coarse.middle * size[:, None]).ravel(),
-            ((1.0 - coarse.middle) * size[:, None]).ravel(),
-        )
-        lengths = _negative_parts(of_cell, *along, (mean - deeper[:, None]).ravel())
+        behind, ahead = coarse.middle * size[:, None], (1.0 - coarse.middle) * size[:, None]
+        reduced = mean - deeper[:, None]
+        lengths = _negative_parts(of_cell, behind.ravel(), ahead.ravel(), reduced.ravel())
         np.add.at(overlap, of_cell[:-1], lengths)
         closing = np.minimum(closest, gap.min(axis=(1, 2))) - deeper
         np.minimum.at(nearest, of_row, closing / size)

@@ -45,9 +45,9 @@ class MovedTooth:
         z = layout.mesh.flanks[0].z
         self.ends = float(z[0]), float(z[-1])
         motion = np.array([self._motion(layout, u, station) for station in range(len(z))])
-        # the sections of the plane model move alike, and need no part of SciPy
-        self._spline = scipy.interpolate.CubicSpline(z, motion) if len(z) > 2 else None
-        self._first = motion[0]
+        if len(z) <= 2:
+            motion = motion[:1].repeat(len(z), axis=0)  # the sections of the plane model move alike
+        self._at = scipy.interpolate.CubicSpline(z, motion)
 
     def _motion(self, layout: BodyLayout, u: np.ndarray, station: int) -> np.ndarray:
         """Middle before and after (2 + 2) mm and rotation (rad) of the section that fits its nodes
@@ -64,12 +64,7 @@ class MovedTooth:
 
     def sections(self, z: np.ndarray) -> Sections:
         """The sections at z (n,) mm."""
-        cut = np.zeros_like(z)
-        motion = (
-            np.broadcast_to(self._first, (*z.shape, self._first.size))
-            if self._spline is None
-            else self._spline(z)
-        )
+        motion, cut = self._at(z), np.zeros_like(z)
         if self.crowned is not None:
             cut = crowning(self.crowned.amount, z, self.crowned.width, self.crowned.shape)[0]
         return Sections(self, motion, cut)
