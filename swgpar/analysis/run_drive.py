@@ -112,8 +112,8 @@ def run_drive(
         if not options.restart:
             kept.remove(comm)
         elif not resumed:
-            way = "taking over loaded states" if kept.found(comm) else "starting from the beginning"
-            logger.info("no increment was saved: %s", way)
+            way = "begins with its loaded states" if kept.found(comm) else "begins at the start"
+            logger.info("%s has no increment to continue: the run %s", folder, way)
         what = identity(design.decisive_keys, recipe, options.accuracy)
         drive, chosen = MeshedDrive(design, comm, models), None
         if options.accuracy is not None:

@@ -99,8 +99,9 @@ def test_restart_before_anything_was_saved(plain: Path, tmp_path: Path) -> None:
             made_files.begin(out)
             made_files.note(out / "history.csv")
             (out / "history.csv").write_bytes((plain / "history.csv").read_bytes())
-        succeed(run_command(out, "--restart"))
-        assert "starting from the beginning" in (out / "run.log").read_text(encoding="utf-8")
+        done = succeed(run_command(out, "--restart"))
+        said = f"{out} has no increment to continue: the run begins at the start"
+        assert said in done.stdout and said in (out / "run.log").read_text(encoding="utf-8")
         assert_same_history(out, plain)
 
 
