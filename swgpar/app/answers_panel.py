@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from nicegui import ui
 
 from swgpar.app.loaded_states import PLANE, SOLID, ShownState
 from swgpar.app.state import AppState
 from swgpar.app.tables import heading, live_label, say, table
 from swgpar.app.verdict_panel import VerdictPanel
+from swgpar.app.workspace import Variant
 from swgpar.checks.clearance import clearances
 from swgpar.checks.derived_geometry import derived_geometry
 from swgpar.input.differences import differences
@@ -71,8 +74,7 @@ class AnswersPanel:
         self.model.set_visibility(state.variant.design.drive.model != "plane")
         self.model.value = state.choices.is_solid
         self.draw_progress()
-        if any(clearances(one.design.rigid_pairs)[0].overlaps for one in state.shown):
-            text = "teeth overlap before they are loaded: a state takes longer, or is not found"
+        for text in dict.fromkeys(text for one in state.shown for text in self._overlaps(one)):
             ui.label(text).classes("text-negative text-caption")
         shown = [(one.name, state.loaded_state(one)) for one in state.shown]
         if len(shown) == 1:
@@ -92,6 +94,17 @@ class AnswersPanel:
             notes = [places.get(name, "") for name in names]
             headings = ["answer", *(name for name, _ in shown)]
             table(headings, rows, "loaded state", notes).classes("swgpar-loaded")
+
+    def _overlaps(self, variant: Variant) -> Iterator[str]:
+        """What overlaps of rigid teeth mean for the loaded state of a variant."""
+        for one in clearances(variant.design.rigid_pairs):
+            if not one.overlaps:
+                continue
+            what = f"teeth overlap with the {one.ring.replace('_', ' ')}"
+            if one.ring == "ring_gear" or self.state.model_of(variant) is SOLID:
+                yield f"{what} before they are loaded: a state takes longer, or is not found"
+            else:
+                yield f"{what}, which the plane model does not have"
 
     def _choose(self) -> None:
         if bool(self.model.value) != self.state.choices.is_solid:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import GEARS
+from swgpar.design.sections import GearName
 from swgpar.geometry.arrays import Floats
 from swgpar.presentation.body_curves import moved_points, tooth_angles
 from swgpar.profiles.mesh_gap import outline
@@ -21,10 +21,10 @@ NEAR = 0.2
 
 @dataclass(frozen=True)
 class FlankGaps:
-    """Gaps of the undeformed flanks of the flexible spline that are near the ring gear.
+    """Gaps of the undeformed flanks of the flexible spline that are near a ring gear.
 
     tooth : (n,) numbers from the one that is on +y at the cam's angle 0, counter-clockwise
-    place : (n, 2) mm, of the flank, where it is nearest to the ring gear
+    place : (n, 2) mm, of the flank, where it is nearest to that ring gear
     gap : (n,) mm, below 0 where flanks overlap
     """
 
@@ -33,15 +33,18 @@ class FlankGaps:
     gap: Floats
 
 
-def flank_gaps(design: DriveDesign, angle_deg: float = 0.0) -> FlankGaps:
+def flank_gaps(
+    design: DriveDesign, angle_deg: float = 0.0, gear: GearName = "ring_gear"
+) -> FlankGaps:
     """Gaps of undeformed teeth on the neutral line, those of the flanks of +x first.
 
     angle_deg : of the cam, counter-clockwise; the ring gear rests
+    gear : ring gear to which they are, that at rest or the dynamic spline
     """
     cam_angle = float(np.radians(angle_deg))
-    spline, ring = (outline(design.profile(gear)) for gear in GEARS)
-    motion = design.tooth_motion()
-    psi = tooth_angles(motion, cam_angle)
+    spline, ring = (outline(design.profile(one)) for one in ("flexible_spline", gear))
+    motion = design.tooth_motion(ring=gear)
+    psi = tooth_angles(design.tooth_motion(), cam_angle)
     pose, near = motion.pose(psi), NEAR * design.drive.module
     flank = spline.point[spline.flank][::STRIDE]
     to_tooth = np.exp(1j * np.pi / motion.teeth_rg)

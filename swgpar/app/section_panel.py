@@ -12,7 +12,7 @@ from swgpar.app.section_plot import section_figure
 from swgpar.app.slider import Slider
 from swgpar.app.state import AppState
 from swgpar.app.workspace import Variant
-from swgpar.checks.clearance import clearances
+from swgpar.checks.clearance import smallest_clearance
 from swgpar.design.drive_design import DriveDesign
 
 if TYPE_CHECKING:
@@ -120,9 +120,9 @@ class SectionPanel:
 
     @ui.refreshable_method
     def clearance(self) -> None:
-        """The smallest clearance of a whole turn, with its place."""
+        """The smallest clearance of a whole turn in any ring gear, with its place."""
         for variant in self.state.shown:
-            found = clearances(variant.design.rigid_pairs)[0]
+            found = smallest_clearance(variant.design.rigid_pairs)
             word = "overlap" if found.nearest.distance < 0.0 else "smallest clearance"
             name = f"{variant.name}: " if len(self.state.shown) > 1 else ""
             text = f"{name}{word} {abs(1e3 * found.nearest.distance):.2f} µm, {found.place}"

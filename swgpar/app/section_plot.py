@@ -9,9 +9,10 @@ import numpy as np
 
 from swgpar.app.flank_gaps import NEAR, flank_gaps
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GearName
 from swgpar.geometry.arrays import Floats
 from swgpar.geometry.rotation import rotated
-from swgpar.presentation.body_curves import body_curves
+from swgpar.presentation.body_curves import body_curves, inner_teeth
 from swgpar.presentation.loaded_outline import LoadedOutline
 from swgpar.presentation.overlap_areas import slot_overlap
 
@@ -20,6 +21,7 @@ COLOURS = {
     "ring_gear": "#7c8fa8",
     "flexible_spline": "#d9a23b",
     "wave_generator": "#8fb58f",
+    "dynamic_spline": "#a06cb0",
 }
 BREAK = np.full((1, 2), np.nan)
 """Between two curves of a body."""
@@ -35,7 +37,8 @@ def section_figure(
     design: DriveDesign, angle_deg: float = 0.0, loaded: LoadedOutline | None = None
 ) -> dict[str, Any]:
     """Figure of both gears and the cam, true to scale, with the gaps and overlaps of the flanks, or
-    with stresses and forces of a loaded state, which is one at the angle 0 of the cam.
+    with stresses and forces of a loaded state, which is one at the angle 0 of the cam. The dynamic
+    spline of a pancake drive, which is behind the ring gear, is a line.
 
     angle_deg : of the cam, counter-clockwise; the ring gear rests
 
@@ -45,7 +48,9 @@ def section_figure(
     angle = float(np.radians(angle_deg))
     bodies = body_curves(design.geometry, design.tooth_motion(), design.cam(), angle)
     traces = [_body(name, curves) for name, curves in bodies.items()]
-    marks = _loads(loaded) if loaded else [*_overlaps(design, angle), _gaps(design, angle_deg)]
+    traces += [_behind(design, gear, angle) for gear in design.gears[2:]]
+    shades = [shade for gear in design.gears[1:] for shade in _overlaps(design, gear, angle)]
+    marks = _loads(loaded) if loaded else [*shades, _gaps(design, angle_deg)]
     (x, y), width = _view(design, angle, loaded)
     sizes = design.drive.module, design.major_semi_axis
     lines = {"showgrid": False, "zeroline": False, "title": {"text": "mm"}}
@@ -55,7 +60,8 @@ def section_figure(
             "uirevision": f"{loaded is None} {np.round(np.log(sizes) / OTHER_SIZE)}",
             "dragmode": "pan",
             "margin": {"l": 45, "r": 10, "t": 10, "b": 40},
-            "showlegend": False,
+            "showlegend": len(design.gears) > 2,
+            "legend": {"x": 0.0, "y": 1.0, "bgcolor": "rgba(0,0,0,0)"},
             "font": {"color": "#7a7a7a"},
             "hovermode": "closest",
             "paper_bgcolor": "rgba(0,0,0,0)",
@@ -95,6 +101,20 @@ def _body(name: str, curves: list[Floats]) -> dict[str, Any]:
     return _filled(np.vstack(drawn[:-1]), text, f"{colour}66", colour) | {"hoverinfo": "skip"}
 
 
+def _behind(design: DriveDesign, gear: GearName, angle: float) -> dict[str, Any]:
+    """Teeth of a ring gear behind the other one, as a line. angle : rad, of the cam"""
+    teeth = inner_teeth(design.profile(gear), design.teeth(gear).n_teeth, design.drive.module)
+    curve = rotated(np.concatenate([teeth, teeth[:1]]), _turned(design, gear, angle))
+    line = _filled(curve, gear.replace("_", " "), "rgba(0,0,0,0)", COLOURS[gear])
+    return line | {"fill": "none", "hoverinfo": "skip", "showlegend": True}
+
+
+def _turned(design: DriveDesign, gear: GearName, angle: float) -> float:
+    """Angle (rad) of a ring gear after the cam has turned by `angle` (rad) and the flexible spline
+    has rolled in both; 0 of the one that rests."""
+    return angle * (1.0 - design.drive.teeth_rg / design.teeth(gear).n_teeth)
+
+
 def _filled(points: Floats, name: str, inside: str, outline: str) -> dict[str, Any]:
     """Areas within closed curves of points (n, 2), mm, and their outlines; two colours."""
     return {
@@ -106,21 +126,25 @@ def _filled(points: Floats, name: str, inside: str, outline: str) -> dict[str, A
         "fill": "toself",
         "fillcolor": inside,
         "line": {"color": outline, "width": 1},
+        "showlegend": False,
     }
 
 
-def _overlaps(design: DriveDesign, angle: float) -> list[dict[str, Any]]:
-    """Areas that teeth cover on their whole path, in all slots, and those at the angle of the cam,
-    rad; none where teeth have clearance."""
-    profiles = design.profile("flexible_spline"), design.profile("ring_gear")
-    slot = slot_overlap(*profiles, design.tooth_motion(), design.drive.module)
+def _overlaps(design: DriveDesign, gear: GearName, angle: float) -> list[dict[str, Any]]:
+    """Areas of a ring gear that teeth cover on their whole path, in all slots, and those at the
+    angle of the cam, rad; none where teeth have clearance."""
+    profiles = design.profile("flexible_spline"), design.profile(gear)
+    slot = slot_overlap(*profiles, design.tooth_motion(ring=gear), design.drive.module)
     if not slot.path:
         return []
-    slots = slot.pitch * np.arange(design.drive.teeth_rg)
+    turned = _turned(design, gear, angle)
+    slots = turned + slot.pitch * np.arange(design.teeth(gear).n_teeth)
     path = [rotated(curve, place) for place in slots for curve in slot.path]
+    covered = [rotated(curve, turned) for curve in slot.covered(angle - turned)]
+    what = f"overlap with the {gear.replace('_', ' ')}"
     return [
-        _shade(path, "overlap at some angle of the cam", "40"),
-        _shade(slot.covered(angle), "overlap at this angle", "d0"),
+        _shade(path, f"{what} at some angle of the cam", "40"),
+        _shade(covered, f"{what} at this angle", "d0"),
     ]
 
 
@@ -155,26 +179,36 @@ def _rounded(values: Floats) -> list[float]:
 
 
 def _gaps(design: DriveDesign, angle_deg: float) -> dict[str, Any]:
-    found = flank_gaps(design, angle_deg)
-    overlap = found.gap < 0.0
+    """Gaps of flanks to all ring gears, the smallest on top."""
+    rings = design.gears[1:]
+    every = [flank_gaps(design, angle_deg, gear) for gear in rings]
+    place, gap, tooth = (
+        np.concatenate([getattr(one, name) for one in every]) for name in ("place", "gap", "tooth")
+    )
+    ring = np.repeat(rings, [len(one.gap) for one in every])
+    order = np.argsort(-gap, kind="stable")
+    place, gap, tooth, ring = place[order], gap[order], tooth[order], ring[order]
+    overlap, symbol = gap < 0.0, np.where(ring == "ring_gear", "circle", "diamond")
     return {
         "type": "scatter",
         "mode": "markers",
         "name": "gaps",
-        "x": _rounded(found.place[:, 0]),
-        "y": _rounded(found.place[:, 1]),
+        "showlegend": False,
+        "x": _rounded(place[:, 0]),
+        "y": _rounded(place[:, 1]),
         "marker": {
             "size": np.where(overlap, 6, 7).tolist(),
-            "symbol": np.where(overlap, "x", "circle").tolist(),
-            "color": (1e3 * found.gap).tolist(),
+            "symbol": np.where(overlap, "x", symbol).tolist(),
+            "color": (1e3 * gap).tolist(),
             "cmin": 0.0,
             "cmax": 1e3 * NEAR * design.drive.module,
             "colorscale": [[0.0, OVERLAP], [1e-6, TOUCHING], [1.0, APART]],
             "colorbar": _bar("gap, µm"),
         },
         "text": [
-            f"tooth {tooth}: {'overlap' if gap < 0.0 else 'gap'} {abs(1e3 * gap):.2f} µm"
-            for tooth, gap in zip(found.tooth, found.gap, strict=True)
+            f"tooth {number}, {name.replace('_', ' ')}: "
+            f"{'overlap' if one < 0.0 else 'gap'} {abs(1e3 * one):.2f} µm"
+            for number, name, one in zip(tooth, ring, gap, strict=True)
         ],
         "hoverinfo": "text",
     }
@@ -187,6 +221,7 @@ def _loads(loaded: LoadedOutline) -> list[dict[str, Any]]:
         "type": "scatter",
         "mode": "markers",
         "name": "tension",
+        "showlegend": False,
         "x": _rounded(loaded.place[:, 0]),
         "y": _rounded(loaded.place[:, 1]),
         "marker": {
@@ -203,6 +238,7 @@ def _loads(loaded: LoadedOutline) -> list[dict[str, Any]]:
         "type": "scatter",
         "mode": "markers+text",
         "name": "pairs",
+        "showlegend": False,
         "x": _rounded(pairs.place[:, 0]),
         "y": _rounded(pairs.place[:, 1]),
         "marker": {

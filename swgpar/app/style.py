@@ -22,8 +22,8 @@ STYLE = """
 .swgpar-parts { display: none }
 .swgpar-form { width: 330px; max-height: calc(100vh - 80px); overflow-y: auto; flex: none }
 .swgpar-section { flex: 1 1 400px; min-width: 0 }
-.swgpar-plot { height: calc(100vh - 190px); min-height: 320px }
-.swgpar-half { height: calc(50vh - 115px); min-height: 240px }
+.swgpar-plot { height: calc(100vh - 215px); min-height: 320px }
+.swgpar-half { height: calc(50vh - 140px); min-height: 240px }
 .swgpar-answers { width: 340px; max-height: calc(100vh - 80px); overflow-y: auto; flex: none;
   flex-wrap: nowrap }
 .swgpar-answers > * { flex-shrink: 0 }

@@ -68,3 +68,8 @@ def clearances(teeth: Mapping[GearName, RigidTeeth]) -> list[Clearance]:
         Clearance(ring, pair.nearest_place(), -TAKEN_UP * pair.module)
         for ring, pair in teeth.items()
     ]
+
+
+def smallest_clearance(teeth: Mapping[GearName, RigidTeeth]) -> Clearance:
+    """Of the flexible spline in all ring gears. teeth : of both, by the name of the ring gear"""
+    return min(clearances(teeth), key=lambda one: one.nearest.distance)

@@ -46,9 +46,8 @@ def body_curves(
     cam_angle : rad, of the cam's major axis from +y, counter-clockwise; the ring gear rests
     """
     spline, ring_gear = geometry.gears["flexible_spline"], geometry.gears["ring_gear"]
-    angle = 2.0 * np.pi / motion.teeth_rg * (np.arange(motion.teeth_rg) + 0.5)
     off = CHORD * geometry.module
-    ring = rotated(_tooth(ring_gear.profile, off)[None], angle[:, None]).reshape(-1, 2)
+    ring = inner_teeth(ring_gear.profile, motion.teeth_rg, geometry.module)
     outer, line, tooth = ring_gear.outer_radius, motion.line, _tooth(spline.profile, off)
     teeth = moved_points(line, tooth_angles(motion, cam_angle), tooth, cam_angle)
     around = np.linspace(0.0, 2.0 * np.pi, 721)[:-1]
@@ -60,6 +59,12 @@ def body_curves(
         "flexible_spline": [teeth.reshape(-1, 2), inside.reshape(-1, 2)],
         "wave_generator": [rotated(curve[:, :2], cam_angle) for curve in cam_outlines(cam, 720)],
     }
+
+
+def inner_teeth(profile: ToothProfile, teeth: int, module: float) -> Floats:
+    """Closed curve (n, 2) mm of the teeth of a ring gear with a slot on +y. module : mm"""
+    angle = 2.0 * np.pi / teeth * (np.arange(teeth) + 0.5)
+    return rotated(_tooth(profile, CHORD * module)[None], angle[:, None]).reshape(-1, 2)
 
 
 def _tooth(profile: ToothProfile, off: float) -> Floats:

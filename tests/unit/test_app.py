@@ -10,6 +10,7 @@ import re
 import shutil
 import time
 import tomllib
+from base64 import b64decode
 from collections.abc import Callable
 from multiprocessing import Pipe
 from pathlib import Path
@@ -19,7 +20,7 @@ import numpy as np
 import pytest
 
 import swgpar
-from support.paths import DESIGN, DRIVERS, RECIPE, ROOT
+from support.paths import DATA, DESIGN, DRIVERS, RECIPE, ROOT
 from support.scripts import load_script
 from swgpar.analysis.forecast import forecast
 from swgpar.answers.verdict import Judgement
@@ -45,7 +46,7 @@ from swgpar.app.section_plot import section_figure
 from swgpar.app.state import recipes_of
 from swgpar.app.state_worker import RunProgress
 from swgpar.app.workspace import Variant, Workspace, drive_of
-from swgpar.checks.clearance import clearances
+from swgpar.checks.clearance import clearances, smallest_clearance
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS
 from swgpar.errors import InputError, OutputError
@@ -198,6 +199,32 @@ def test_the_shade_of_an_overlap_is_as_deep_as_the_overlap(name: str) -> None:
     assert 1.001 * known < depths[1] < 0.9 * known
     names = [one["name"] for one in section_figure(drive(DRIVERS / name))["data"]]
     assert not any("overlap" in one for one in names)
+
+
+def test_an_overlap_with_the_second_ring_gear_is_said_and_shaded() -> None:
+    """The shade is as deep as the overlap, on the whole path and where the tooth of the largest one
+    is; the second ring gear turns with the flexible spline."""
+    design = drive(DATA / "pancake.toml").with_values({"dynamic_spline.c_P": 0.85})
+    first, second = clearances(design.rigid_pairs)
+    assert not first.overlaps and second.overlaps
+    assert smallest_clearance(design.rigid_pairs) == second and "dynamic spline" in second.place
+    teeth, turns = design.drive.teeth_rg, design.teeth("dynamic_spline").n_teeth
+    ring, known = outline(design.profile("dynamic_spline")), second.nearest.distance
+    angle = -second.nearest.psi * design.drive.teeth_fs / teeth  # tooth 0 is there then
+    figure = section_figure(design, float(np.degrees(angle)))
+    shades = [one for one in figure["data"] if "overlap" in one["name"]]
+    assert len(shades) == 2 and all("dynamic spline" in one["name"] for one in shades)
+    for shade in shades:
+        x, y = (np.frombuffer(b64decode(shade[axis]["bdata"]), "<f4") for axis in "xy")
+        points = (x + 1j * y)[np.isfinite(x)] * np.exp(-1j * angle * (1.0 - teeth / turns))
+        depth = ring.distance(ring.folded(points * np.exp(1j * np.pi / turns))[0]).distance.min()
+        assert depth == pytest.approx(known, rel=0.01)
+    gaps = figure["data"][-1]
+    assert {text.split(", ")[1].split(":")[0] for text in gaps["text"]} == {
+        "ring gear",
+        "dynamic spline",
+    }
+    assert min(gaps["marker"]["color"]) == pytest.approx(1e3 * known, rel=0.02)
 
 
 def test_a_picture_is_drawn_again_where_it_changes() -> None:
