@@ -51,8 +51,8 @@ class ReusedFactor:
         self.ksp = PETSc.KSP().create(comm=like.comm)
         self.ksp.setOptionsPrefix("reuse_")
         self.ksp.setOperators(operator)
-        self.ksp.setType(PETSc.KSP.Type.GMRES)
-        self.ksp.setPCSide(PETSc.PC.Side.RIGHT)
+        # it keeps the preconditioned vectors, which saves the last solve with the factor
+        self.ksp.setType(PETSc.KSP.Type.FGMRES)
         self.ksp.setGMRESRestart(MAX_ITERATIONS)
         pc = self.ksp.getPC()
         pc.setType(PETSc.PC.Type.PYTHON)
