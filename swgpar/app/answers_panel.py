@@ -30,7 +30,7 @@ class AnswersPanel:
         heading("loaded state")
         choices = {False: PLANE.name, True: SOLID.name}
         self.model = ui.toggle(choices, value=state.choices.is_solid, on_change=self._choose)
-        self.model.props("dense no-caps size=sm")
+        self.model.props("dense no-caps size=sm").classes("swgpar-toggle")
         self.said = live_label().classes("text-caption")
         with ui.row().classes("items-center"):
             self.cancel = ui.button("cancel", on_click=self._cancel).props("flat dense")

@@ -12,6 +12,7 @@ from swgpar.app.jobs import AppJob, JobState
 from swgpar.app.search_panel import show_search
 from swgpar.app.state import AppState, files_of, recipes_of
 from swgpar.app.tables import live_label, say
+from swgpar.app.verdict_panel import COLOURS, sheet_of, verdict_text
 from swgpar.errors import SwgparError
 from swgpar.results.folder import FIELD_INDEX
 
@@ -36,7 +37,7 @@ class JobsPanel:
 
     def __init__(self, state: AppState) -> None:
         self.state = state
-        self._logs: list[tuple[AppJob, ui.label, bool]] = []
+        self._logs: list[tuple[AppJob, ui.label, int]] = []
         with ui.row().classes("items-center"):
             ui.button("run", on_click=self._run)
             ui.button("rate", on_click=self._rate)
@@ -97,30 +98,35 @@ class JobsPanel:
         last = self.state.queue.jobs[-LAST:]
         say(self.said, ", ".join(f"job {job.number} {job.state}" for job in last[-SAID:]))
         for job in reversed(last):
-            with ui.card().tight().classes("w-full q-pa-sm swgpar-job"):
+            with ui.card().props("flat bordered").classes("w-full gap-1 q-pa-sm swgpar-job"):
                 self._job(job)
 
     def draw_logs(self) -> None:
         """Draw what jobs that run have printed, and the pages that they have written."""
-        if any(had_page != self._has_page(job) for job, _, had_page in self._logs):
+        if any(written != self._written(job) for job, _, written in self._logs):
             self.jobs.refresh()
         for job, log, _ in self._logs:
             log.text = self.state.queue.progress(job)
 
-    def _has_page(self, job: AppJob) -> bool:
-        return job.page is not None and (self.state.queue.folder / job.page).is_file()
+    def _written(self, job: AppJob) -> int:
+        """When the page of a job was written, ns; 0 where it is not."""
+        path = self.state.queue.folder / job.page if job.page is not None else None
+        return path.stat().st_mtime_ns if path is not None and path.is_file() else 0
 
     def _job(self, job: AppJob) -> None:
         queue = self.state.queue
-        ui.label(f"{job.number}: {job.state}").classes("text-bold")
+        title = ", ".join(filter(None, (f"{job.number}: {job.state}", job.variant)))
+        ui.label(title).classes("text-bold")
         ui.label(job.typed).classes("text-caption")
         if job.reason:
             ui.label(job.reason).classes("text-negative text-caption")
         if job.state == JobState.RUNS:
             log = ui.label(queue.progress(job)).classes("swgpar-log")
-            self._logs.append((job, log, self._has_page(job)))
+            self._logs.append((job, log, self._written(job)))
+        if job.command == "rate" and (known := sheet_of(queue.folder, job)) is not None:
+            ui.label(verdict_text(job, known)).classes(f"text-{COLOURS[known.headline]} text-bold")
         with ui.row().classes("items-center"):
-            if self._has_page(job):
+            if self._written(job):
                 ui.link("report", f"/{job.page}", new_tab=True)
                 if job.command == "run" and (queue.folder / job.out / FIELD_INDEX).exists():
                     ui.button("3D", on_click=lambda: self._view(job)).props("flat dense")

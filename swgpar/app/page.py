@@ -31,6 +31,7 @@ class Page:
         self.state = state
         self.keys: set[str] = set()  # those of the form
         self.controls: dict[str, KeyControl] = {}  # of the sections that were opened
+        self.buttons: dict[str, ui.button] = {}  # of the header
         self.opened = {"drive"}
         with ui.header().classes("items-center gap-4 q-px-md q-py-xs swgpar-header"):
             ui.label("swgpar").classes("text-h6")
@@ -70,7 +71,8 @@ class Page:
             ("copy", self._copy),
             ("save", self._save),
         ):
-            ui.button(name, on_click=step).props("flat dense color=white")
+            self.buttons[name] = ui.button(name, on_click=step).props("flat dense color=white")
+        self._draw_steps()
         with ui.dropdown_button("as text", auto_close=True).props("flat dense color=white"):
             ui.item("command line", on_click=lambda: self._clip(self._command()))
             ui.item("Python", on_click=lambda: self._clip(self._python()))
@@ -86,6 +88,12 @@ class Page:
         ):
             if choice.options != offered or choice.value != value:
                 choice.set_options(offered, value=value)
+
+    def _draw_steps(self) -> None:
+        """Offer the changes that can be undone and redone."""
+        variant = self.state.variant
+        for name, steps in (("undo", variant.before), ("redo", variant.after)):
+            self.buttons[name].set_enabled(bool(steps))
 
     async def _choose(self) -> None:
         workspace, chosen = self.state.workspace, (self.variant.value, self.beside.value)
@@ -211,6 +219,7 @@ class Page:
         self.section.clearance.refresh()
         fields = {field.key: field for field in form_fields(self.state.variant.design)}
         self._draw_names()
+        self._draw_steps()
         if fields.keys() != self.keys:
             self.form.refresh()
         for key, control in self.controls.items():

@@ -62,7 +62,7 @@ class SectionPanel:
         self.pictures()
         with ui.row().classes("w-full items-center no-wrap gap-3"):
             self.view = ui.toggle(VIEWS, value=state.loaded, on_change=self._view)
-            self.view.props("dense no-caps size=sm")
+            self.view.props("dense no-caps size=sm").classes("swgpar-toggle")
             ui.label("cam").classes("text-no-wrap")
             self.slider = Slider(0.0, 360.0, 1.0, "angle of the cam, degrees", self._turned)
             self.slider.show(state.angle_deg)

@@ -59,7 +59,7 @@ def section_figure(
         "layout": {
             "uirevision": f"{loaded is None} {np.round(np.log(sizes) / OTHER_SIZE)}",
             "dragmode": "pan",
-            "margin": {"l": 45, "r": 10, "t": 10, "b": 40},
+            "margin": {"l": 45, "r": 10, "t": 30, "b": 40},
             "showlegend": len(design.gears) > 2,
             "legend": {"x": 0.0, "y": 1.0, "bgcolor": "rgba(0,0,0,0)"},
             "font": {"color": "#7a7a7a"},
@@ -73,7 +73,12 @@ def section_figure(
                 "scaleanchor": "x",
             },
         },
-        "config": {"scrollZoom": True, "displaylogo": False, "responsive": True},
+        "config": {
+            "scrollZoom": True,
+            "displaylogo": False,
+            "responsive": True,
+            "modeBarButtonsToRemove": ["select2d", "lasso2d"],  # nothing follows from a selection
+        },
     }
 
 

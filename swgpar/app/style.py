@@ -20,14 +20,15 @@ STYLE = """
 .swgpar-queue { max-height: 34vh; overflow-y: auto; flex-wrap: nowrap }
 .swgpar-columns { flex-wrap: nowrap }
 .swgpar-parts { display: none }
-.swgpar-form { width: 330px; max-height: calc(100vh - 80px); overflow-y: auto; flex: none }
+.swgpar-form { width: 330px; max-height: calc(100vh - 104px); overflow-y: auto; flex: none }
 .swgpar-section { flex: 1 1 400px; min-width: 0 }
 .swgpar-plot { height: calc(100vh - 215px); min-height: 320px }
 .swgpar-half { height: calc(50vh - 140px); min-height: 240px }
-.swgpar-answers { width: 340px; max-height: calc(100vh - 80px); overflow-y: auto; flex: none;
+.swgpar-answers { width: 340px; max-height: calc(100vh - 104px); overflow-y: auto; flex: none;
   flex-wrap: nowrap }
 .swgpar-answers > * { flex-shrink: 0 }
 .swgpar-answers td { overflow-wrap: anywhere }
+.body--dark .swgpar-answers .q-table__card { background: transparent }
 .swgpar-loaded td:not(:first-child) { white-space: nowrap }
 .swgpar-answers th:first-child, .swgpar-answers td:first-child { padding-left: 0 }
 .swgpar-slider { width: 100%; height: 4px; border-radius: 2px; appearance: none;
@@ -39,6 +40,9 @@ STYLE = """
 .swgpar-slider:focus-visible { outline: 2px solid var(--q-primary); outline-offset: 6px }
 .swgpar-slider:disabled { opacity: 0.4 }
 .swgpar-angle { width: 3em; text-align: right }
+.swgpar-toggle .q-btn { padding: 2px 10px }
+.swgpar-plot .main-svg > g:not(.hoverlayer) text { fill: #505050 !important }
+.body--dark .swgpar-plot .main-svg > g:not(.hoverlayer) text { fill: #c8c8c8 !important }
 .swgpar-view { border: 0 }
 .swgpar-search { width: min(90vw, 900px); max-width: none }
 .swgpar-drawings { width: min(90vw, 1000px); max-width: none }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from nicegui import ui
 
 from swgpar.answers.verdict import Judgement
@@ -60,7 +62,7 @@ class VerdictPanel:
     def verdict(self) -> None:
         """The sheet, and the keys that have changed since then."""
         job = self._last(self.state.variant.name)
-        known = self._sheet(job)
+        known = sheet_of(self.state.queue.folder, job)
         if job is None or known is None:
             can_rate = self.state.variant.design.rating is not None
             text = "not rated yet: press rate" if can_rate else "add [rating], then rate"
@@ -68,11 +70,7 @@ class VerdictPanel:
             ui.label(text).classes("text-caption")
             return
         self._seen = self._written(job)
-        said = known.sentence or f"{known.headline}: {known.title}"
-        say(
-            self.headline,
-            said if job.state == JobState.FINISHED else f"{job.state}, so far: {said}",
-        )
+        say(self.headline, verdict_text(job, known))
         self.headline.classes(replace=f"text-{COLOURS[known.headline]} text-bold")
         ui.label("bars: share of the limit that is used").classes("text-caption")
         others = [row for row in known.rows if row.limit is None]
@@ -95,7 +93,8 @@ class VerdictPanel:
         names = ("before", "last")
         if other is not None and other.name != variant:
             before, names = self._last(other.name), (other.name, variant)
-        first, second = self._sheet(before), self._sheet(last)
+        folder = self.state.queue.folder
+        first, second = sheet_of(folder, before), sheet_of(folder, last)
         if first is None or second is None:
             return
         heading("answers that differ")
@@ -130,15 +129,6 @@ class VerdictPanel:
         except OSError:
             return 0
 
-    def _sheet(self, job: AppJob | None) -> StoredSheet | None:
-        """The sheet of a rating; None where it cannot be read."""
-        if job is None:
-            return None
-        try:
-            return read_sheet(self.state.queue.folder / job.out)
-        except SwgparError:
-            return None
-
     def _changed_keys(self, job: AppJob) -> list[Difference]:
         """Keys that have changed since a job."""
         try:
@@ -146,6 +136,22 @@ class VerdictPanel:
             return differences(drive_of(table, {}), self.state.variant.design)
         except SwgparError:
             return []
+
+
+def sheet_of(folder: Path, job: AppJob | None) -> StoredSheet | None:
+    """The sheet of a rating in the workspace folder; None where it cannot be read."""
+    if job is None:
+        return None
+    try:
+        return read_sheet(folder / job.out)
+    except SwgparError:
+        return None
+
+
+def verdict_text(job: AppJob, known: StoredSheet) -> str:
+    """The verdict of a rating, and where the rating is."""
+    said = known.sentence or f"{known.headline}: {known.title}"
+    return said if job.state == JobState.FINISHED else f"rating {job.state}, so far: {said}"
 
 
 def _gauge(row: StoredRow) -> None:

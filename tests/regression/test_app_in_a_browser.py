@@ -159,6 +159,8 @@ def change_keys(page: sync_api.Page, clearance: sync_api.Locator) -> None:
     appears and goes."""
     expect = sync_api.expect
     expect(clearance).to_contain_text("smallest clearance")
+    undo = page.get_by_role("button", name="undo", exact=True)
+    expect(undo).to_be_disabled()
     first = clearance.inner_text()
     enter(page, "drive.module", "1,02")
     expect(clearance).not_to_have_text(first)
@@ -173,8 +175,9 @@ def change_keys(page: sync_api.Page, clearance: sync_api.Locator) -> None:
     page.get_by_text("[ring_gear]").click()
     enter(page, "ring_gear.c_P", "1.03")
     expect(clearance).to_contain_text("overlap")
-    press(page, "undo")
+    undo.click()
     expect(clearance).to_contain_text("smallest clearance")
+    expect(page.get_by_role("button", name="redo", exact=True)).to_be_enabled()
 
 
 def compare_variants(page: sync_api.Page, folder: Path) -> None:
@@ -201,6 +204,20 @@ def compare_variants(page: sync_api.Page, folder: Path) -> None:
     assert re.search(r"addendum_coef = 0\.57 +# addendum", (folder / "one_2.toml").read_text())
     page.reload()
     expect(changes).to_contain_text("drive.addendum_coef")
+
+
+def ask_for_too_much(page: sync_api.Page) -> None:
+    """What a start does not carry is said before it is made; another torque takes it back."""
+    press(page, "new")
+    torque = page.get_by_label("torque, N·m")
+    torque.fill("600")
+    torque.press("Enter")
+    said = page.get_by_role("alert").filter(has_text="is more than this start carries")
+    sync_api.expect(said).to_be_visible()
+    torque.fill("1")
+    sync_api.expect(page.get_by_role("button", name="make", exact=True)).to_be_visible()
+    page.keyboard.press("Escape")
+    sync_api.expect(torque).not_to_be_visible()
 
 
 def look_at_a_narrow_window(page: sync_api.Page) -> None:
@@ -261,6 +278,7 @@ def test_a_session_with_a_killed_server(
     served = opened(page, folder, servers)
     sync_api.expect(clearance).to_have_text(changed)
     sync_api.expect(page.get_by_label("mesh", exact=True)).to_have_value("tiny.toml")
+    ask_for_too_much(page)
     look_at_a_narrow_window(page)
     compare_variants(page, folder)
     look_at_jobs(page, folder)

@@ -45,6 +45,7 @@ from swgpar.app.section_panel import TeethPicture
 from swgpar.app.section_plot import section_figure
 from swgpar.app.state import recipes_of
 from swgpar.app.state_worker import RunProgress
+from swgpar.app.verdict_panel import sheet_of, verdict_text
 from swgpar.app.workspace import Variant, Workspace, drive_of
 from swgpar.checks.clearance import clearances, smallest_clearance
 from swgpar.design.drive_design import DriveDesign
@@ -511,6 +512,16 @@ def test_what_differs_between_two_ratings() -> None:
     gone, life = sorted(sheet_differences(sheets[0], other), key=lambda one: one.name == "life")
     assert gone.name == "yield" and gone.change is None
     assert life.change == -1.0 and life.error is None
+
+
+def test_the_verdict_of_a_rating_that_runs_is_not_the_last_one(tmp_path: Path) -> None:
+    """A job without a sheet has none."""
+    job = AppJob(1, ["rate", "one.toml"], 1, "results/1", state=JobState.RUNS)
+    known = StoredSheet("one", Judgement.FAILS, (), "The drive fails: yield of wall.")
+    assert verdict_text(job, known) == "rating runs, so far: The drive fails: yield of wall."
+    job.state = JobState.FINISHED
+    assert verdict_text(job, known) == "The drive fails: yield of wall."
+    assert sheet_of(tmp_path, job) is None and sheet_of(tmp_path, None) is None
 
 
 def test_a_rating_that_runs_says_where_it_is(tmp_path: Path) -> None:
