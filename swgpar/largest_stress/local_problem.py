@@ -25,6 +25,7 @@ from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR, STRESS_PREFIXES
 from swgpar.fem.stress import principal
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.rotation import rotated
+from swgpar.largest_stress.along_width import Peak, WidthStations
 from swgpar.largest_stress.places import OF_REGION
 from swgpar.largest_stress.surface_stress import surface_mises
 from swgpar.largest_stress.window_loads import WindowLoads
@@ -87,11 +88,10 @@ class WindowStress:
 
 @dataclass(frozen=True)
 class _Found:
-    """A largest stress (MPa), the tooth and the node of its sector; beside : of `WindowStress`."""
+    """A largest stress and the tooth in whose sector it is; beside : of `WindowStress`."""
 
-    value: float
+    peak: Peak
     tooth: int
-    node: int
     beside: bool = False
 
 
@@ -325,14 +325,13 @@ class LocalProblem:
         return named, sectors[inside]
 
     def by_tooth(self, ends: bool = False) -> list[WindowStress]:
-        """Largest s1 of every tooth at its ends or between them that has a limit, one pitch or more
-        inside of the cuts; the largest first. Collective."""
+        """Largest s1 of every tooth at its ends or between them with a limit, the largest first.
+        Collective."""
         nodes = tooth_nodes(self.layout.mesh, self.model.geometry, ends)
         return self._tension(nodes[~self._no_limit(nodes)])
 
     def largest_at_corners(self) -> WindowStress | None:
-        """Largest s1 of the teeth where it has no limit; None where it has one everywhere;
-        collective."""
+        """Largest s1 of the teeth where it has no limit; None where it has one; collective."""
         mesh, geometry = self.layout.mesh, self.model.geometry
         parts = (False,) if mesh.plane else (False, True)
         nodes = np.concatenate([tooth_nodes(mesh, geometry, ends) for ends in parts])
@@ -348,11 +347,20 @@ class LocalProblem:
         values = stresses[f"{STRESS_PREFIXES[self.gear][0]}_s1"][:, nodes]
         teeth = self.layout.first_tooth + sectors
         mine = [
-            _Found(float(one.max()), int(tooth), int(nodes[one.argmax()]))
+            _Found(self._largest(nodes, one), int(tooth))
             for tooth, one in zip(teeth, values, strict=True)
         ]
-        found = sorted(chain(*self.model.comm.allgather(mine)), key=lambda one: -one.value)
-        return [self._named(one, str(self._shared.regions[one.node])) for one in found]
+        found = sorted(chain(*self.model.comm.allgather(mine)), key=lambda one: -one.peak.value)
+        return [self._named(one, str(self._shared.regions[one.peak.node])) for one in found]
+
+    def _largest(self, nodes: np.ndarray, values: np.ndarray) -> Peak:
+        """The largest of the stresses (n,) MPa of nodes (n,) of a sector."""
+        peak = self._stations.largest(self.layout.mesh.coords[nodes, 2], values)
+        return replace(peak, node=int(nodes[peak.node]))
+
+    @cached_property
+    def _stations(self) -> WidthStations:
+        return WidthStations.of(self.layout.mesh)
 
     def by_region(self) -> dict[int, dict[str, WindowStress]]:
         """Largest stresses of the regions that the window resolves, by tooth and by names with
@@ -367,11 +375,11 @@ class LocalProblem:
             nodes = np.flatnonzero(regions == region)
             for name, values in read.items():
                 for k, sector in enumerate(sectors):
-                    node = int(nodes[values[k, nodes].argmax()])
-                    value, tooth = float(values[k, node]), self.layout.first_tooth + int(sector)
-                    if value > 0.0:
-                        at_end = bool(value > stresses[name][k, node])
-                        mine.append((name, region, _Found(value, tooth, node, at_end)))
+                    peak = self._largest(nodes, values[k, nodes])
+                    if peak.value > 0.0:
+                        at_end = bool(values[k, peak.node] > stresses[name][k, peak.node])
+                        tooth = self.layout.first_tooth + int(sector)
+                        mine.append((name, region, _Found(peak, tooth, at_end)))
         found: dict[int, dict[str, WindowStress]] = {}
         for name, region, one in chain(*self.model.comm.allgather(mine)):
             of_tooth = found.setdefault(one.tooth, {})
@@ -379,12 +387,12 @@ class LocalProblem:
         return found
 
     def _named(self, found: _Found, region: str) -> WindowStress:
-        mesh = self.layout.mesh
-        position = mesh.coords[found.node]
+        mesh, peak = self.layout.mesh, found.peak
+        position = np.array([*mesh.coords[peak.node, :2], peak.z])
         warning = warning_of(self.model.geometry, region, position)
         elements = self.layout.count * len(mesh.hexes)
         return WindowStress(
-            found.value, found.tooth, position, region, warning, elements, found.beside
+            peak.value, found.tooth, position, region, warning, elements, found.beside
         )
 
     def destroy(self) -> None:

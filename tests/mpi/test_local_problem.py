@@ -18,6 +18,7 @@ from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.stress import principal
 from swgpar.largest_stress import local_problem
+from swgpar.largest_stress.along_width import WidthStations
 from swgpar.largest_stress.convergence import HIGHEST_ORDER, error_of
 from swgpar.largest_stress.local_problem import MARGIN, SECTORS, LocalProblem, sectors_of
 from swgpar.largest_stress.places import OF_REGION
@@ -49,7 +50,8 @@ def solved(stepper: LoadStepper, tooth: int, recipe: MeshRecipe | None = None) -
 
 
 def on_the_drive(stepper: LoadStepper, teeth: np.ndarray, share: float = 0.5) -> float:
-    """Largest s1 (MPa) of some teeth by the drive's own nodal averages; collective.
+    """Largest s1 (MPa) of some teeth by the drive's own nodal averages, between stations as in a
+    window; collective.
 
     share : of the face width, from its middle to both sides
     """
@@ -58,10 +60,19 @@ def on_the_drive(stepper: LoadStepper, teeth: np.ndarray, share: float = 0.5) ->
         model.elements.bodies[FLEXIBLE_SPLINE],
         model.partition.owned_sectors(FLEXIBLE_SPLINE),
     )
-    toothed = np.abs(body.layout.mesh.coords[:, 2]) <= share * model.design.drive.face_width + 1e-9
-    stress = body.nodal_stress(model.problem.displacement())[:, toothed]
+    mesh, face_width = body.layout.mesh, model.design.drive.face_width
+    z, stations = mesh.coords[:, 2], WidthStations.of(mesh)
+    stress = principal(body.nodal_stress(model.problem.displacement()))[0]
     mine = np.isin(first + np.arange(len(stress)), teeth % body.layout.count)
-    return WORLD.allreduce(principal(stress[mine])[0].max(initial=0.0), op=MPI.MAX)
+    toothed = np.abs(z) <= share * face_width + 1e-9
+    between = np.abs(z) <= END * face_width
+    largest = [
+        stations.largest(z[part], one[part]).value
+        for one in stress[mine]
+        for part in (toothed & between, toothed & ~between)
+        if part.any()
+    ]
+    return WORLD.allreduce(max(largest, default=0.0), op=MPI.MAX)
 
 
 @pytest.mark.parametrize("tooth", [5, 18])
