@@ -5,7 +5,7 @@ from __future__ import annotations
 from swgpar.analysis.drive_mesh_error import ORDER, SAFETY, smallest_ratio
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.predictor import KnownState
-from swgpar.analysis.transfer import transfer
+from swgpar.analysis.transfer import Interpolations, interpolations, transfer
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.period_ranges import INPUT_TORQUE, CoarsePeriod, period_curves
 from swgpar.log import logger
@@ -30,12 +30,13 @@ def coarse_period(model: DriveModel, run: LoadStepper) -> CoarsePeriod | None:
         return None
     stepper.resume_at(sequence.loaded)
     loaded = model.problem.x.copy()
-    rows, guides = [stepper.row()], [_on_mesh_of(run, stepper)]
+    matrices = interpolations(model, run.model)
+    rows, guides = [stepper.row()], [_on_mesh_of(run, stepper, matrices)]
     try:
         for state in sequence.from_loaded[1:]:
             stepper.advance(state, cut_back=False)
             rows.append(stepper.row())
-            guides.append(_on_mesh_of(run, stepper))
+            guides.append(_on_mesh_of(run, stepper, matrices))
     except ConvergenceError as error:
         logger.info("the errors over the period by the mesh are not known: %s", error)
         return None
@@ -46,9 +47,9 @@ def coarse_period(model: DriveModel, run: LoadStepper) -> CoarsePeriod | None:
     return CoarsePeriod(period_curves(sequence.kinematics, rows, INPUT_TORQUE), factor)
 
 
-def _on_mesh_of(run: LoadStepper, stepper: LoadStepper) -> KnownState:
+def _on_mesh_of(run: LoadStepper, stepper: LoadStepper, matrices: Interpolations) -> KnownState:
     """The present state of `stepper` on the mesh of the run."""
     x = run.problem.x.duplicate()
     x.set(0.0)
-    transfer(stepper.model, stepper.problem.x, run.model, x)
+    transfer(stepper.model, stepper.problem.x, run.model, x, matrices)
     return KnownState(stepper.load_state.angle, x)

@@ -19,7 +19,7 @@ from swgpar.analysis.drive_mesh_error import coarser_recipes, with_finer_flanks
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.model_sources import NEW_MODELS, ModelSource
 from swgpar.analysis.saved_state import StartStates
-from swgpar.analysis.transfer import transfer
+from swgpar.analysis.transfer import interpolations, transfer
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.log import logger
@@ -235,7 +235,8 @@ def take_over(coarse: DriveModel, stepper: LoadStepper, models: ModelSource) -> 
     Newton iterations."""
     loaded = stepper.sequence.loaded
     try:
-        transfer(coarse, coarse.problem.x, stepper.model, stepper.problem.x)
+        matrices = interpolations(coarse, stepper.model)
+        transfer(coarse, coarse.problem.x, stepper.model, stepper.problem.x, matrices)
     finally:
         models.give_back(coarse)
     stepper.load_state = loaded

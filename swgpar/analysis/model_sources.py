@@ -13,7 +13,7 @@ from mpi4py import MPI
 from swgpar.analysis.identity import identity
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.predictor import KnownState
-from swgpar.analysis.transfer import meshed_alike, transfer
+from swgpar.analysis.transfer import interpolations, meshed_alike, transfer
 from swgpar.design.drive_design import DriveDesign
 from swgpar.input.differences import differ_little
 from swgpar.load.load_states import LoadState
@@ -220,7 +220,8 @@ class LoadedDrives(ModelSource):
         if nearest is drive:
             x.copy(stepper.problem.x)
         else:
-            transfer(nearest.model, x, stepper.model, stepper.problem.x, alike=alike)
+            matrices = None if alike else interpolations(nearest.model, stepper.model)
+            transfer(nearest.model, x, stepper.model, stepper.problem.x, matrices)
             if alike:
                 # the same sectors of the ring gear in full, where they will do
                 stepper.problem.resume_sectors(nearest.model.problem.modelled.chosen())

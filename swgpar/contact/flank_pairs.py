@@ -17,7 +17,7 @@ from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.local_nodes import LocalNodes
 from swgpar.fem.partition import Partition
-from swgpar.geometry.rotation import MIRROR
+from swgpar.geometry.rotation import MIRROR, rotated
 from swgpar.meshing.sector import FlankGrid
 
 LINE_WINDOW = (1, 1)
@@ -68,14 +68,6 @@ class PlacedFaces:
     size: np.ndarray
     offset: np.ndarray
     patch: np.ndarray
-
-    @classmethod
-    def joined(cls, parts: list[PlacedFaces]) -> PlacedFaces:
-        """The faces of several pairs, one after the other."""
-        names = [f.name for f in fields(cls)]
-        return cls(
-            *(np.ascontiguousarray(np.concatenate([getattr(f, n) for f in parts])) for n in names)
-        )
 
     def points(self, chosen: np.ndarray, a: np.ndarray, b: np.ndarray, share: np.ndarray) -> Faces:
         """Faces (n,) of their own with points.
@@ -164,18 +156,17 @@ class FlankPairs:
     ) -> None:
         self.partition, self.spline, self.ring = partition, spline, ring
         self.pairs, self.local = pairs, local
+        table = [(p.sector, p.side, p.ring, p.ring_sixths, p.ring_tooth) for p in pairs]
+        columns = np.array(table, dtype=np.int64).reshape(-1, 5).T
+        self._sector, self._side, self._ring, self._ring_sixths, self._ring_tooth = columns
         self.masters = self._master_flanks(masters)
-        placed = [self._placed(slaves[p.side], p, k) for k, p in enumerate(pairs)]
-        self.faces = PlacedFaces.joined(placed) if placed else None
+        self.faces = self._placed(slaves) if pairs else None
         self._ideal = (
             self.masters.point,
             self.masters.tangent,
             None if self.faces is None else self.faces.offset,
         )
-        owner = np.array(
-            [partition.owner_of_sector(FLEXIBLE_SPLINE, np.array(p.sector)) for p in pairs],
-            dtype=np.int64,
-        )
+        owner = partition.owner_of_sector(FLEXIBLE_SPLINE, self._sector)
         self.owned = owner == partition.comm.rank
 
     def deviate(self, deviations: FlankDeviations) -> None:
@@ -201,19 +192,23 @@ class FlankPairs:
             conn=np.zeros((n_pair, *grid.nodes.shape), dtype=np.int32),
             sixths=np.zeros((n_pair, *grid.nodes.shape), dtype=np.uint8),
         )
-        curves = {side: self._curve(grid) for side, grid in grids.items()}
-        for k, p in enumerate(self.pairs):
-            grid = grids[-p.side]
-            flanks.point[k], flanks.tangent[k], flanks.orientation[k] = curves[-p.side]
-            angle = self.ring.layout.sector_angle(np.array(p.ring_tooth))
-            flanks.rotation[k] = np.cos(angle), np.sin(angle)
+        layout = self.ring.layout
+        for side, grid in grids.items():
+            of_side = np.flatnonzero(self._side == -side)
+            (
+                flanks.point[of_side],
+                flanks.tangent[of_side],
+                flanks.orientation[of_side],
+            ) = self._curve(grid)
+            angle = layout.sector_angle(self._ring_tooth[of_side])
+            flanks.rotation[of_side] = np.column_stack([np.cos(angle), np.sin(angle)])
             number, sixths = self.partition.node_numbers(
-                self.ring.layout.name, np.array([p.ring]), grid.nodes.ravel()
+                layout.name, self._ring[of_side], grid.nodes.ravel()
             )
-            flanks.conn[k] = self.local.index(number).reshape(grid.nodes.shape)
-            flanks.sixths[k] = np.where(number >= 0, (sixths + p.ring_sixths) % 6, 0).reshape(
-                grid.nodes.shape
-            )
+            sixths = np.where(number >= 0, (sixths + self._ring_sixths[of_side, None]) % 6, 0)
+            shape = (len(of_side), *grid.nodes.shape)
+            flanks.conn[of_side] = self.local.index(number).reshape(shape)
+            flanks.sixths[of_side] = sixths.reshape(shape)
         return flanks
 
     def _curve(self, grid: FlankGrid) -> tuple[np.ndarray, np.ndarray, float]:
@@ -226,23 +221,29 @@ class FlankPairs:
         right = np.column_stack([tangent[:, 1], -tangent[:, 0]])
         return point, tangent, float(np.sign(np.sum(right * normal)))
 
-    def _placed(self, slave: FlankFaces, pair: FlankPair, patch: int) -> PlacedFaces:
+    def _placed(self, slaves: Mapping[int, FlankFaces]) -> PlacedFaces:
+        """The faces of all pairs, one pair after the other."""
         layout = self.spline.layout
-        number, sixths = self.partition.node_numbers(
-            FLEXIBLE_SPLINE, np.array([pair.sector]), slave.corners.ravel()
-        )
-        angle = layout.chain_angle(np.array(pair.sector))
-        c, s = np.cos(angle), np.sin(angle)
-        rotation = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-        return PlacedFaces(
-            self.local.index(number).reshape(-1, 4),
-            sixths.reshape(-1, 4).copy(),
-            layout.mesh.coords[slave.corners] @ rotation,
-            slave.normal @ rotation,
-            slave.size,
-            slave.offset,
-            np.full(len(slave.corners), patch, dtype=np.int32),
-        )
+        some = next(iter(slaves.values()))
+        shape = len(self.pairs), len(some.corners)
+        conn, sixths = np.zeros((*shape, 4), np.int32), np.zeros((*shape, 4), np.uint8)
+        coords, normal, size = (np.zeros((*shape, *n)) for n in ((4, 3), (3,), (2,)))
+        offset = np.zeros((*shape, *some.offset.shape[1:]))
+        for side, slave in slaves.items():
+            of_side = np.flatnonzero(self._side == side)
+            sector = self._sector[of_side]
+            number, flags = self.partition.node_numbers(
+                FLEXIBLE_SPLINE, sector, slave.corners.ravel()
+            )
+            conn[of_side] = self.local.index(number).reshape(-1, *conn.shape[1:])
+            sixths[of_side] = flags.reshape(-1, *sixths.shape[1:])
+            angle = layout.chain_angle(sector)[:, None]
+            coords[of_side] = rotated(layout.mesh.coords[slave.corners][None], angle[..., None])
+            normal[of_side] = rotated(slave.normal[None], angle)
+            size[of_side], offset[of_side] = slave.size, slave.offset
+        patch = np.arange(shape[0], dtype=np.int32).repeat(shape[1]).reshape(shape)
+        of_pairs = conn, sixths, coords, normal, size, offset, patch
+        return PlacedFaces(*(values.reshape(-1, *values.shape[2:]) for values in of_pairs))
 
     def block_keys(
         self, chosen: np.ndarray, foot_point: np.ndarray, line: np.ndarray, symmetric: bool

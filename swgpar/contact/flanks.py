@@ -131,11 +131,16 @@ class FlankContact:
 
     def node_numbers(self, pairs: list[FlankPair]) -> np.ndarray:
         """Global numbers (n,) of the flank nodes of pairs."""
-        numbers, parts = self.partition.node_numbers, [np.zeros(0, dtype=np.int64)]
-        for p in pairs:
-            slave, master = self.slaves[p.side].corners.ravel(), self.masters[-p.side].nodes.ravel()
-            parts.append(numbers(FLEXIBLE_SPLINE, np.array([p.sector]), slave)[0].ravel())
-            parts.append(numbers(self.ring.layout.name, np.array([p.ring]), master)[0].ravel())
+        numbers, parts = self.partition.node_numbers, []
+        for side, slave in self.slaves.items():
+            of_side = [p for p in pairs if p.side == side]
+            sector, ring = (
+                np.array(of_pair, dtype=np.int64)
+                for of_pair in ([p.sector for p in of_side], [p.ring for p in of_side])
+            )
+            master = self.masters[-side].nodes.ravel()
+            parts.append(numbers(FLEXIBLE_SPLINE, sector, slave.corners.ravel())[0].ravel())
+            parts.append(numbers(self.ring.layout.name, ring, master)[0].ravel())
         return np.concatenate(parts)
 
     def search(

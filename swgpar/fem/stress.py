@@ -6,6 +6,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.fem.elements import BodyElements
+from swgpar.meshing.sector import SectorMesh
 
 TENSOR = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])
 """Indices of the components xx yy zz xy yz zx in a tensor (3, 3)."""
@@ -15,6 +16,18 @@ def principal(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Largest and smallest principal and von Mises stress, MPa, of (…, 6) xx yy zz xy yz zx."""
     s3, s2, s1 = np.moveaxis(np.linalg.eigvalsh(stress[..., TENSOR]), -1, 0)
     mises = np.sqrt(0.5 * ((s1 - s2) ** 2 + (s2 - s3) ** 2 + (s3 - s1) ** 2))
+    return s1, s3, mises
+
+
+def principal_at_nodes(
+    mesh: SectorMesh, stress: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The same (n_sectors, n_node) of stresses (n_sectors, n_node, 6) at the nodes of sectors: both
+    layers of the plane are alike."""
+    if mesh.lower_nodes is None:
+        return principal(stress)
+    nodes, index = np.unique(mesh.lower_nodes, return_inverse=True)
+    s1, s3, mises = (values[:, index] for values in principal(stress[:, nodes]))
     return s1, s3, mises
 
 
@@ -44,7 +57,7 @@ def body_fields(body: BodyElements, u: np.ndarray) -> dict[str, np.ndarray]:
     for part in range(1, len(mesh.parts)):
         nodes = np.setdiff1d(mesh.nodes_of(part), mesh.nodes_of(0))
         tensor[:, nodes] = body.nodal_stress(u, part)[:, nodes]
-    s1, s3, mises = principal(tensor)
+    s1, s3, mises = principal_at_nodes(mesh, tensor)
     displacement = body.displacement(u)[body.owned]
     return {"displacement": displacement, "stress": tensor, "s1": s1, "s3": s3, "vm": mises}
 

@@ -63,11 +63,12 @@ def read_field(
     number, sixths = partition.node_numbers(
         body, sectors, np.arange(len(partition.layouts[body].mesh.coords))
     )
-    present = number >= 0
-    exchange = Exchange(partition, number[present].astype(np.int32))
-    values = np.zeros((*number.shape, 3))
-    values[present] = exchange(vector)
+    needed, position = np.unique(number, return_inverse=True)
+    absent = int(len(needed) > 0 and needed[0] == -1)
+    exchange = Exchange(partition, needed[absent:].astype(np.int32))
+    values = exchange(vector)
     exchange.destroy()
+    values = np.vstack([np.zeros((absent, 3)), values])[position.reshape(number.shape)]
     return partition.layouts[body].with_inner_nodes(sectors, to_images(values, sixths))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 from swgpar.contact.pressed_lines import PressedLine
 from swgpar.flank_pressure.patch_contact import PatchContact
@@ -36,7 +36,7 @@ class ContactStation:
 
     def row(self) -> dict[str, float]:
         """The columns of contact_lines.csv; those of the cells are p1_MPa and so on."""
-        values = asdict(self)
+        values = dict(vars(self))
         cells = values.pop("cells_MPa")
         digits = (float(f"{pressure:.{CELL_DIGITS}g}") for pressure in cells)
         return values | {f"p{k}_MPa": pressure for k, pressure in enumerate(digits, start=1)}

@@ -3,6 +3,8 @@ as a rigid body."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import scipy
 
@@ -44,10 +46,13 @@ class MovedTooth:
         self.crowned = crowned
         z = layout.mesh.flanks[0].z
         self.ends = float(z[0]), float(z[-1])
-        motion = np.array([self._motion(layout, u, station) for station in range(len(z))])
-        if len(z) <= 2:
-            motion = motion[:1].repeat(len(z), axis=0)  # the sections of the plane model move alike
-        self._at = scipy.interpolate.CubicSpline(z, motion)
+        self._at: Callable[[np.ndarray], np.ndarray]
+        if layout.mesh.plane:  # its sections move alike
+            motion = self._motion(layout, u, 0)
+            self._at = lambda at: np.broadcast_to(motion, (len(at), len(motion)))
+        else:
+            motions = np.array([self._motion(layout, u, station) for station in range(len(z))])
+            self._at = scipy.interpolate.CubicSpline(z, motions)
 
     def _motion(self, layout: BodyLayout, u: np.ndarray, station: int) -> np.ndarray:
         """Middle before and after (2 + 2) mm and rotation (rad) of the section that fits its nodes

@@ -11,7 +11,7 @@ their teeth, and the gap between them goes into the contact of two half spaces o
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from typing import Any
 
@@ -114,7 +114,7 @@ class PairContact:
     def row(self) -> dict[str, Any]:
         """The row of pairs.csv."""
         left_out = ("stations", "unresolved") if self.ring else ("stations", "unresolved", "ring")
-        return {name: value for name, value in asdict(self).items() if name not in left_out}
+        return {name: value for name, value in vars(self).items() if name not in left_out}
 
     def station_rows(self) -> list[dict[str, Any]]:
         """The rows of contact_lines.csv."""

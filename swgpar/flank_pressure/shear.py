@@ -16,14 +16,12 @@ def largest_shear(
 
     low, high : (n,) mm, ends of the strips;  pressure : (n,) MPa, uniform on each;  half_width : mm
     """
-    at = (0.5 * (low + high))[::2, None, None]
     depth = (DEPTHS * half_width)[:, None]
+    at = (0.5 * (low + high))[::2, None, None]
+    before, after = at - low, at - high
     # a strip under uniform pressure: stresses of a half plane in closed form (Johnson, Contact
-    # Mechanics, 2.5)
-    t1, t2 = np.arctan2(at - low, depth), np.arctan2(at - high, depth)
-    sine, cosine = np.sin(2.0 * t1) - np.sin(2.0 * t2), np.cos(2.0 * t1) - np.cos(2.0 * t2)
-    angle = t1 - t2
-    across = -(2.0 * angle - sine) @ pressure / (2.0 * np.pi)
-    normal = -(2.0 * angle + sine) @ pressure / (2.0 * np.pi)
-    shear = cosine @ pressure / (2.0 * np.pi)
-    return float(np.hypot(0.5 * (across - normal), shear).max())
+    # Mechanics, 2.5), with the sines and cosines of twice the angles by the lengths
+    first, last = before**2 + depth**2, after**2 + depth**2
+    normal = depth * (before / first - after / last) @ pressure
+    shear = (after**2 / last - before**2 / first) @ pressure
+    return float(np.hypot(normal, shear).max() / np.pi)

@@ -26,7 +26,10 @@ class Section(BaseModel):
     """One table of an input file: immutable, no unknown keys, no silent conversion, finite numbers
     only."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+    # sections are read inside of a design: of themselves they need no validators
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", strict=True, allow_inf_nan=False, defer_build=True
+    )
 
     def __hash__(self) -> int:
         # curves are kept by their keys, which may be lists and tables

@@ -35,6 +35,7 @@ from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.drive_geometry import DriveGeometry
+from swgpar.meshing.interpolation import interpolated
 from swgpar.meshing.sector import SectorMesh
 from swgpar.meshing.tooth_sector import build_sector
 from swgpar.meshing.trim import trimmed
@@ -212,7 +213,7 @@ class LocalProblem:
         mesh of its teeth. matrix : of `interpolation`"""
         angle = self.layout.chain_angle(np.arange(self.layout.count))
         local = rotated(field, -angle[:, None])
-        return rotated(np.stack([matrix @ sector for sector in local]), angle[:, None])
+        return rotated(interpolated(local, matrix), angle[:, None])
 
     def equilibrium(self) -> WindowState:
         """The present state, for a finer window; collective."""

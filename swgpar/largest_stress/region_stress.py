@@ -18,7 +18,7 @@ import numpy as np
 from swgpar.answers.answer import joined_error
 from swgpar.fem.body import FLEXIBLE_SPLINE, STRESS_PREFIXES
 from swgpar.fem.body_layout import BodyLayout
-from swgpar.fem.stress import principal
+from swgpar.fem.stress import principal_at_nodes
 from swgpar.largest_stress.convergence import HIGHEST_ORDER, LOWEST_ORDER, error_of
 from swgpar.largest_stress.local_problem import WindowStress
 from swgpar.largest_stress.places import (
@@ -267,7 +267,7 @@ def _read_and_elsewhere(nodal: np.ndarray, known: Iterable[int]) -> tuple[dict[i
 def nodal_averages(model: DriveModel, gear: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """s1, s3 and von Mises stress (n_owned, n_node) MPa on the drive's mesh; collective."""
     body = model.elements.bodies[gear]
-    return principal(body.nodal_stress(model.problem.displacement()))
+    return principal_at_nodes(body.layout.mesh, body.nodal_stress(model.problem.displacement()))
 
 
 def nodal_by_sector(

@@ -22,6 +22,13 @@ def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:
     return interpolation_at(coarse, fine.coords)
 
 
+def interpolated(field: np.ndarray, matrix: csr_matrix) -> np.ndarray:
+    """Values (n_sectors, n_fine, 3) from those of other nodes, (n_sectors, n_coarse, 3), by a
+    matrix of `interpolation`."""
+    columns = matrix @ field.transpose(1, 0, 2).reshape(field.shape[1], -1)
+    return columns.reshape(-1, len(field), 3).transpose(1, 0, 2)
+
+
 def interpolation_at(coarse: SectorMesh, points: np.ndarray) -> csr_matrix:
     """Matrix (n, n_coarse) that maps nodal values of the coarse sector to points (n, 3) mm.
 
