@@ -57,10 +57,11 @@ inline Eigen::Matrix3d plane_rotation(const Eigen::Matrix3d& f) {
 template <int N>
 struct CorotatedElement {
   static constexpr int D = N == Eigen::Dynamic ? Eigen::Dynamic : 3 * N;
+  static constexpr int S = N == 4 ? 1 : 3;  // axes about which it rotates, the last ones: z alone
   using Nodes = Eigen::Matrix<double, N, 3>;
   using Vector = Eigen::Matrix<double, D, 1>;
   using Square = Eigen::Matrix<double, D, D>;
-  using Rows = Eigen::Matrix<double, 3, D>;
+  using Rows = Eigen::Matrix<double, S, D>;
 
   Eigen::Matrix3d rotation, stretch;
   Nodes y;
@@ -88,7 +89,7 @@ struct CorotatedElement {
     stretch = rotation.transpose() * f;
     stretch = (0.5 * (stretch + stretch.transpose())).eval();
     y = x * rotation;
-    d.resize(3 * m), q.resize(3, 3 * m);
+    d.resize(3 * m), q.resize(S, 3 * m);
     for (int a = 0; a < m; ++a)
       d.template segment<3>(3 * a) = (y.row(a) - small.row(a)).transpose();
     f0.noalias() = Eigen::Map<const Square>(stiffness, 3 * m, 3 * m) * d;
@@ -96,30 +97,33 @@ struct CorotatedElement {
     for (int a = 0; a < m; ++a)
       moment += Eigen::Vector3d(y.row(a)).cross(f0.template segment<3>(3 * a));
     const Eigen::Matrix3d gi = (stretch.trace() * Eigen::Matrix3d::Identity() - stretch).inverse();
-    for (int a = 0; a < m; ++a) q.template middleCols<3>(3 * a) = gi * skew(g.row(a));
-    r = f0 - q.transpose() * moment;
+    for (int a = 0; a < m; ++a)
+      q.template middleCols<3>(3 * a) = gi.template bottomRows<S>() * skew(g.row(a));
+    r = f0 - q.transpose() * moment.template tail<S>();
   }
 
   // Tangent in the element frame; symmetric.
   Square tangent(const Nodes& g, const double* stiffness) const {
     const int m = static_cast<int>(g.rows());
     const Eigen::Map<const Square> k0(stiffness, 3 * m, 3 * m);
-    Eigen::Matrix<double, D, 3> lever(3 * m, 3);
-    Rows spin_f0(3, 3 * m), spin_r(3, 3 * m), change(3, 3 * m);
+    Eigen::Matrix<double, D, S> lever(3 * m, S);
+    Rows spin_f0(S, 3 * m), spin_r(S, 3 * m), change(S, 3 * m);
     const Eigen::Matrix3d gi = (stretch.trace() * Eigen::Matrix3d::Identity() - stretch).inverse();
     const Eigen::Vector3d n = gi * moment;
     for (int a = 0; a < m; ++a) {
-      lever.template middleRows<3>(3 * a) = skew(y.row(a));
-      spin_f0.template middleCols<3>(3 * a) = skew(f0.template segment<3>(3 * a));
-      spin_r.template middleCols<3>(3 * a) = skew(r.template segment<3>(3 * a));
+      lever.template middleRows<3>(3 * a) = skew(y.row(a)).template rightCols<S>();
+      spin_f0.template middleCols<3>(3 * a) =
+          skew(f0.template segment<3>(3 * a)).template bottomRows<S>();
+      spin_r.template middleCols<3>(3 * a) =
+          skew(r.template segment<3>(3 * a)).template bottomRows<S>();
       const Eigen::Vector3d ga = g.row(a);
       change.template middleCols<3>(3 * a) =
-          n * ga.transpose() - ga.dot(n) * Eigen::Matrix3d::Identity();
+          (n * ga.transpose() - ga.dot(n) * Eigen::Matrix3d::Identity()).template bottomRows<S>();
     }
-    change.noalias() -= skew(stretch * n) * q;
+    change.noalias() -= skew(stretch * n).template bottomRightCorner<S, S>() * q;
     // P^T K0 P + Q^T F0 P + Fr^T Q + Q^T N, gathered as K0 + A Q + Q^T A^T-like low-rank updates
-    const Eigen::Matrix<double, D, 3> ky = k0 * lever;
-    const Eigen::Matrix3d inner = lever.transpose() * ky + spin_f0 * lever;
+    const Eigen::Matrix<double, D, S> ky = k0 * lever;
+    const Eigen::Matrix<double, S, S> inner = lever.transpose() * ky + spin_f0 * lever;
     Rows left = ky.transpose() + spin_f0 + change;
     left.noalias() += inner * q;
     Square t = k0;

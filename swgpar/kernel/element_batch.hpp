@@ -53,6 +53,8 @@ inline CorotatedElement<N> state(const ElementBatch& e, std::int64_t k, const do
 template <int N>
 inline std::int64_t assemble(const ElementBatch& e, const double* u, double* residual,
                              const std::int64_t* slot, double* values, double* energy) {
+  constexpr int P = N == 4 ? 2 : 3;  // components with a tangent
+  using Block = Eigen::Matrix<double, P, P>;
   const std::int64_t m = count<N>(e);
   Eigen::Matrix<double, N, 3> g(m, 3);
   for (std::int64_t k = 0; k < e.n; ++k) {
@@ -65,14 +67,16 @@ inline std::int64_t assemble(const ElementBatch& e, const double* u, double* res
       for (int a = 0; a < m; ++a)
         add_nodal(residual, conn[a], sixths[a], c.rotation * c.r.template segment<3>(3 * a));
     if (values == nullptr) continue;
+    const Block turn = c.rotation.template topLeftCorner<P, P>();
     const auto t = c.tangent(g, e.stiffness + 9 * m * m * e.ref_of[k]);
     for (int a = 0; a < m; ++a) {
       for (int b = 0; b < m; ++b) {
         const std::int64_t block_index = slot[m * m * k + m * a + b];
         if (block_index < 0) continue;
-        const Mat3 even = 0.5 * (t.template block<3, 3>(3 * a, 3 * b) +
-                                 t.template block<3, 3>(3 * b, 3 * a).transpose());
-        const Mat3 block = c.rotation * even * c.rotation.transpose();
+        const Block even = 0.5 * (t.template block<P, P>(3 * a, 3 * b) +
+                                  t.template block<P, P>(3 * b, 3 * a).transpose());
+        Mat3 block = Mat3::Zero();
+        block.template topLeftCorner<P, P>() = turn * even * turn.transpose();
         Eigen::Map<Mat3>(values + 9 * block_index) += of_owners(block, sixths[a], sixths[b]);
       }
     }
