@@ -159,6 +159,7 @@ class DriveRun:
                     break
                 seconds = time.perf_counter() - start
                 if state == loaded:
+                    self.drive.models.keep_loaded(stepper)
                     self._compare(state)
                 record.root_stress = self._root_stress(state, state == loaded)
                 if state == loaded:

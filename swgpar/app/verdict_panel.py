@@ -11,6 +11,7 @@ from swgpar.app.jobs import AppJob, JobState
 from swgpar.app.state import AppState
 from swgpar.app.tables import heading, live_label, say, table
 from swgpar.app.workspace import drive_of
+from swgpar.checks.clearance import clearances
 from swgpar.checks.remarks import remarks
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import SwgparError
@@ -51,10 +52,12 @@ class VerdictPanel:
 
     @ui.refreshable_method
     def remarks(self) -> None:
-        """What deserves a word."""
+        """What deserves a word, but for overlaps of teeth, which the section and the loaded state
+        say."""
         design = self.state.variant.design
         if self._remarks is None or self._remarks[0] is not design:
-            self._remarks = design, remarks(design)
+            said = {one.remark for one in clearances(design.rigid_pairs)}
+            self._remarks = design, [one for one in remarks(design) if one not in said]
         for remark in self._remarks[1]:
             ui.label(remark).classes("text-orange-9")
 

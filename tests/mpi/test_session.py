@@ -9,8 +9,9 @@ from pytest_mpi import parallel_assert
 import swgpar
 from support.paths import RECIPE
 from support.stepping import small
-from swgpar.analysis import model_sources
+from swgpar.analysis import coarse_start, model_sources
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.errors import ConvergenceError
 from swgpar.load.load_states import LoadState
 from swgpar.petsc import PETSc
 from swgpar.solve import bordered_system
@@ -64,6 +65,29 @@ def test_runs_of_a_session_find_what_each_finds_alone(built: list[None]) -> None
                 allowed = SOLVED[name] if loaded else REPEATED
                 near = shared[name] == pytest.approx(value, rel=allowed)
                 parallel_assert(near, f"{name}, {change}: {shared[name]} and {value}")
+
+
+@pytest.mark.parallel([1])
+def test_a_state_that_was_reached_step_by_step_is_a_start_for_another_torque(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As of teeth that overlap, which have no start from the bent shape."""
+
+    def fails(stepper: LoadStepper) -> None:
+        raise ConvergenceError("no start from the bent shape")
+
+    monkeypatch.setattr(coarse_start, "_jump", fails)
+    designs = [
+        small("plane", *ALONE[:2], "output.root_stress=false", f"load.torque={torque}")
+        for torque in (0.2, 0.3)
+    ]
+    with swgpar.Session() as session:
+        first, second = (session.run(design, RECIPE) for design in designs)
+    parallel_assert(len(first.history["step"]) == 3)
+    parallel_assert(len(second.history["step"]) == 1)
+    alone = values(swgpar.run(designs[1], RECIPE))
+    for name, value in values(second).items():
+        parallel_assert(value == pytest.approx(alone[name], rel=SOLVED[name]), name)
 
 
 def test_a_drive_that_is_near_begins_with_the_loaded_state(
