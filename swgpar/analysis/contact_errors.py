@@ -81,7 +81,7 @@ def contact_errors(
         if share is None:
             return None
         if model != "plane":
-            # all counts along the flanks and the face width are coarser: no others are to be shown
+            # the face width decides, which is coarser: no others are to be shown
             return max(share / SAFETY, least_pressure)
         # another mesh puts the cells elsewhere at a peak that is as narrow as they are
         peak = max(contacts, key=lambda pair: np.nan_to_num(measure(pair))).unresolved

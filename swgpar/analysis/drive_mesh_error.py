@@ -29,7 +29,13 @@ from swgpar.largest_stress.region_stress import RegionStress
 from swgpar.largest_stress.root_stress import ENDS, RootStress, resolve_root_stress
 from swgpar.load.load_states import LoadState
 from swgpar.meshing import MeshRecipe
-from swgpar.meshing.recipe_counts import body_ratio, coarsened, contact_ratio, with_contact_of
+from swgpar.meshing.recipe_counts import (
+    body_ratio,
+    coarsened,
+    contact_ratio,
+    with_contact_of,
+    with_flanks_of,
+)
 from swgpar.model.drive_model import DriveModel
 from swgpar.model.regions import INSIDE, TIP, TOOTH_ROOT, UNDER_CONTACT
 
@@ -79,9 +85,10 @@ LEAST_FORCE_WITH_EDGES = 0.03
 """The same in the plane where a contact lies on an edge, whose compliance no mesh resolves."""
 
 FEWEST_ALONG_FLANKS = 6
-"""Elements along a flank in the plane below which no coarser mesh is taken: pressures on four are
-off by 5 %, and by a multiple where the curvature of the profile changes. With the contact law six
-and nine differ by 0.1 % in the stress (docs/verification/error_sources_plane.md)."""
+"""Elements along a flank below which no coarser mesh is taken: pressures on four are off by 5 %,
+and by a multiple where the curvature of the profile changes. With the contact law six and nine
+differ by 0.1 % in the stress in the plane (docs/verification/error_sources_plane.md). In a cup with
+S-shaped teeth four change it by 11 %, nine by 0.3 % (docs/howto/rate.md)."""
 
 
 @dataclass(frozen=True)
@@ -131,14 +138,19 @@ class MeshComparison:
 
 def coarser_recipes(recipe: MeshRecipe) -> list[MeshRecipe]:
     """Recipes with which a mesh is compared, the coarsest first; none where the coarser one would
-    not find the contacts."""
+    not find the contacts, nor in a cup with fewer elements along the flanks than a coarser mesh
+    needs: no mesh would show what they change."""
     coarse = coarsened(recipe)
-    flanks = min(coarse.flexible_spline.flank, coarse.ring_gear.flank)
-    if recipe.model == "plane" and flanks < FEWEST_ALONG_FLANKS:
-        coarse = with_contact_of(coarse, recipe)
-    if not finds_contacts(coarse):
+    if _along_flanks(coarse) < FEWEST_ALONG_FLANKS:
+        coarse = with_flanks_of(coarse, recipe)
+    too_few = recipe.model == "cup" and _along_flanks(coarse) < FEWEST_ALONG_FLANKS
+    if too_few or not finds_contacts(coarse):
         return []
     return with_finer_flanks(coarse, recipe)
+
+
+def _along_flanks(recipe: MeshRecipe) -> int:
+    return min(recipe.flexible_spline.flank, recipe.ring_gear.flank)
 
 
 def with_finer_flanks(coarse: MeshRecipe, recipe: MeshRecipe) -> list[MeshRecipe]:

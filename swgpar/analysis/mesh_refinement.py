@@ -18,6 +18,7 @@ from swgpar.analysis.drive_mesh_error import (
     MeshComparison,
     coarser_mesh,
     coarser_recipes,
+    least_error,
     with_finer_flanks,
 )
 from swgpar.analysis.forecast import fits, forecast
@@ -31,7 +32,7 @@ from swgpar.largest_stress.window_recipes import FEWEST_LEVELS, LEVELS, MOST_LEV
 from swgpar.load.load_sequence import load_sequence
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe, build_sector_meshes
-from swgpar.meshing.recipe_counts import refined
+from swgpar.meshing.recipe_counts import ROUND_OFF, refined
 from swgpar.model.drive_model import DriveModel
 
 LARGEST = {"plane": 1_500_000, "cup": 700_000}
@@ -159,6 +160,7 @@ class Refinement:
     def refine_windows(self) -> bool:
         """Resolve the stress with a finer window; False where there is none."""
         if self.levels == MOST_LEVELS[self.kind]:
+            logger.info("no finer window is taken: there are %d", self.levels)
             return False
         try:
             found = resolve_root_stress(self.model, self.loaded, self.levels + 1)
@@ -170,16 +172,35 @@ class Refinement:
         self._log(self.known.found)
         return True
 
+    def _has_least_error(self, finer: MeshRecipe) -> bool:
+        """Whether the error by the mesh is the least one that a finer mesh of the drive would have
+        too."""
+        found, contacts = self.known.found, self.known.comparison.contacts
+        least = least_error(finer, contacts, found.part) * abs(found.s1)
+        reached = found.drive_error is not None and found.drive_error <= least * (1.0 + ROUND_OFF)
+        if reached:
+            logger.info("no finer mesh is taken: the error by that of the drive is the least one")
+        return reached
+
     def refine_drive(self) -> bool:
-        """Take a finer mesh of the drive; False where there is none, or where it is too large."""
+        """Take a finer mesh of the drive; False where there is none, where it is too large, or
+        where it would have no smaller error."""
         recipe, limit = self.known.comparison.recipe, self.design.solver.memory_limit
         try:
             finer = refined(recipe)
+            if self._has_least_error(finer):
+                return False
             needs = forecast(self.design, finer)
             if needs.elements > self.largest or not fits(needs, limit, self.drive.comm):
+                logger.info(
+                    "no finer mesh is taken: the drive has at most %d elements, and its run fits "
+                    "into the memory",
+                    self.largest,
+                )
                 return False
             build_sector_meshes(self.design.geometry, finer)
-        except InputError:
+        except InputError as error:
+            logger.info("no finer mesh is taken: %s", error)
             return False
         try:
             coarser = with_finer_flanks(recipe, finer)
@@ -221,13 +242,10 @@ def choose_mesh(
         }
         allowed = accuracy * present.known.found.s1
         if not refine or any(errors[part] > allowed for part in errors.keys() - refine.keys()):
-            logger.info(
-                "no finer mesh is taken: the drive has at most %d elements, and its run fits into "
-                "the memory",
-                present.largest,
-            )
             break
-        part = max(refine, key=lambda part: errors[part])
+        # a finer window costs least, and may be enough where the mesh is fine enough alone
+        enough = "windows" in refine and errors["mesh"] <= allowed
+        part = "windows" if enough else max(refine, key=lambda part: errors[part])
         if not refine[part]():
             del refine[part]
     known = present.known

@@ -339,15 +339,16 @@ def _solve(
     layout = model.partition.layouts[FLEXIBLE_SPLINE]
     recipe = window_recipe(model.geometry.model, level)
     states, narrow = {} if states is None else states, narrow or {}
-    windows: dict[tuple[int, int | None], list[Followed]] = {}
-    for place in places:
-        for middle in narrow.get(place, [None]):
-            windows.setdefault((place[0], middle), []).append(place)
+    windows = dict.fromkeys(
+        (place[0], middle) for place in places for middle in narrow.get(place, [None])
+    )
     found: dict[Followed, list[WindowStress]] = {place: [] for place in places}
-    for (tooth, middle), followed_there in windows.items():
+    for tooth, middle in windows:
         with solved_window(model, state, tooth, recipe, states, middle=middle) as window:
-            for place in followed_there:
-                found[place] += window.by_tooth(place[1])
+            # a narrow one that is there for the ends of the teeth counts between them too
+            for place in places:
+                if place[0] == tooth:
+                    found[place] += window.by_tooth(place[1])
             if readings is not None:
                 by_tooth = window.by_region().items()
                 read = {(one - layout.first_tooth) % layout.count: by for one, by in by_tooth}

@@ -21,7 +21,10 @@ mesh with two can find a stress that is off by half (docs/verification/effectivi
 RATIO = 1.5
 """Elements in every direction of a mesh over those of the one before it, at least."""
 
-CONTACT = {"flexible_spline": ("flank",), "ring_gear": ("flank",), "face_width": ("elements",)}
+FLANKS = {"flexible_spline": ("flank",), "ring_gear": ("flank",)}
+"""Counts along the flanks, by section."""
+
+CONTACT = {**FLANKS, "face_width": ("elements",)}
 """Counts that decide about the contact of the flanks, by section. All others decide about the
 stiffness of teeth and rim."""
 
@@ -91,9 +94,19 @@ def refined(recipe: MeshRecipe) -> MeshRecipe:
 
 def with_contact_of(body: MeshRecipe, contact: MeshRecipe) -> MeshRecipe:
     """The recipe `body` with the counts of `contact` for the contact of the flanks."""
+    return _with_counts_of(body, contact, CONTACT)
 
+
+def with_flanks_of(body: MeshRecipe, flanks: MeshRecipe) -> MeshRecipe:
+    """The recipe `body` with the elements along the flanks of `flanks`."""
+    return _with_counts_of(body, flanks, FLANKS)
+
+
+def _with_counts_of(
+    body: MeshRecipe, other: MeshRecipe, names: Mapping[str, Sequence[str]]
+) -> MeshRecipe:
     def count(section: str, name: str, own: int) -> int:
-        return getattr(getattr(contact, section), name) if name in CONTACT.get(section, ()) else own
+        return getattr(getattr(other, section), name) if name in names.get(section, ()) else own
 
     return with_counts(body, count)
 

@@ -106,7 +106,7 @@ def test_in_space_one_mesh_with_fewer_elements_in_all_directions_shows_the_error
     cup = load_recipe("forces")
     (coarse,) = coarser_recipes(cup)
     ratio = contact_ratio(coarse, cup)
-    assert ratio == RATIO > body_ratio(coarse, cup)  # those along flanks and face width decide
+    assert ratio == RATIO > body_ratio(coarse, cup)  # the face width decides
     found = contact_errors([CoarserMesh(coarse, {}, [pair(1, 500.0)])], cup, [pair(1, 600.0)], 2)
     assert found.pressure == pytest.approx(100.0 / 600.0 / (ratio**2 - 1.0))
     assert found.force == LEAST_FORCE["cup"]

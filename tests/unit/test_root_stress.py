@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import SimpleNamespace
+from typing import Any, cast
+
 import numpy as np
 import pytest
 
+from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.largest_stress import root_stress
 from swgpar.largest_stress.candidate_teeth import (
     LATER,
     candidates,
@@ -179,3 +186,28 @@ def test_a_stress_at_the_ends_that_falls_is_bounded_by_the_one_between_them() ->
     assert error_at_ends(falling, between, 1.5) == pytest.approx(2.0 + error_of(between, 1.5))
     assert 2.0 + error_of(between, 1.5) < alone
     assert error_at_ends(rising, between, 1.5) == error_of(rising, 1.5)
+
+
+def test_a_narrow_window_counts_for_the_roots_and_the_ends_of_its_tooth(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The ends have a narrow window around tooth 3, the roots one around tooth 2, whose ends have
+    more."""
+    stresses = {(3, True): 1080.0, (2, True): 1088.0, (3, False): 1025.0, (2, False): 1073.0}
+
+    def by_tooth(middle: int, ends: bool) -> list[WindowStress]:
+        return [WindowStress(stresses[middle, ends], middle, np.zeros(3), "", "", 1)]
+
+    @contextmanager
+    def solved(*_: Any, middle: int) -> Iterator[SimpleNamespace]:
+        yield SimpleNamespace(by_tooth=lambda ends: by_tooth(middle, ends))
+
+    monkeypatch.setattr(root_stress, "solved_window", solved)
+    model = SimpleNamespace(
+        geometry=SimpleNamespace(model="cup"),
+        partition=SimpleNamespace(layouts={FLEXIBLE_SPLINE: None}),
+    )
+    narrow = {(2, False): [2], (2, True): [3]}
+    found = root_stress._solve(cast(Any, model), cast(Any, None), list(narrow), 2, narrow=narrow)
+    assert [one.value for one in found[2, True]] == [1088.0, 1080.0]
+    assert [one.value for one in found[2, False]] == [1073.0, 1025.0]
