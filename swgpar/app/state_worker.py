@@ -33,7 +33,7 @@ STARTS = "the solvers are loaded, once"
 """Said of the first state, before its run has a line."""
 
 SAID = 0.5
-"""Seconds from one count of Newton iterations to the next one that is said."""
+"""Seconds from one count of residuals to the next one that is said."""
 
 NICE = 5
 """Steps by which the priority of the process is below that of the server."""
@@ -189,24 +189,25 @@ class StateWorker:
 
 
 class RunProgress(logging.Handler):
-    """Sends the lines of a run's log, and how many Newton iterations have followed the last one."""
+    """Sends the lines of a run's log, and how many residuals Newton's iteration has tested
+    since the last one."""
 
     def __init__(self, pipe: Connection) -> None:
         super().__init__(logging.INFO)
         self._pipe = pipe
-        self._line, self._iterations, self._said = "", 0, 0.0
+        self._line, self._tested, self._said = "", 0, 0.0
 
     def emit(self, record: logging.LogRecord) -> None:
         """Send a line."""
-        self._line, self._iterations = record.getMessage().strip(), 0
+        self._line, self._tested = record.getMessage().strip(), 0
         self._send(self._line)
 
     def stops(self) -> bool:
-        """Count a Newton iteration; whether the state is given up: whatever comes while one is
+        """Count a test of the residual; whether the state is given up: whatever comes while one is
         computed does that."""
-        self._iterations += 1
+        self._tested += 1
         if time.monotonic() > self._said + SAID:
-            self._send(f"{self._line}; Newton iteration {self._iterations}")
+            self._send(f"{self._line}; {self._tested} residuals")
         return self._pipe.poll()
 
     def _send(self, text: str) -> None:

@@ -642,7 +642,7 @@ def test_a_state_without_a_torque_has_no_pairs() -> None:
     assert section_figure(idle, loaded=state.outline)["data"]
 
 
-def test_progress_of_a_state_counts_newton_iterations(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_progress_of_a_state_counts_residuals(monkeypatch: pytest.MonkeyPatch) -> None:
     """After the last line of the log; a message from the server gives the state up."""
     ours, theirs = Pipe()
     progress = RunProgress(theirs)
@@ -650,7 +650,7 @@ def test_progress_of_a_state_counts_newton_iterations(monkeypatch: pytest.Monkey
     assert not progress.stops()
     monkeypatch.setattr("swgpar.app.state_worker.SAID", -1.0)
     assert not progress.stops()
-    assert [ours.recv(), ours.recv()] == ["24 elements", "24 elements; Newton iteration 2"]
+    assert [ours.recv(), ours.recv()] == ["24 elements", "24 elements; 2 residuals"]
     assert not ours.poll()
     ours.send(None)
     assert progress.stops()
