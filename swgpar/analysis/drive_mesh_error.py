@@ -88,7 +88,7 @@ FEWEST_ALONG_FLANKS = 6
 """Elements along a flank below which no coarser mesh is taken: pressures on four are off by 5 %,
 and by a multiple where the curvature of the profile changes. With the contact law six and nine
 differ by 0.1 % in the stress in the plane (docs/verification/error_sources_plane.md). In a cup with
-S-shaped teeth four change it by 11 %, nine by 0.3 % (docs/howto/rate.md)."""
+S-shaped teeth four change it by 8 %, nine by 0.3 % (docs/howto/rate.md)."""
 
 
 @dataclass(frozen=True)
