@@ -17,6 +17,7 @@ from swgpar.app.loaded_states import PLANE, SOLID, ShownState, StateModel
 from swgpar.app.state_worker import StateWorker
 from swgpar.app.workspace import Variant, Workspace, has_section
 from swgpar.errors import SwgparError
+from swgpar.rating.planned_runs import rating_loads
 from swgpar.results.atomic import write_file
 
 SENT = 0.02
@@ -211,6 +212,8 @@ class AppState:
 
     def queue_design(self, command: str, options: Sequence[str], ranks: int) -> AppJob:
         """A job with the design that is shown. Raises SwgparError where it cannot begin."""
+        if command == "rate":
+            rating_loads(self.variant.design)
         number = self.queue.next_number
         name, folder = f"jobs/{number}.toml", self.workspace.folder
         (folder / "jobs").mkdir(exist_ok=True)

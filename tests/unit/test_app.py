@@ -26,6 +26,7 @@ from swgpar.analysis.forecast import forecast
 from swgpar.answers.verdict import Judgement
 from swgpar.api.runs import load_mesh
 from swgpar.app.access import COOKIE, TokenGate
+from swgpar.app.choices import Choices
 from swgpar.app.drawings import DRAWINGS, FOLDER, drawings_of
 from swgpar.app.durations import durations
 from swgpar.app.fields import FormField, form_fields, is_optional, missing_sections
@@ -43,7 +44,7 @@ from swgpar.app.loaded_states import (
 from swgpar.app.search_plot import EVALUATION, pair_figure, parallel_figure
 from swgpar.app.section_panel import TeethPicture
 from swgpar.app.section_plot import section_figure
-from swgpar.app.state import recipes_of
+from swgpar.app.state import AppState, recipes_of
 from swgpar.app.state_worker import RunProgress
 from swgpar.app.verdict_panel import sheet_of, verdict_text
 from swgpar.app.workspace import Variant, Workspace, drive_of
@@ -358,6 +359,15 @@ def test_jobs_follow_each_other(tmp_path: Path) -> None:
     assert "none.toml cannot be read" in bad.reason
     assert [job.state for job in JobQueue(tmp_path).jobs] == [job.state for job in queue.jobs]
     assert good.typed == f"swgpar check {DESIGN}"
+
+
+def test_a_rating_without_its_section_is_refused_before_it_waits(tmp_path: Path) -> None:
+    workspace = Workspace(tmp_path)
+    workspace.add("drive", drive())
+    state = AppState(workspace, JobQueue(tmp_path), Choices())
+    with pytest.raises(InputError, match=r"rating is missing: swgpar rate needs the section"):
+        state.queue_design("rate", (), 1)
+    assert not state.queue.jobs
 
 
 @pytest.mark.parametrize(
