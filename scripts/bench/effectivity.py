@@ -5,8 +5,8 @@ times the elements in every direction, one window more and twice the angles of a
 cup drive is one level finer, or two with --cup-levels 2, in a table of its own. The drives are
 those of `support/sensible_drives.py`; nothing of the estimate was chosen with those of this seed.
 Finished runs are stored and not computed again: remove PART_usual.jsonl or PART_reference.jsonl to
-compute them anew. Tables of a model are written where drives of it are asked for; those of another
-seed are printed.
+compute them anew. Tables of the page are written where all of its drives are finished; those of
+fewer and of another seed are printed.
 """
 
 from __future__ import annotations
@@ -35,6 +35,9 @@ OUT = Path("results/bench/effectivity")
 
 SEED = 46
 """Of the drives of the page."""
+
+DRIVES = {"plane": 60, "cup": 20}
+"""Of the page, of each model."""
 
 STAGES = ("usual", "reference")
 
@@ -228,16 +231,19 @@ def write(
 ) -> None:
     """Tables of a model from what is finished.
 
-    levels : of the references;  page : whether they are those of the documentation; else they are
-    printed
+    levels : of the references;  page : whether they are of the drives of the documentation
+
+    Of other drives, and of a part of them, tables are printed.
     """
     rows: list[Row] = []
     without: list[str] = []
+    finished: set[str] = set()
     for part in PARTS:
         stores = [Store(out / f"{part}_{stage}.jsonl").found() for stage in STAGES]
         for drive in drives:
             if not all(drive.name in store for store in stores):
                 continue
+            finished.add(drive.name)
             runs = [store[drive.name] for store in stores]
             if why := why_left_out(runs):
                 without.append(f"- {drive.name} ({drive.kind}), {part}: {why}\n")
@@ -245,7 +251,7 @@ def write(
                 rows += rows_of(drive, part, *runs)
     if not rows:
         return
-    if not page:
+    if not page or (levels == LEVELS[model] and len(finished) < DRIVES[model]):
         print(table(rows), *without, sep="\n")
         return
     if levels != LEVELS[model]:
@@ -263,8 +269,10 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--out", type=Path, default=OUT, help="finished runs")
     options.add_argument("--seed", type=int, default=SEED)
-    options.add_argument("--plane", type=int, default=60, help="number of plane drives")
-    options.add_argument("--cups", type=int, default=20, help="number of cup drives")
+    options.add_argument(
+        "--plane", type=int, default=DRIVES["plane"], help="number of plane drives"
+    )
+    options.add_argument("--cups", type=int, default=DRIVES["cup"], help="number of cup drives")
     options.add_argument("--cup-levels", type=int, default=LEVELS["cup"], help="of the references")
     options.add_argument("--stages", nargs="+", choices=STAGES, default=list(STAGES))
     options.add_argument("--parts", nargs="+", choices=list(PARTS), default=list(PARTS))
