@@ -22,7 +22,7 @@ from swgpar.constraints.distributing_coupling import node_weights
 from swgpar.constraints.supports import Supports
 from swgpar.errors import ConvergenceError
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR, STRESS_PREFIXES
-from swgpar.fem.stress import principal
+from swgpar.fem.stress import principal_at_nodes
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.rotation import rotated
 from swgpar.largest_stress.along_width import Peak, WidthStations
@@ -316,9 +316,7 @@ class LocalProblem:
         sectors = np.arange(first, end)
         inside = (sectors >= MARGIN) & (sectors < self.layout.count - MARGIN)
         stress, mesh = self.body.nodal_stress(self.problem.displacement())[inside], self.layout.mesh
-        both = np.arange(len(mesh.coords)) if mesh.lower_nodes is None else mesh.lower_nodes
-        nodes, index = np.unique(both, return_inverse=True)  # both layers of the plane are alike
-        s1, s3, mises = (values[:, index] for values in principal(stress[:, nodes]))
+        s1, s3, mises = principal_at_nodes(mesh, stress)
         if mesh.plane:
             mises = surface_mises(s1, s3, mises, self._loads.unloaded()[sectors[inside]])
         prefix = STRESS_PREFIXES[self.gear][0]
@@ -332,7 +330,8 @@ class LocalProblem:
         return self._tension(nodes[~self._no_limit(nodes)])
 
     def largest_at_corners(self) -> WindowStress | None:
-        """Largest s1 of the teeth where it has no limit; None where it has one; collective."""
+        """Largest s1 of the teeth where it has no limit; None where it has one everywhere;
+        collective."""
         mesh, geometry = self.layout.mesh, self.model.geometry
         parts = (False,) if mesh.plane else (False, True)
         nodes = np.concatenate([tooth_nodes(mesh, geometry, ends) for ends in parts])
