@@ -157,6 +157,7 @@ def test_a_window_on_the_mesh_of_another_one_has_its_own_stress(model: str) -> N
     """
     rel = {"plane": 1e-5, "cup": 5e-4}[model]
     stepper = drive(model)
+    stepper.model.release_windows()  # of the tests before
     found, turns = [], []
     for tooth in (1, 7, 1):
         window = solved(stepper, tooth)
