@@ -38,9 +38,18 @@ SLOW = Path(__file__).with_name("slow.txt")
 """Tests that take ten seconds or more, and longer ones that a test of the same on fewer or more
 ranks, or of another drive, stands beside; one on a line."""
 
+OF_RANKS = "mpi", "stability"
+"""Folders with tests of several ranks: under mpirun `scripts/test` collects no others."""
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="run the tests of slow.txt too")
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    folder = item.path.relative_to(SLOW.parent).parts[0]
+    if item.get_closest_marker("parallel") and folder not in OF_RANKS:
+        raise pytest.UsageError(f"{item.nodeid}: tests of several ranks lie in {OF_RANKS}")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
