@@ -187,11 +187,12 @@ def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
         built = True
         if design.rigid_teeth().clearance() > LEAST_CLEARANCE * design.drive.module:
             return (design, table) if design.dynamic_spline is None else _thin_teeth(table)
+    lacks = "leaves no clearance between the flanks"
     if refusal is not None and not built:
-        raise refusal
+        lacks = f"gives no teeth that can be built ({refusal})"
     raise InputError(
         f"ratio = {request.ratio:g} with profile = {request.profile} and cam = {request.cam} "
-        "leaves no clearance between the flanks: allowed are other ratios, profiles or cams"
+        f"{lacks}: allowed are other ratios, profiles or cams"
     )
 
 

@@ -182,6 +182,11 @@ def test_s_shaped_teeth_on_a_parabolic_cam_have_their_relief(ratio: float) -> No
     assert corners[1] > 0.1 and corners[0] == pytest.approx(corners[1], rel=0.01)
 
 
+def test_teeth_that_cannot_be_built_are_refused_by_what_was_asked_for() -> None:
+    with pytest.raises(InputError, match=r"^ratio = 120 with .* gives no teeth that can be built"):
+        starter_design(Request(120.0, 5.0, diameter=60.0, cam="parabolic", profile="s_shaped"))
+
+
 @pytest.mark.parametrize("layout, ratio", [("ring_fixed", -40.0), ("spline_fixed", 40.0)])
 @pytest.mark.parametrize("profile", PROFILE_KEYS)
 def test_three_lobes_give_whole_ratios(profile: Profile, layout: str, ratio: float) -> None:
