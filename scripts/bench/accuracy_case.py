@@ -59,7 +59,7 @@ def ring_on_cam(case: dict[str, Any]) -> Callable[[], Solved]:
     from support.cam_ring import ring_on_cam as solve
 
     keys = ("level", "plane", "incompatible", "quadrature", "linear")
-    return lambda: (*solve(*(case[key] for key in keys), MPI.COMM_WORLD), {})
+    return lambda: (*solve(**{key: case[key] for key in keys}, comm=MPI.COMM_WORLD), {})
 
 
 KINDS = {"element": element, "hertz": hertz, "ring on cam": ring_on_cam}

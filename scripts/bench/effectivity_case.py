@@ -29,7 +29,7 @@ import swgpar
 from swgpar.analysis import drive_run
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.shortcuts import SAMPLES
-from swgpar.analysis.transfer import transfer
+from swgpar.analysis.transfer import interpolations, transfer
 from swgpar.answers.answer import Answer
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.drive_data import DriveData
@@ -136,7 +136,8 @@ def start_from(usual: DriveModel) -> None:
         loaded = stepper.sequence.loaded
         try:
             with stepper.model.phases("start"):
-                transfer(usual, usual.problem.x, stepper.model, stepper.problem.x)
+                matrices = interpolations(usual, stepper.model)
+                transfer(usual, usual.problem.x, stepper.model, stepper.problem.x, matrices)
                 stepper.load_state = loaded
                 stepper.advance(loaded)
         except ConvergenceError:

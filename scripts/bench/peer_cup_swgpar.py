@@ -70,7 +70,6 @@ def main() -> None:
         supports=Supports(partition, [], scale=scale, share=1.0 / layout.copies),
         boundary_terms=[PrescribedDisplacement(partition, nodes, values[mine][first], stiffness)],
         module=design.drive.module,
-        inner_radius=design.inner_radius,
         phases=PhaseTimes(),
     )
     LineSearch.TRIALS = 0  # the search is made for contact
