@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from swgpar.answers.missed_peaks import FEWEST, missed_range
 from swgpar.design.kinematics import Kinematics
-from swgpar.evaluation.missed_peaks import FEWEST, missed_range
 from swgpar.evaluation.period import in_order, places
 from swgpar.results.history import Row, column, transmission_error
 

@@ -26,6 +26,7 @@ from swgpar.answers.answer import (
     place_text,
     with_no_limit,
 )
+from swgpar.answers.missed_peaks import FEWEST, missed_above
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.largest_stress.candidate_teeth import (
@@ -72,12 +73,14 @@ class OverPeriod:
     mean_error : by the meshes, in proportion to that of the loaded state; None where it is not
     known
     sampling_error : change of the mean by half as many angles, None for an odd number of them
+    maximum_error : by the meshes and between the angles; None where it is not known
     """
 
     mean: float
     mean_error: float | None
     sampling_error: float | None
     maximum: float
+    maximum_error: float | None
 
 
 @evaluation
@@ -147,7 +150,11 @@ class RootStress(AnswerGroup):
             error="over_period.mean_error",
         ),
         AnswerKind(
-            "root.maximum_s1", "the same over one period, largest", "MPa", "over_period.maximum"
+            "root.maximum_s1",
+            "the same over one period, largest",
+            "MPa",
+            "over_period.maximum",
+            error="over_period.maximum_error",
         ),
         default=(),
     )
@@ -211,9 +218,17 @@ class RootStress(AnswerGroup):
             return None
         values = np.array([value for _, value in self.period])
         half = abs(float(values.mean() - values[::2].mean())) if len(values) % 2 == 0 else None
-        mean, error = float(values.mean()), self.total_error
+        mean, maximum, error = float(values.mean()), float(values.max()), self.total_error
         share = None if error is None else error / self.s1
-        return OverPeriod(mean, None if share is None else share * mean, half, float(values.max()))
+        by_mesh = None if share is None else share * maximum
+        missed = missed_above(values) if len(values) >= FEWEST else None
+        return OverPeriod(
+            mean=mean,
+            mean_error=None if share is None else share * mean,
+            sampling_error=half,
+            maximum=maximum,
+            maximum_error=joined_error(by_mesh, missed),
+        )
 
 
 def resolve_root_stress(

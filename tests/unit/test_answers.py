@@ -104,7 +104,7 @@ def test_a_part_of_an_error_that_is_not_known_leaves_no_estimate() -> None:
     assert summary["root.s1"].error > 0.0 and summary["root.mean_s1"].error > 0.0
     unknown = replace(summary.root_stress, drive_error=None)
     answers = {answer.name: answer for answer in unknown.answers()}
-    for name in ("root.s1", "root.mean_s1"):
+    for name in ("root.s1", "root.mean_s1", "root.maximum_s1"):
         assert answers[name].error is None and answers[name].no_error == NO_ESTIMATE
         assert error_text(answers[name]) == "no\u00a0estimate"
     assert "root.s1_error" not in answers

@@ -12,8 +12,8 @@ import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.analysis.shortcuts import with_shortcuts
+from swgpar.answers.missed_peaks import missed_range
 from swgpar.design.kinematics import Kinematics
-from swgpar.evaluation.missed_peaks import missed_range
 from swgpar.evaluation.period import places, sampling_error
 from swgpar.evaluation.period_ranges import (
     INPUT_TORQUE,

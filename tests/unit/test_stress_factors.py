@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -180,3 +181,17 @@ def test_a_tension_at_a_corner_of_the_teeth_stands_beside_the_one_off_it() -> No
     assert answers["root.s1_off_corners"].detail and answers["root.s1"].error == 5.0
     found = with_windows(NODAL, LOADED, replace(root(600.0), at_corner=corner), None)
     assert found["fs_s1"].region == "notch" and found["fs_s1"].warning == "in the notch"
+
+
+def test_the_largest_tension_of_a_period_may_lie_between_its_angles() -> None:
+    """Straight up to a kink a quarter of a step behind an angle: the lines meet there. With fewer
+    than four angles that is not known."""
+    rises = [
+        (float(angle), 100.0 + 8.0 * angle - 32.0 * max(angle - 2.25, 0.0)) for angle in range(6)
+    ]
+    over = replace(root(110.0), period=tuple(rises)).over_period
+    assert over is not None
+    assert over.maximum == pytest.approx(116.0)
+    assert over.maximum_error == pytest.approx(math.hypot(5.0 / 110.0 * 116.0, 2.0))
+    few = replace(root(110.0), period=tuple(rises[:3])).over_period
+    assert few is not None and few.mean_error is not None and few.maximum_error is None

@@ -19,11 +19,12 @@ FEWEST = 4
 def missed_range(values: Floats) -> float:
     """How much larger the range of a periodic curve may be than that of its values at even places
     (n,), in their unit; n of at least `FEWEST`."""
-    return _missed_above(values) + _missed_above(-values)
+    return missed_above(values) + missed_above(-values)
 
 
-def _missed_above(values: Floats) -> float:
-    """Height that the lines reach above the largest value.
+def missed_above(values: Floats) -> float:
+    """How much larger a periodic curve may be than the largest of its values at even places (n,),
+    in their unit; n of at least `FEWEST`: the height that the lines reach above it.
 
     Where they do not meet in a gap, because the curve turns twice there, the one counts that rises
     more gently, up to the middle.
