@@ -68,13 +68,18 @@ class WindowLoads:
         """Where stresses are read: beyond `APART_DISTANCE` from the contact of flanks. module : mm
 
         In the plane from the ends of the cells on, so that finer windows read up to the same
-        distance. Elsewhere from loaded nodes on; smaller forces are what a load shares with the
-        next node.
+        distance. Elsewhere from loaded nodes on, and from those one station of the face width
+        beside them: a contact may be shorter than the elements between, whose stress is in the
+        averages of both. Smaller forces are what a load shares with the next node.
         """
         mesh, forces, distance = self.mesh, self._forces(), APART_DISTANCE * module
         if mesh.plane:
             return BesideContact.of_cells(mesh, self.count, self.cells, distance, forces > 0.0)
         touched = forces > TOUCHED * forces.max(initial=0.0)
+        for grid in mesh.flanks:
+            loaded = touched[:, grid.nodes]
+            touched[:, grid.nodes[:, 1:]] |= loaded[:, :, :-1]
+            touched[:, grid.nodes[:, :-1]] |= loaded[:, :, 1:]
         return BesideContact.of_nodes(near_contact(mesh, touched, distance))
 
     def unloaded(self) -> np.ndarray:

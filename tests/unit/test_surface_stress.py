@@ -11,7 +11,9 @@ from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.flank_pressure.pressed_cells import PressedCells
 from swgpar.geometry.rotation import rotated
 from swgpar.largest_stress.local_problem import window_sector
+from swgpar.largest_stress.places import APART_DISTANCE
 from swgpar.largest_stress.surface_stress import BesideContact, surface_mises
+from swgpar.largest_stress.window_loads import WindowLoads
 from swgpar.largest_stress.window_recipes import window_recipe
 from swgpar.meshing.sector import SectorMesh
 
@@ -80,3 +82,20 @@ def test_a_surface_without_a_load_has_no_stress_across_it() -> None:
     stress = np.array([100.0, 8.0]), np.array([-8.0, -100.0]), np.array([104.2, 104.2])
     assert surface_mises(*stress, np.array([True, True])).tolist() == [100.0, 100.0]
     assert surface_mises(*stress, np.array([False, False])).tolist() == [104.2, 104.2]
+
+
+def test_the_stations_beside_a_loaded_one_are_not_read_in_a_cup() -> None:
+    """A contact may be shorter than the elements along the face width."""
+    design = swgpar.load_design(DRIVERS / "cup_45deg.toml")
+    mesh = window_sector(design.geometry, window_recipe("cup", 1), RING_GEAR)
+    grid = mesh.flanks[0]
+    along, station = len(grid.s) // 2, len(grid.z) // 2
+    nodal = np.zeros((*grid.nodes.shape, 3))
+    nodal[along, station, 0] = 1.0
+    loads = WindowLoads(mesh, 1, {(0, grid.side): nodal.reshape(-1, 3)}, {})
+    near = loads.beside(design.drive.module).near[0, grid.nodes[along]]
+    reach = np.abs(np.arange(len(grid.z)) - station)
+    length = np.abs(grid.z - grid.z[station])
+    assert near[reach <= 1].all()
+    beyond = length > np.max(length[reach == 1]) + APART_DISTANCE * design.drive.module
+    assert beyond.any() and not near[beyond].any()
