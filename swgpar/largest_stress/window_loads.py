@@ -17,6 +17,7 @@ from swgpar.flank_pressure.flank_loads import (
     line_loads,
     nodal_forces,
     spread_forces,
+    tributary,
 )
 from swgpar.flank_pressure.pressed_cells import PressedCells, pressed_cells
 from swgpar.largest_stress.places import APART_DISTANCE, TOUCHED, near_contact
@@ -68,14 +69,17 @@ class WindowLoads:
         """Where stresses are read: beyond `APART_DISTANCE` from the contact of flanks. module : mm
 
         In the plane from the ends of the cells on, so that finer windows read up to the same
-        distance. Elsewhere from loaded nodes on, and from those one station of the face width
-        beside them: a contact may be shorter than the elements between, whose stress is in the
-        averages of both. Smaller forces are what a load shares with the next node.
+        distance. Elsewhere from nodes with a line load on, and from those one station of the face
+        width beside them: a contact may be shorter than the elements between, whose stress is in
+        the averages of both. A small force is a large load where elements are short.
         """
         mesh, forces, distance = self.mesh, self._forces(), APART_DISTANCE * module
         if mesh.plane:
             return BesideContact.of_cells(mesh, self.count, self.cells, distance, forces > 0.0)
-        touched = forces > TOUCHED * forces.max(initial=0.0)
+        loads = np.zeros_like(forces)
+        for grid in mesh.flanks:
+            loads[:, grid.nodes] = forces[:, grid.nodes] / tributary(grid.z)
+        touched = loads > TOUCHED * loads.max(initial=0.0)
         for grid in mesh.flanks:
             loaded = touched[:, grid.nodes]
             touched[:, grid.nodes[:, 1:]] |= loaded[:, :, :-1]
