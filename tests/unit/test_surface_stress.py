@@ -8,10 +8,11 @@ import pytest
 import swgpar
 from support.paths import DRIVERS
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.flank_pressure.flank_loads import tributary
 from swgpar.flank_pressure.pressed_cells import PressedCells
 from swgpar.geometry.rotation import rotated
 from swgpar.largest_stress.local_problem import window_sector
-from swgpar.largest_stress.places import APART_DISTANCE
+from swgpar.largest_stress.places import APART_DISTANCE, TOUCHED
 from swgpar.largest_stress.surface_stress import BesideContact, surface_mises
 from swgpar.largest_stress.window_loads import WindowLoads
 from swgpar.largest_stress.window_recipes import window_recipe
@@ -99,3 +100,18 @@ def test_the_stations_beside_a_loaded_one_are_not_read_in_a_cup() -> None:
     assert near[reach <= 1].all()
     beyond = length > np.max(length[reach == 1]) + APART_DISTANCE * design.drive.module
     assert beyond.any() and not near[beyond].any()
+
+
+def test_a_small_force_on_short_elements_is_a_load_in_a_cup() -> None:
+    """Elements are shortest at the ends of the face width. A load of 3 % of the largest one has
+    less than 2 % of its force there."""
+    design = swgpar.load_design(DRIVERS / "cup_45deg.toml")
+    mesh = window_sector(design.geometry, window_recipe("cup", 1), RING_GEAR)
+    grid = mesh.flanks[0]
+    along, middle = len(grid.s) // 2, len(grid.z) // 2
+    lengths = tributary(grid.z)
+    nodal = np.zeros((*grid.nodes.shape, 3))
+    nodal[along, middle, 0], nodal[along, 0, 0] = lengths[middle], 0.03 * lengths[0]
+    assert nodal[along, 0, 0] < TOUCHED * nodal.max()
+    loads = WindowLoads(mesh, 1, {(0, grid.side): nodal.reshape(-1, 3)}, {})
+    assert loads.beside(design.drive.module).near[0, grid.nodes[along, 0]]
