@@ -85,33 +85,44 @@ def test_a_surface_without_a_load_has_no_stress_across_it() -> None:
     assert surface_mises(*stress, np.array([False, False])).tolist() == [104.2, 104.2]
 
 
-def test_the_stations_beside_a_loaded_one_are_not_read_in_a_cup() -> None:
-    """A contact may be shorter than the elements along the face width."""
+@pytest.fixture(scope="module")
+def cup() -> tuple[float, SectorMesh]:
+    """Module (mm) of a cup drive, and the sector of its ring gear in a window."""
     design = swgpar.load_design(DRIVERS / "cup_45deg.toml")
-    mesh = window_sector(design.geometry, window_recipe("cup", 1), RING_GEAR)
-    grid = mesh.flanks[0]
-    along, station = len(grid.s) // 2, len(grid.z) // 2
+    return design.drive.module, window_sector(design.geometry, window_recipe("cup", 1), RING_GEAR)
+
+
+def near_in_a_cup(module: float, mesh: SectorMesh, forces: np.ndarray) -> np.ndarray:
+    """Stations (n_z,) bool in the middle of a flank that are not read, with forces (n_z,) N
+    there."""
+    grid, along = mesh.flanks[0], len(mesh.flanks[0].s) // 2
     nodal = np.zeros((*grid.nodes.shape, 3))
-    nodal[along, station, 0] = 1.0
+    nodal[along, :, 0] = forces
     loads = WindowLoads(mesh, 1, {(0, grid.side): nodal.reshape(-1, 3)}, {})
-    near = loads.beside(design.drive.module).near[0, grid.nodes[along]]
-    reach = np.abs(np.arange(len(grid.z)) - station)
-    length = np.abs(grid.z - grid.z[station])
+    return loads.beside(module).near[0, grid.nodes[along]]
+
+
+def test_the_stations_beside_a_loaded_one_are_not_read_in_a_cup(
+    cup: tuple[float, SectorMesh],
+) -> None:
+    """A contact may be shorter than the elements along the face width."""
+    module, mesh = cup
+    z = mesh.flanks[0].z
+    station, forces = len(z) // 2, np.zeros(len(z))
+    forces[station] = 1.0
+    near = near_in_a_cup(module, mesh, forces)
+    reach, length = np.abs(np.arange(len(z)) - station), np.abs(z - z[station])
     assert near[reach <= 1].all()
-    beyond = length > np.max(length[reach == 1]) + APART_DISTANCE * design.drive.module
+    beyond = length > np.max(length[reach == 1]) + APART_DISTANCE * module
     assert beyond.any() and not near[beyond].any()
 
 
-def test_a_small_force_on_short_elements_is_a_load_in_a_cup() -> None:
+def test_a_small_force_on_short_elements_is_a_load_in_a_cup(cup: tuple[float, SectorMesh]) -> None:
     """Elements are shortest at the ends of the face width. A load of 3 % of the largest one has
     less than 2 % of its force there."""
-    design = swgpar.load_design(DRIVERS / "cup_45deg.toml")
-    mesh = window_sector(design.geometry, window_recipe("cup", 1), RING_GEAR)
-    grid = mesh.flanks[0]
-    along, middle = len(grid.s) // 2, len(grid.z) // 2
-    lengths = tributary(grid.z)
-    nodal = np.zeros((*grid.nodes.shape, 3))
-    nodal[along, middle, 0], nodal[along, 0, 0] = lengths[middle], 0.03 * lengths[0]
-    assert nodal[along, 0, 0] < TOUCHED * nodal.max()
-    loads = WindowLoads(mesh, 1, {(0, grid.side): nodal.reshape(-1, 3)}, {})
-    assert loads.beside(design.drive.module).near[0, grid.nodes[along, 0]]
+    module, mesh = cup
+    lengths = tributary(mesh.flanks[0].z)
+    middle, forces = len(lengths) // 2, np.zeros(len(lengths))
+    forces[middle], forces[0] = lengths[middle], 0.03 * lengths[0]
+    assert forces[0] < TOUCHED * forces.max()
+    assert near_in_a_cup(module, mesh, forces)[0]
