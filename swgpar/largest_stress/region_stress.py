@@ -106,8 +106,7 @@ class WindowReadings:
     """
 
     skipped: int
-    levels: dict[int, dict[str, list[float]]] = field(default_factory=dict)
-    last: dict[int, dict[str, WindowStress]] = field(default_factory=dict)
+    levels: dict[int, dict[str, list[WindowStress]]] = field(default_factory=dict)
     corners: dict[int, WindowStress] = field(default_factory=dict)
     of_window: dict[int, tuple[int, dict[str, WindowStress]]] = field(default_factory=dict)
 
@@ -128,17 +127,16 @@ class WindowReadings:
             known = self.corners.get(middle, at_corner)
             self.corners[middle] = max(known, at_corner, key=lambda one: one.value)
         for tooth, stresses in found.items():
-            of_tooth, last = self.levels.setdefault(tooth, {}), self.last.setdefault(tooth, {})
+            of_tooth = self.levels.setdefault(tooth, {})
             for name, stress in stresses.items():
                 largest[name] = max(largest.get(name, stress), stress, key=lambda one: one.value)
-                values = of_tooth.setdefault(name, [math.nan] * self.skipped)
+                read = of_tooth.setdefault(name, [replace(stress, value=math.nan)] * self.skipped)
                 # a region that coarser windows had not had no stress there
-                values += [0.0] * (level - len(values))
-                if len(values) == level:
-                    values.append(stress.value)
-                elif stress.value <= values[level]:
-                    continue
-                values[level], last[name] = stress.value, stress
+                read += [replace(stress, value=0.0)] * (level - len(read))
+                if len(read) == level:
+                    read.append(stress)
+                elif stress.value > read[level].value:
+                    read[level] = stress
         self.of_window[middle] = level, largest
 
     def window_with_largest(self, stress: str) -> tuple[int, WindowStress]:
@@ -179,18 +177,20 @@ class WindowReadings:
         self, model: DriveModel, gear: str, name: str, nodal: np.ndarray | None, ratio: float
     ) -> RegionStress:
         known = {tooth: by[name] for tooth, by in self.levels.items() if name in by}
-        main = max(known, key=lambda tooth: (len(known[tooth]), known[tooth][-1]))
+        main = max(known, key=lambda tooth: (len(known[tooth]), known[tooth][-1].value))
         shares = _over(known, main)
         other = max(shares, key=lambda tooth: shares[tooth])
         if shares[other] > ALIKE:
             main, shares = other, _over(known, other)
         spread = max(shares[other], 1.0)
-        tops = tuple(np.fmax.reduce(level) for level in zip_longest(*known.values(), fillvalue=0.0))
-        levels, tooth, lacks = known[main], self.last[other][name].tooth, 0.0
+        levels = _values(known[main])
+        every = zip_longest(*map(_values, known.values()), fillvalue=0.0)
+        tops = tuple(np.fmax.reduce(level) for level in every)
+        tooth, lacks = known[other][-1].tooth, 0.0
         region = name.partition(OF_REGION)[2]
         unrefined = gear == FLEXIBLE_SPLINE and region in UNREFINED[model.geometry.model]
         layout = model.partition.layouts[gear]
-        place = partial(Place.at, layout, region, self.last[main][name].position)
+        place = partial(Place.at, layout, region, known[main][-1].position)
         error = math.inf if unrefined else self._window_error(model, layout, name, main, ratio)
         least = 0.0
         if nodal is not None:
@@ -205,14 +205,14 @@ class WindowReadings:
                     of_average = place(
                         elsewhere, average, math.inf if unrefined else lost * average
                     )
-                    return RegionStress(tuple(levels), tops, 1.0, of_average, nodal=True)
+                    return RegionStress(levels, tops, 1.0, of_average, nodal=True)
                 least = (1.0 + lost) * average - spread * levels[-1]
             elif read > 0.0 and average / read * shares[alike] > spread:
                 spread, tooth = average / read * shares[alike], elsewhere
                 lacks = abs(shares[alike] * levels[-1] - read)
         error = max(spread * error + (spread - 1.0) * lacks, least)
         value = place(tooth, spread * levels[-1], error)
-        return RegionStress(tuple(levels), tops, spread, value)
+        return RegionStress(levels, tops, spread, value)
 
     def _window_error(
         self, model: DriveModel, layout: BodyLayout, name: str, tooth: int, ratio: float
@@ -224,9 +224,9 @@ class WindowReadings:
         Where the distance from a contact ends, the tractions that nodal averages have on a free
         surface are largest, and fall in first order.
         """
-        levels, (stress, _, region) = self.levels[tooth][name], name.partition(OF_REGION)
-        root = self.levels[tooth].get(f"{stress}{OF_REGION}{TOOTH_ROOT}")
-        reach, last = BESIDE_ROOT * model.geometry.module, self.last[tooth][name]
+        read, (stress, _, region) = self.levels[tooth][name], name.partition(OF_REGION)
+        root = _values(self.levels[tooth].get(f"{stress}{OF_REGION}{TOOTH_ROOT}", ()))
+        reach, levels, last = BESIDE_ROOT * model.geometry.module, _values(read), read[-1]
         highest = LOWEST_ORDER if last.beside else HIGHEST_ORDER
         if region == FLANK and root and _to_root(layout, last.position) < reach:
             below = max(root[-1] - levels[-1], 0.0)
@@ -239,14 +239,39 @@ def _of_teeth_and_rim(stress: str) -> list[str]:
     return [f"{stress}{OF_REGION}{region}" for region in (*IN_TEETH, RIM_INSIDE)]
 
 
-def _over(known: Mapping[int, Sequence[float]], main: int) -> dict[int, float]:
-    """Stresses of teeth over those of one, in the finest windows that both have. known : MPa,
-    coarse to fine"""
-    shares = {}
+def _values(levels: Sequence[WindowStress]) -> tuple[float, ...]:
+    """MPa, coarse to fine."""
+    return tuple(one.value for one in levels)
+
+
+def _over(known: Mapping[int, Sequence[WindowStress]], main: int) -> dict[int, float]:
+    """Stresses of teeth over those of one, in the finest windows that both have.
+
+    A tooth that finer windows do not read changes there as one that they do, whose stress was
+    nearest to its place on the profile and along the face width: the ends of teeth have several
+    peaks, which converge differently. known : coarse to fine
+    """
+    finest = len(known[main]) - 1
+    top = max(known[main][finest].value, LEAST_STRESS)
+    others = [tooth for tooth, levels in known.items() if len(levels) > finest and tooth != main]
+    in_finest, shares = [known[tooth] for tooth in (main, *others)], {}
     for tooth, levels in known.items():
-        last = min(len(levels), len(known[main])) - 1
-        shares[tooth] = levels[last] / max(known[main][last], LEAST_STRESS)
+        last = min(len(levels) - 1, finest)
+        change = 1.0 if last == finest else _change(levels[last], in_finest, last, finest)
+        shares[tooth] = levels[last].value * change / top
     return shares
+
+
+def _change(
+    stress: WindowStress, others: Iterable[Sequence[WindowStress]], level: int, finest: int
+) -> float:
+    """Stress in the finest window over that in the window `level`, of the tooth that has it nearest
+    to the place of another stress; of equally near ones the first."""
+    there = [levels for levels in others if levels[level].value > LEAST_STRESS]
+    if not there:
+        return 1.0
+    alike = min(there, key=lambda of: np.linalg.norm(of[level].position - stress.position))
+    return alike[finest].value / alike[level].value
 
 
 def _to_root(layout: BodyLayout, position: np.ndarray) -> float:

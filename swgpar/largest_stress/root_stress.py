@@ -249,9 +249,7 @@ def resolve_root_stress(
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
     kind = model.geometry.model
-    parts = (
-        (False,) if kind == "plane" else (False, True)
-    )  # between the ends of the teeth, and at them
+    parts = _parts(model)
     averages = nodal_averages(model, FLEXIBLE_SPLINE)
     on_mesh = [largest_by_tooth(model, averages[0], ends) for ends in parts]
     layout = model.partition.layouts[FLEXIBLE_SPLINE]
@@ -261,21 +259,22 @@ def resolve_root_stress(
     mises = np.max([nodal[name] for name in parts_of_teeth if name in nodal], axis=0)
     teeth = candidates(*on_mesh, in_root=in_root, mises=mises)
     places = [(tooth, ends) for tooth in teeth for ends in parts]
-    values: dict[Followed, list[float]] = {place: [math.nan] * skipped for place in places}
+    values: dict[Followed, list[float]] = {}
     readings, states = WindowReadings(skipped), States()
     count, narrow = levels or LEVELS[kind], dict[Followed, list[int]]()
     for level in range(skipped, count):
         by_tooth = _solve(model, state, places, level, readings, states, narrow)
         found = {place: of_teeth[0] for place, of_teeth in by_tooth.items()}
         for place, stress in found.items():
-            values[place].append(stress.value)
-        best = max(places, key=lambda place: found[place].value)
+            values.setdefault(place, [math.nan] * skipped).append(stress.value)
+        best = max(found, key=lambda place: found[place].value)
         places = followed(found, level, LATER[kind])
+        at = {place: by_tooth[place] for place in places}
         further, mises_there = readings.window_with_largest("fs_vm")
         if level + 2 < count and all(tooth != further for tooth, _ in places):
             places.append((further, False))  # as far as the last window but one
+            at[further, False] = [mises_there]
         if level + 1 >= NARROW_FROM:
-            at = {place: by_tooth.get(place, [mises_there]) for place in places}
             narrow = narrowed(at, layout.first_tooth, layout.count, LATER[kind])
             places = [place for place in places if place in narrow]
         _release(model)
@@ -311,6 +310,11 @@ def _release(model: DriveModel) -> None:
     model.release_windows(kept=window_recipe(kind, PERIOD_LEVEL[kind]))
 
 
+def _parts(model: DriveModel) -> tuple[bool, ...]:
+    """Flags `ends` of the parts of teeth; in the plane they have no ends."""
+    return (False,) if model.geometry.model == "plane" else (False, True)
+
+
 def _reached(levels: list[float]) -> tuple[int, float]:
     """Number of windows, and s1 on the finest one."""
     return len(levels), levels[-1]
@@ -343,8 +347,8 @@ def _solve(
     states: States | None = None,
     narrow: Mapping[Followed, Sequence[int]] | None = None,
 ) -> dict[Followed, list[WindowStress]]:
-    """Largest stresses of the teeth in windows, at the ends of teeth or between them, the largest
-    first: windows by tooth.
+    """Largest stresses of the teeth in the windows of places, the largest first: at the ends of
+    teeth and between them, whichever the windows are there for.
 
     level : of the windows;  readings : takes the stresses of all regions
     states : equilibria of coarser windows, to which those of these windows are added
@@ -357,13 +361,11 @@ def _solve(
     windows = dict.fromkeys(
         (place[0], middle) for place in places for middle in narrow.get(place, [None])
     )
-    found: dict[Followed, list[WindowStress]] = {place: [] for place in places}
+    found: dict[Followed, list[WindowStress]] = {}
     for tooth, middle in windows:
         with solved_window(model, state, tooth, recipe, states, middle=middle) as window:
-            # a narrow one that is there for the ends of the teeth counts between them too
-            for place in places:
-                if place[0] == tooth:
-                    found[place] += window.by_tooth(place[1])
+            for ends in _parts(model):
+                found.setdefault((tooth, ends), []).extend(window.by_tooth(ends))
             if readings is not None:
                 by_tooth = window.by_region().items()
                 read = {(one - layout.first_tooth) % layout.count: by for one, by in by_tooth}

@@ -139,7 +139,7 @@ def test_the_window_with_the_largest_stress_is_one_of_the_finest() -> None:
 
 
 def window_stress_of(found: WindowReadings, tooth: int) -> WindowStress:
-    return found.last[tooth][ROOT]
+    return found.levels[tooth][ROOT][-1]
 
 
 def test_teeth_that_a_narrow_window_does_not_read_count_in_proportion() -> None:
@@ -153,11 +153,32 @@ def test_teeth_that_a_narrow_window_does_not_read_count_in_proportion() -> None:
     assert one.place.value == pytest.approx(1.1 * LEVELS[2])
 
 
+def test_a_stress_that_finer_windows_do_not_read_changes_as_the_nearest_one() -> None:
+    """The ends of teeth have two peaks; the one that falls is at tooth 4 and, less high, at 3."""
+    found = WindowReadings(0)
+    falls, rises = np.array([1.1, 53.0, 4.1]), np.array([1.3, 52.9, 3.7])
+
+    def read(level: int, *of: tuple[int, float, np.ndarray]) -> None:
+        stresses = {k: {ROOT: WindowStress(v, k, at, "", "", 1)} for k, v, at in of}
+        found.add(3, level, stresses)
+
+    read(0, (2, 1060.0, rises), (3, 1080.0, falls), (4, 1081.0, falls))
+    read(1, (2, 1100.0, rises), (3, 1050.0, falls))
+    one = stress(found, nodal())
+    assert one.place.tooth == 2 and one.place.value == 1100.0
+    # with one peak tooth 4 would be the largest
+    found = WindowReadings(0)
+    read(0, (2, 1060.0, rises), (3, 1080.0, falls), (4, 1081.0, rises))
+    read(1, (2, 1100.0, rises), (3, 1050.0, falls))
+    one = stress(found, nodal())
+    assert one.place.tooth == 4 and one.place.value == pytest.approx(1081.0 / 1060.0 * 1100.0)
+
+
 def test_of_two_windows_that_read_a_tooth_the_larger_stress_counts() -> None:
     found = WindowReadings(0)
     for middle, value in ((3, 80.0), (5, 84.0), (4, 82.0)):
         found.add(middle, 0, {4: {ROOT: window_stress(value, 4)}})
-    assert found.levels == {4: {ROOT: [84.0]}} and window_stress_of(found, 4).value == 84.0
+    assert [one.value for one in found.levels[4][ROOT]] == [84.0]
 
 
 def test_a_tooth_without_a_window_has_the_stress_in_proportion() -> None:
