@@ -98,6 +98,18 @@ def followed(found: Mapping[Followed, WindowStress], level: int, later: float) -
     ]
 
 
+def levels_of(read: Sequence[Mapping[int, float]], is_followed: bool) -> list[float]:
+    """Largest s1 (MPa) of a place on the windows, coarse to fine.
+
+    read : by tooth
+    is_followed : whether windows are there for it; if not, narrow ones may lie around other teeth
+    than the one with the largest stress, so that only those of one tooth can be compared
+    """
+    of = read[-1]
+    tooth = max(of, key=lambda one: of[one])
+    return [max(by.values()) if is_followed else by[tooth] for by in read]
+
+
 def narrowed(
     found: Mapping[Followed, Sequence[WindowStress]], first_tooth: int, count: int, later: float
 ) -> dict[Followed, list[int]]:

@@ -186,11 +186,12 @@ class WindowReadings:
         levels = _values(known[main])
         every = zip_longest(*map(_values, known.values()), fillvalue=0.0)
         tops = tuple(np.fmax.reduce(level) for level in every)
-        tooth, lacks = known[other][-1].tooth, 0.0
+        of_largest, lacks = known[other][-1], 0.0
+        tooth, position = of_largest.tooth, of_largest.position
         region = name.partition(OF_REGION)[2]
         unrefined = gear == FLEXIBLE_SPLINE and region in UNREFINED[model.geometry.model]
         layout = model.partition.layouts[gear]
-        place = partial(Place.at, layout, region, known[main][-1].position)
+        place = partial(Place.at, layout, region)
         error = math.inf if unrefined else self._window_error(model, layout, name, main, ratio)
         least = 0.0
         if nodal is not None:
@@ -198,20 +199,20 @@ class WindowReadings:
             # nodal averages lose much beside a contact: the most alike is the one with most of them
             alike = max(reads, key=lambda tooth: reads[tooth])
             read, average = reads[alike], float(nodal[elsewhere])
-            lacks = abs(levels[-1] - reads[main])
+            lacks, there = abs(levels[-1] - reads[main]), known[alike][-1].position
             if average > ALIKE * read:
                 lost = 1.0 / (CLOSE_IN_ROOT if region in (*IN_TEETH, FLANK) else CLOSE) - 1.0
                 if average > spread * levels[-1]:
                     of_average = place(
-                        elsewhere, average, math.inf if unrefined else lost * average
+                        there, elsewhere, average, math.inf if unrefined else lost * average
                     )
                     return RegionStress(levels, tops, 1.0, of_average, nodal=True)
                 least = (1.0 + lost) * average - spread * levels[-1]
             elif read > 0.0 and average / read * shares[alike] > spread:
-                spread, tooth = average / read * shares[alike], elsewhere
+                spread, tooth, position = average / read * shares[alike], elsewhere, there
                 lacks = abs(shares[alike] * levels[-1] - read)
         error = max(spread * error + (spread - 1.0) * lacks, least)
-        value = place(tooth, spread * levels[-1], error)
+        value = place(position, tooth, spread * levels[-1], error)
         return RegionStress(levels, tops, spread, value)
 
     def _window_error(
@@ -249,7 +250,8 @@ def _over(known: Mapping[int, Sequence[WindowStress]], main: int) -> dict[int, f
 
     A tooth that finer windows do not read changes there as one that they do, whose stress was
     nearest to its place on the profile and along the face width: the ends of teeth have several
-    peaks, which converge differently. known : coarse to fine
+    peaks, which converge differently. The change of a far smaller stress tells nothing: where there
+    is no other one, it does not change. known : coarse to fine
     """
     finest = len(known[main]) - 1
     top = max(known[main][finest].value, LEAST_STRESS)
@@ -266,8 +268,9 @@ def _change(
     stress: WindowStress, others: Iterable[Sequence[WindowStress]], level: int, finest: int
 ) -> float:
     """Stress in the finest window over that in the window `level`, of the tooth that has it nearest
-    to the place of another stress; of equally near ones the first."""
-    there = [levels for levels in others if levels[level].value > LEAST_STRESS]
+    to the place of another stress, and not far below it; of equally near ones the first."""
+    least = max(stress.value / ALIKE, LEAST_STRESS)
+    there = [levels for levels in others if levels[level].value > least]
     if not there:
         return 1.0
     alike = min(there, key=lambda of: np.linalg.norm(of[level].position - stress.position))

@@ -35,6 +35,7 @@ from swgpar.largest_stress.candidate_teeth import (
     candidates,
     first_of_largest,
     followed,
+    levels_of,
     narrowed,
 )
 from swgpar.largest_stress.convergence import error_at_ends, error_of
@@ -259,14 +260,16 @@ def resolve_root_stress(
     mises = np.max([nodal[name] for name in parts_of_teeth if name in nodal], axis=0)
     teeth = candidates(*on_mesh, in_root=in_root, mises=mises)
     places = [(tooth, ends) for tooth in teeth for ends in parts]
+    read: dict[Followed, list[dict[int, float]]] = {}
     values: dict[Followed, list[float]] = {}
     readings, states = WindowReadings(skipped), States()
     count, narrow = levels or LEVELS[kind], dict[Followed, list[int]]()
     for level in range(skipped, count):
         by_tooth = _solve(model, state, places, level, readings, states, narrow)
         found = {place: of_teeth[0] for place, of_teeth in by_tooth.items()}
-        for place, stress in found.items():
-            values.setdefault(place, [math.nan] * skipped).append(stress.value)
+        for place, of_teeth in by_tooth.items():
+            read.setdefault(place, []).append({one.tooth: one.value for one in of_teeth})
+            values[place] = [math.nan] * skipped + levels_of(read[place], place in places)
         best = max(found, key=lambda place: found[place].value)
         places = followed(found, level, LATER[kind])
         at = {place: by_tooth[place] for place in places}

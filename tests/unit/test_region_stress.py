@@ -174,6 +174,34 @@ def test_a_stress_that_finer_windows_do_not_read_changes_as_the_nearest_one() ->
     assert one.place.tooth == 4 and one.place.value == pytest.approx(1081.0 / 1060.0 * 1100.0)
 
 
+def at(tooth: int, value: float, position: np.ndarray) -> dict[int, dict[str, WindowStress]]:
+    return {tooth: {ROOT: WindowStress(value, tooth, position, "", "", 1)}}
+
+
+def test_the_change_of_a_far_smaller_stress_tells_nothing() -> None:
+    """It may double where the largest ones rise by a percent."""
+    found, here, there = WindowReadings(0), np.array([1.1, 53.0, 4.1]), np.array([1.3, 52.9, 3.7])
+    found.add(3, 0, at(3, 100.0, here) | at(2, 2.0, there) | at(8, 96.0, there))
+    found.add(3, 1, at(3, 102.0, here) | at(2, 4.0, there))
+    one = stress(found, nodal())
+    assert one.place.tooth == 3 and one.place.value == 102.0
+    # the largest stress of the finest windows may hardly be there in a coarser one
+    found = WindowReadings(0)
+    found.add(3, 0, at(3, 0.001, here) | at(8, 10.0, there))
+    found.add(3, 1, at(3, 50.0, here))
+    one = stress(found, nodal())
+    assert one.place.tooth == 3 and one.place.value == 50.0
+
+
+def test_a_stress_is_where_its_own_tooth_has_it() -> None:
+    """The ends of teeth have several peaks."""
+    found, here, there = WindowReadings(0), np.array([1.1, 53.0, 4.1]), np.array([1.3, 52.9, 3.7])
+    found.add(3, 0, at(3, 100.0, here) | at(8, 105.0, there))
+    found.add(3, 1, at(3, 102.0, here))
+    one = stress(found, nodal())
+    assert one.place.tooth == 8 and one.place.z == 3.7
+
+
 def test_of_two_windows_that_read_a_tooth_the_larger_stress_counts() -> None:
     found = WindowReadings(0)
     for middle, value in ((3, 80.0), (5, 84.0), (4, 82.0)):

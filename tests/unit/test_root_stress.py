@@ -16,6 +16,7 @@ from swgpar.largest_stress.candidate_teeth import (
     LATER,
     candidates,
     followed,
+    levels_of,
     may_be_largest,
     narrowed,
 )
@@ -176,6 +177,13 @@ def test_teeth_with_nearly_the_largest_stress_have_a_narrow_window_each() -> Non
         assert narrowed(equal, 0, 60, later) == {(1, False): [0]}
     alone = narrowed({(1, False): of(t0=280.0, t1=275.0)}, 0, 60, later)
     assert alone == {(1, False): [0]}
+
+
+def test_levels_of_a_place_that_is_not_followed_are_those_of_one_tooth() -> None:
+    """The narrow window is there for the other part of the teeth."""
+    read = [{2: 960.0, 3: 1000.0}, {2: 990.0, 3: 1010.0}, {2: 1088.0}]
+    assert levels_of(read, False) == [960.0, 990.0, 1088.0]
+    assert levels_of(read, True) == [1000.0, 1010.0, 1088.0]
 
 
 def test_a_stress_at_the_ends_that_falls_is_bounded_by_the_one_between_them() -> None:
