@@ -13,6 +13,7 @@ from swgpar.drive_results.strength_checks import strength_checks
 from swgpar.drive_results.summary import BodySizes, DriveSummary
 from swgpar.evaluation.jamming import ENERGY
 from swgpar.evaluation.largest_contact import LargestContact
+from swgpar.evaluation.losses import DriveLosses
 from swgpar.evaluation.numerics import BALANCE, Numerics
 from swgpar.evaluation.rotation import Rotation
 from swgpar.evaluation.strains import LargestStrains
@@ -37,7 +38,7 @@ def checks(summary: DriveSummary, history: Mapping[str, np.ndarray]) -> list[Che
     judged = loaded and covered and design.repeats
     return [
         _balance(summary.numerics),
-        _energy(summary.rotation, judged, design.contact.friction > 0.0),
+        _energy(summary.rotation, judged, design.contact.friction > 0.0, summary.losses),
         _penetration(design.contact.penetration_tolerance * design.drive.module, history),
         _clearance(clearances(design.rigid_pairs)),
         _edge(summary.contact),
@@ -60,9 +61,12 @@ def _balance(found: Numerics) -> Check:
     return Check("balance of torques", left <= found.largest_balance_Nmm, text)
 
 
-def _energy(rotation: Rotation, judged: bool, friction: bool) -> Check:
+def _energy(rotation: Rotation, judged: bool, friction: bool, losses: DriveLosses | None) -> Check:
     """judged : whether there is a load, and the rotation covers a period, after which the drive is
-    in the same state"""
+    in the same state
+
+    What friction takes is known by forces and sliding where the losses are.
+    """
     name, expected = "energy", rotation.wg_torque_expected_Nmm
     if departure := rotation.jammed or rotation.energy:
         return Check(name, False, departure)
@@ -77,6 +81,15 @@ def _energy(rotation: Rotation, judged: bool, friction: bool) -> Check:
         )
     torque = "mean torque on the standing wave generator" if rotation.input else "mean input torque"
     text = f"{torque} {mean:.5g} N·mm, by the energy balance {expected:.5g} N·mm"
+    if friction and losses is not None and rotation.input is None:
+        taken, half = losses.parts_Nmm.flank_friction, rotation.sampling_error or {}
+        within = ENERGY * expected + half.get("wg_torque_Nmm", 0.0)
+        return Check(
+            name,
+            abs(mean - expected - taken) <= within,
+            f"{text}, and {taken:.3g} N·mm by friction of the flanks; good within {within:.2g} "
+            "N·mm",
+        )
     if friction:
         good = mean >= expected * (1.0 - ENERGY)
         return Check(name, good, f"{text}; friction takes {mean - expected:.3g} N·mm")

@@ -19,6 +19,7 @@ from swgpar.checks.starter import Request, starter_design
 from swgpar.design.sections import GEARS
 from swgpar.drive_results.report_checks import checks
 from swgpar.errors import InputError
+from swgpar.evaluation.losses import DriveLosses, LossParts
 from swgpar.evaluation.transmission_error import TorqueOverTurns, TransmissionError
 from swgpar.geometry.rotation import rotated
 from swgpar.largest_stress.root_stress import BETWEEN, RootStress
@@ -166,6 +167,37 @@ def test_verdicts_follow_the_numbers(folder: Path) -> None:
     module = np.full(len(result.history["step"]), summary.design.drive.module)
     deep = {**result.history, "max_penetration_mm": module}
     assert {c.name: c.good for c in checks(summary, deep)}["penetration"] is False
+
+
+def test_what_friction_takes_is_judged_where_it_is_known(folder: Path) -> None:
+    """The input torque gains 8 N·mm; friction takes 2, 6 or an unknown part of them."""
+    result = swgpar.open_result(folder)
+    summary, history = result.summary, result.history
+    design = summary.design.with_values({"contact.friction": 0.1, "steps.rotation": 18.0})
+    rotation = replace(summary.rotation, means={"wg_torque_Nmm": 58.0}, wg_torque_expected_Nmm=50.0)
+
+    def verdict(friction: float | None, half: float = 0.0) -> tuple[bool | None, str]:
+        parts = LossParts(flank_friction=friction or 0.0, hysteresis=0.0, bearing=0.0)
+        losses = DriveLosses(
+            loss_torque_Nmm=2.0,
+            parts_Nmm=parts,
+            efficiency=0.9,
+            no_load_torque_Nmm=None,
+            work_per_turn_J=0.1,
+            power_W=1.0,
+            cam_force_N=100.0,
+            flank_friction_coefficient=0.1,
+        )
+        of_angles = replace(rotation, sampling_error={"wg_torque_Nmm": half})
+        judged = replace(summary, design=design, rotation=of_angles, losses=friction and losses)
+        (energy,) = (c for c in checks(judged, history) if c.name == "energy")
+        return energy.good, energy.text
+
+    good, text = verdict(2.0)
+    assert good is False
+    assert text.endswith("2 N·mm by friction of the flanks; good within 2.5 N·mm")
+    assert verdict(6.0)[0] is True and verdict(2.0, half=4.0)[0] is True
+    assert verdict(None)[0] is True
 
 
 def test_the_first_line_is_not_green_without_a_verdict_on_strength(folder: Path) -> None:
