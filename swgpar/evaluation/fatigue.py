@@ -70,16 +70,18 @@ def evaluate_fatigue(
     model = cycle.model
     comm, fatigue = model.comm, model.design.fatigue
     regions, warnings = _regions(cycle)
-    scale = np.ones(len(regions))
+    scale, mises = np.ones(len(regions)), np.ones(len(regions))
     for region, one in factors.items():
         scale[regions == region] = one.factor
+        mises[regions == region] = one.factor if one.mises is None else one.mises
     mine, stress = cycle.history()
+    of_yield = mises[mine] * principal(stress)[2].max(axis=0) / fatigue.yield_strength
     stress *= scale[mine][:, None]
     plane = critical_plane(stress, fatigue, model.design.drive.model == "plane")
     utilisation = {
         "goodman": plane.utilisation,
         "crossland": crossland(stress, fatigue),
-        "yield": principal(stress)[2].max(axis=0) / fatigue.yield_strength,
+        "yield": of_yield,
     }
     own = _largest(
         len(cycle.nodes), mine, {**utilisation, "amplitude": plane.amplitude, "mean": plane.mean}

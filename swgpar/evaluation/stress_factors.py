@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from swgpar.largest_stress.places import OF_REGION
+from swgpar.largest_stress.places import OF_REGION, Place
 from swgpar.largest_stress.resolved_places import windowed_places
 from swgpar.largest_stress.root_stress import RootStress
 from swgpar.largest_stress.wall_stress import WallStress
@@ -14,8 +14,9 @@ from swgpar.model.regions import FLANK, TIP, TOOTH_END, TOOTH_ROOT
 IN_CONTACT = (FLANK, TIP)
 """Regions that flanks press on: their largest tension says nothing of what is below a contact."""
 
-TENSION = f"fs_s1{OF_REGION}"
-"""Beginning of the names of the largest tensions of the flexible spline's regions."""
+TENSION, MISES = f"fs_s1{OF_REGION}", f"fs_vm{OF_REGION}"
+"""Beginnings of the names of the largest tensions and von Mises stresses of the flexible spline's
+regions."""
 
 
 @dataclass(frozen=True)
@@ -23,10 +24,12 @@ class StressFactor:
     """Largest tension by windows over that by nodal averages, in the loaded state.
 
     error : None where it is not known
+    mises : the same of the largest von Mises stress; None where windows do not resolve it
     """
 
     factor: float
     error: float | None
+    mises: float | None = None
 
 
 def root_factor(root_stress: RootStress) -> StressFactor:
@@ -49,7 +52,8 @@ def stress_factors(
     loaded : MPa, nodal averages of the loaded state by the names of `find_places`
     """
     found: dict[str, StressFactor] = {}
-    for name, place in windowed_places(root_stress, wall).items():
+    places = windowed_places(root_stress, wall)
+    for name, place in places.items():
         nodal = loaded.get(name)
         if name.startswith(TENSION) and nodal and place.region not in IN_CONTACT:
             error = None if place.error is None else place.error / nodal
@@ -57,4 +61,15 @@ def stress_factors(
     if root_stress is not None:
         ends = [TOOTH_END] if root_stress.region == TOOTH_END else []
         found |= dict.fromkeys([TOOTH_ROOT, *ends], root_factor(root_stress))
-    return found
+    return {
+        region: replace(one, mises=_mises(region, places, loaded)) for region, one in found.items()
+    }
+
+
+def _mises(region: str, places: Mapping[str, Place], loaded: Mapping[str, float]) -> float | None:
+    """Factor of the largest von Mises stress of a region; None where it is not known."""
+    name = f"{MISES}{region}"
+    if name not in places or not loaded.get(name):
+        return None
+    factor = places[name].value / loaded[name]
+    return factor if region == TOOTH_ROOT else max(factor, 1.0)

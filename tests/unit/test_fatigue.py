@@ -239,5 +239,8 @@ def test_windows_scale_the_tooth_root() -> None:
         by = factors.get(region, 1.0)
         found = scaled.fatigue.regions[region].safety["goodman"]
         assert found == pytest.approx(values.safety["goodman"] / by, rel=1e-5)
+    strength = scaled.design.fatigue.yield_strength
+    of_yield = strength / scaled["largest.fs_vm_off_corners"].value
+    assert scaled.fatigue.least["yield"].safety == pytest.approx(of_yield, rel=1e-5)
     relative = scaled.fatigue.mesh_error / scaled.fatigue.least["goodman"].safety
     assert relative == pytest.approx(root.total_error / root.s1)

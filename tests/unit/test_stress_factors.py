@@ -73,6 +73,7 @@ def test_factors_of_the_wall_are_those_of_the_largest_tension() -> None:
     assert set(found) == {"fillet", "cup wall"}
     assert found["fillet"].factor == pytest.approx(600.0 / 240.0)
     assert found["fillet"].error == pytest.approx(30.0 / 240.0)
+    assert found["fillet"].mises is None  # no nodal average of it is known
     assert found["cup wall"].factor == 1.0
     assert stress_factors(None, wall(600.0, None), LOADED)["fillet"].error is None
     assert stress_factors(None, wall(600.0), {}) == {} == stress_factors(None, None, LOADED)
@@ -82,10 +83,12 @@ def test_factors_of_the_teeth_are_those_of_their_windows() -> None:
     regions = {"fs_s1 in tooth root": place(600.0, "tooth root", 9.0)}
     regions["fs_s1 in cup wall"] = place(275.0, "cup wall", 10.0)
     regions["fs_s1 in flank"] = place(275.0, "flank", 10.0)
+    regions["fs_vm in tooth root"] = place(585.0, "tooth root", 9.0)
     found = stress_factors(root(600.0, regions), None, LOADED | {"fs_s1 in flank": 100.0})
     assert set(found) == {"tooth root", "cup wall"}  # flanks are pressed on
     assert found["tooth root"].factor == pytest.approx(600.0 / 500.0)
     assert found["tooth root"].error == pytest.approx(5.0 / 500.0)
+    assert found["tooth root"].mises == pytest.approx(585.0 / 450.0)
     assert found["cup wall"].factor == pytest.approx(275.0 / 250.0)
 
 
