@@ -10,6 +10,7 @@ import numpy as np
 
 from swgpar.contact.cells import Cells
 from swgpar.contact.contact import NO_KEYS
+from swgpar.contact.flank_curve import TERMS, above_cubics
 from swgpar.contact.flank_deviations import FlankDeviations
 from swgpar.contact.flank_faces import FlankFaces, bilinear, lagrange
 from swgpar.contact.search import FlankPair
@@ -27,12 +28,16 @@ the slave face."""
 
 @dataclass
 class MasterFlanks:
-    """Flanks of the ring gear, one for each pair; see `swgpar.kernel.contact_flanks`."""
+    """Flanks of the ring gear, one for each pair; see `swgpar.kernel.contact_flanks`.
+
+    bulge : see `above_cubics`
+    """
 
     s: np.ndarray
     z: np.ndarray
     point: np.ndarray
     tangent: np.ndarray
+    bulge: np.ndarray
     orientation: np.ndarray
     rotation: np.ndarray
     conn: np.ndarray
@@ -187,6 +192,7 @@ class FlankPairs:
             grid.z,
             point=np.zeros((n_pair, len(grid.s), 2)),
             tangent=np.zeros((n_pair, len(grid.s), 2)),
+            bulge=np.zeros((n_pair, len(grid.s) - 1, TERMS, 2)),
             orientation=np.zeros(n_pair),
             rotation=np.zeros((n_pair, 2)),
             conn=np.zeros((n_pair, *grid.nodes.shape), dtype=np.int32),
@@ -200,6 +206,8 @@ class FlankPairs:
                 flanks.tangent[of_side],
                 flanks.orientation[of_side],
             ) = self._curve(grid)
+            mirror = MIRROR if grid.side < 0 else np.ones(2)
+            flanks.bulge[of_side] = above_cubics(layout.mesh.profile, grid.s) * mirror
             angle = layout.sector_angle(self._ring_tooth[of_side])
             flanks.rotation[of_side] = np.column_stack([np.cos(angle), np.sin(angle)])
             number, sixths = self.partition.node_numbers(

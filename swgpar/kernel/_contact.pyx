@@ -17,6 +17,7 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
         const double* z
         const double* point
         const double* tangent
+        const double* bulge
         const double* orientation
         const double* rotation
         double body_cosine, body_sine
@@ -167,6 +168,7 @@ def contact_flanks(patches, faces, u, multiplier, double penalty, double opening
     cdef const double[::1] z = checked(name, "patches.z", patches.z, DOUBLE, (n_z,))
     cdef const double[:, :, ::1] point = checked(name, "patches.point", patches.point, DOUBLE, (n_patch, n_s, 2))
     cdef const double[:, :, ::1] tangent = checked(name, "patches.tangent", patches.tangent, DOUBLE, (n_patch, n_s, 2))
+    cdef const double[:, :, :, ::1] bulge = checked(name, "patches.bulge", patches.bulge, DOUBLE, (n_patch, n_s - 1, 4, 2))
     cdef const double[::1] orientation = checked(name, "patches.orientation", patches.orientation, DOUBLE, (n_patch,))
     cdef const double[:, ::1] rotations = checked(name, "patches.rotation", patches.rotation, DOUBLE, (n_patch, 2))
 
@@ -209,6 +211,7 @@ def contact_flanks(patches, faces, u, multiplier, double penalty, double opening
     cdef double[:, ::1] gap = gap_array, pressure = pressure_array
     cdef double[:, :, ::1] foot_point = foot_point_array
     cdef FlankBatch p = FlankBatch(n_patch, n_s - 1, n_z - 1, &s[0], &z[0], &point[0, 0, 0], &tangent[0, 0, 0],
+                                   &bulge[0, 0, 0, 0],
                                    &orientation[0], &rotations[0, 0], cos(rotation), sin(rotation), &pconn[0, 0, 0],
                                    &psixths[0, 0, 0])
     cdef FaceBatch f = FaceBatch(n_face, n_q, &conn[0, 0], &sixths[0, 0], &coords[0, 0, 0], &normal[0, 0],

@@ -1,8 +1,9 @@
 // Contact of deformable tooth flanks by face quadrature, and block assembly of contact terms.
 //
 // The master flank is the exact tooth profile plus the finite-element displacement: between two
-// profile nodes the curve is the cubic Hermite interpolant of their exact points and tangents, so
-// that its normal is continuous; the displacement is bilinear over the facet. The curve's height
+// profile nodes the curve is the cubic Hermite interpolant of their exact points and tangents and a
+// polynomial that the exact profile has above it, without a value and a slope at both, so that its
+// normal is continuous; the displacement is bilinear over the facet. The curve's height
 // over its chord rotates with the body, so that a body rotated as a whole has the rotated flank. A
 // point of the slave surface is projected onto it orthogonally; the gap's first and second
 // variations are exact for that surface at that rotation.
@@ -76,6 +77,7 @@ struct Patch {
   const double* z;                  // (n_z + 1)
   const double* point;              // (n_s + 1, 2) exact profile, sector frame
   const double* tangent;            // (n_s + 1, 2) unit
+  const double* bulge;              // (n_s, 4, 2) see `bulge_at`
   double orientation;               // sign that makes x_s cross x_z point out of the material
   double tooth_cosine, tooth_sine;  // of the angle of the tooth
   double body_cosine, body_sine;    // of the rotation of the body as a whole
@@ -92,12 +94,34 @@ struct Patch {
   Vec2 rotated(const Vec2& v) const {
     return Vec2(body_cosine * v[0] - body_sine * v[1], body_sine * v[0] + body_cosine * v[1]);
   }
+  // What the exact profile has above the cubic between the profile nodes i and i + 1, and its
+  // derivatives by eta: t^2 (1 - t)^2 times a cubic in t - 1/2, without a value and a slope at both
+  // ends.
+  void bulge_at(int i, double t, Vec2 (&out)[4]) const {
+    const double* c = bulge + 8 * i;
+    const double x = t - 0.5, r = t * (1 - t);
+    const double w[4] = {r * r, 2 * r * (1 - 2 * t), 2 - 12 * t + 12 * t * t, 24 * t - 12};
+    Vec2 q[4];
+    for (int k = 0; k < 2; ++k) {
+      q[0][k] = c[k] + x * (c[2 + k] + x * (c[4 + k] + x * c[6 + k]));
+      q[1][k] = c[2 + k] + x * (2 * c[4 + k] + x * 3 * c[6 + k]);
+      q[2][k] = 2 * c[4 + k] + 6 * x * c[6 + k];
+      q[3][k] = 6 * c[6 + k];
+    }
+    out[0] = w[0] * q[0];
+    out[1] = w[1] * q[0] + w[0] * q[1];
+    out[2] = w[2] * q[0] + 2 * w[1] * q[1] + w[0] * q[2];
+    out[3] = w[3] * q[0] + 3 * w[2] * q[1] + 3 * w[1] * q[2] + w[0] * q[3];
+    for (Vec2& one : out) one = placed(one.data());
+  }
   // Third derivative by eta of the curve between the profile nodes i and i + 1.
-  Vec3 third_derivative(int i) const {
+  Vec3 third_derivative(int i, double t) const {
     const double len = s[i + 1] - s[i];
     const Vec2 d = 12 * (placed(point + 2 * i) - placed(point + 2 * i + 2)) +
                    6 * len * (placed(tangent + 2 * i) + placed(tangent + 2 * i + 2));
-    const Vec2 now = rotated(d);
+    Vec2 more[4];
+    bulge_at(i, t, more);
+    const Vec2 now = rotated(d + more[3]);
     return Vec3(now[0], now[1], 0);
   }
 };
@@ -123,14 +147,18 @@ inline void evaluate(const Patch& p, const double* u, FootPoint& f) {
   const Vec2 a = p.placed(p.point + 2 * i), b = p.placed(p.point + 2 * i + 2);
   const Vec2 ta = len * p.placed(p.tangent + 2 * i), tb = len * p.placed(p.tangent + 2 * i + 2);
   const Vec2 chord = b - a;
-  f.height_eta =
-      p.rotated((6 * t - 6 * t2 - 1) * chord + (3 * t2 - 4 * t + 1) * ta + (3 * t2 - 2 * t) * tb);
-  f.height = p.rotated((3 * t2 - 2 * t3 - t) * chord + (t3 - 2 * t2 + t) * ta + (t3 - t2) * tb) +
-             past * f.height_eta;
+  Vec2 more[4];
+  p.bulge_at(i, t, more);
+  f.height_eta = p.rotated((6 * t - 6 * t2 - 1) * chord + (3 * t2 - 4 * t + 1) * ta +
+                           (3 * t2 - 2 * t) * tb + more[1]);
+  f.height =
+      p.rotated((3 * t2 - 2 * t3 - t) * chord + (t3 - 2 * t2 + t) * ta + (t3 - t2) * tb + more[0]) +
+      past * f.height_eta;
   const Vec2 x = a + f.eta * chord + f.height;
   const Vec2 d = chord + f.height_eta;
   Vec2 dd = Vec2::Zero();
-  if (!f.straight) dd = p.rotated((6 - 12 * t) * chord + (6 * t - 4) * ta + (6 * t - 2) * tb);
+  if (!f.straight)
+    dd = p.rotated((6 - 12 * t) * chord + (6 * t - 4) * ta + (6 * t - 2) * tb + more[2]);
   const double z0 = p.z[j], dz = p.z[j + 1] - z0, e = f.eta, q = f.zeta;
   const Vec3 u00 = nodal(u, p.node(i, j), p.image(i, j)),
              u10 = nodal(u, p.node(i + 1, j), p.image(i + 1, j));

@@ -18,6 +18,7 @@ struct FlankBatch {  // n_patch master flanks with the same grid
   const double* z;
   const double* point;            // (n_patch, n_s + 1, 2)
   const double* tangent;          // (n_patch, n_s + 1, 2)
+  const double* bulge;            // (n_patch, n_s, 4, 2)
   const double* orientation;      // (n_patch)
   const double* rotation;         // (n_patch, 2) cosine and sine of the angles of the teeth
   double body_cosine, body_sine;  // of the rotation of the body as a whole
@@ -32,6 +33,7 @@ struct FlankBatch {  // n_patch master flanks with the same grid
                  z,
                  point + 2 * row,
                  tangent + 2 * row,
+                 bulge + 8 * static_cast<std::int64_t>(k) * n_s,
                  orientation[k],
                  rotation[2 * k],
                  rotation[2 * k + 1],
@@ -153,8 +155,8 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
       }
       if (rows.values != nullptr)
         missing += add_friction_tangent(
-            f, t, motion, f.straight ? Vec3::Zero().eval() : patch.third_derivative(f.i), conn,
-            sixths, w, penalty, bounding, std::min(1.0, limit / bounding), friction, rows);
+            f, t, motion, f.straight ? Vec3::Zero().eval() : patch.third_derivative(f.i, f.eta),
+            conn, sixths, w, penalty, bounding, std::min(1.0, limit / bounding), friction, rows);
     }
   }
   return missing;

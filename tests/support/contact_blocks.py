@@ -91,6 +91,7 @@ def master(
         z,
         points[None].copy(),
         tangents[None].copy(),
+        np.zeros((1, len(s) - 1, 4, 2)),
         np.array([-1.0]),  # x cross z points to -y
         np.array([[1.0, 0.0]]),
         (first + np.arange(n, dtype=np.int32)).reshape(1, len(s), len(z)),

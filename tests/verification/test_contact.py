@@ -58,6 +58,7 @@ def pressed() -> tuple[MasterFlanks, Faces, np.ndarray, np.ndarray]:
     )
     u = rng.uniform(-0.01, 0.01, (4 + flanks.conn.size, 3))
     u[:4, 1] -= 0.03
+    flanks.bulge = rng.uniform(-0.05, 0.05, flanks.bulge.shape)
     grid = np.column_stack([np.repeat(points, len(z), axis=0), np.tile(z, len(s))])
     return flanks, faces, np.vstack([corners, grid]), u
 

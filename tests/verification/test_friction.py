@@ -30,6 +30,7 @@ class Arc:
         tangents = np.column_stack([np.cos(angle), -np.sin(angle)])
         s, z = 2.0 * (angle + 0.4), np.linspace(-0.5, 0.5, 4)
         self.flanks = master(points, tangents, s, z, 4)
+        self.flanks.bulge = np.random.default_rng(1).uniform(-0.05, 0.05, self.flanks.bulge.shape)
         corners = np.array(
             [[-0.15, 2.0, -0.2], [0.15, 1.98, -0.2], [0.15, 1.99, 0.2], [-0.15, 1.98, 0.2]]
         )
