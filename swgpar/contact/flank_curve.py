@@ -26,7 +26,9 @@ def above_cubics(profile: ToothProfile, s: np.ndarray) -> np.ndarray:
     """What the exact profile has above the cubics through its points and tangents at s (n,) mm:
     coefficients (n - 1, `TERMS`, 2) mm, by least squares.
 
-    t is the share of the arc length between two nodes. Value and slope are zero at both.
+    t is the share of the arc length between two nodes. Value and slope are zero at both. Elements
+    with a joint of the profile inside, as of meshes with fewer elements than segments, have none:
+    no polynomial has a curvature that jumps.
     """
     t, length = PLACES[:, None], np.diff(s)[:, None, None]
     point, tangent = profile.point(s), profile.tangent(s)
@@ -37,4 +39,12 @@ def above_cubics(profile: ToothProfile, s: np.ndarray) -> np.ndarray:
     between = s[:-1, None] + np.diff(s)[:, None] * PLACES
     exact = profile.point(between.ravel()).reshape(*between.shape, 2)
     terms = (t * (1.0 - t)) ** 2 * np.vander(PLACES - 0.5, TERMS, increasing=True)
-    return np.einsum("kq,iqd->ikd", np.linalg.pinv(terms), exact - cubic)
+    smooth = ~has_a_joint(profile, s)[:, None, None]
+    return np.einsum("kq,iqd->ikd", np.linalg.pinv(terms), (exact - cubic) * smooth)
+
+
+def has_a_joint(profile: ToothProfile, s: np.ndarray) -> np.ndarray:
+    """Whether a joint of the profile lies inside of the elements between s (n,) mm, (n - 1,)."""
+    margin = 1e-9 * (s[-1] - s[0])
+    after, before = s[:-1, None] + margin, s[1:, None] - margin
+    return ((profile.breaks > after) & (profile.breaks < before)).any(axis=1)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
+from swgpar.contact.flank_curve import has_a_joint
 from swgpar.geometry.micro_geometry import crowning
 from swgpar.geometry.rotation import MIRROR
 from swgpar.meshing.sector import FlankGrid, SectorMesh
@@ -23,6 +24,15 @@ SAMPLES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(PER_DIRECTION) + 0.5) / PER_DIRE
 
 OF_SAMPLES = np.linalg.inv(chebvander(1.0 - 2.0 * SAMPLES, len(SAMPLES) - 1))
 """Chebyshev coefficients (n, n) of the polynomials that are one at one of `SAMPLES`."""
+
+AT_JOINTS = 0.5 - 0.5 * np.cos(np.pi * (np.arange(5) + 0.5) / 5)
+"""Samples along the profile of faces with a joint of it inside: with more of them the polynomial
+swings about a curvature that jumps."""
+
+FROM_FEWER = chebvander(1.0 - 2.0 * SAMPLES, len(AT_JOINTS) - 1) @ np.linalg.inv(
+    chebvander(1.0 - 2.0 * AT_JOINTS, len(AT_JOINTS) - 1)
+)
+"""Values (n, 5) at `SAMPLES` of the polynomials that are one at one of `AT_JOINTS`."""
 
 FEET = 40
 """Most steps to a foot on the exact flank. Each leaves the height over the facet over the radius of
@@ -60,28 +70,36 @@ def flank_faces(
     corners = grid_quads(grid.nodes)
     ds, dz = np.diff(grid.s), np.diff(grid.z)
     size = np.stack(np.meshgrid(ds, dz, indexing="ij"), axis=-1).reshape(-1, 2)
-    a, b = (v.ravel() for v in np.meshgrid(SAMPLES, SAMPLES, indexing="ij"))
-    s, z = (values.ravel() for values in face_samples(grid))
     profile = mesh.profile
     side = MIRROR if grid.side < 0 else np.ones(2)
-    outward = profile.normal(s) * side
-    cut = crowning(removed, z, width, shape_name)[0] * profile.crowning_weight(s)
-    exact = profile.point(s) * side - cut[:, None] * outward
-    facet = np.einsum("qa,fai->fqi", bilinear(a, b), mesh.coords[corners]).reshape(-1, 3)
-    height = stretch * np.sum((exact - facet[:, :2]) * outward, axis=1)
-    offset = height.reshape(-1, len(SAMPLES), len(SAMPLES))
+
+    def heights(along: np.ndarray) -> np.ndarray:
+        """Over the facets (n_face, n_along, n) mm, at places (n_along,) along the profile."""
+        s, z = (values.ravel() for values in face_samples(grid, along))
+        outward = profile.normal(s) * side
+        cut = crowning(removed, z, width, shape_name)[0] * profile.crowning_weight(s)
+        exact = profile.point(s) * side - cut[:, None] * outward
+        a, b = (v.ravel() for v in np.meshgrid(along, SAMPLES, indexing="ij"))
+        facet = np.einsum("qa,fai->fqi", bilinear(a, b), mesh.coords[corners]).reshape(-1, 3)
+        height = stretch * np.sum((exact - facet[:, :2]) * outward, axis=1)
+        return height.reshape(-1, len(along), len(SAMPLES))
+
+    offset, at_joint = heights(SAMPLES), np.repeat(has_a_joint(profile, grid.s), len(dz))
+    if at_joint.any():
+        fewer = heights(AT_JOINTS)[at_joint]
+        offset[at_joint] = np.einsum("ij,fjk->fik", FROM_FEWER, fewer)
     middle = profile.normal(np.repeat(grid.s[:-1] + 0.5 * ds, len(dz))) * side
     return FlankFaces(corners, size, np.column_stack([middle, np.zeros(len(middle))]), offset)
 
 
-def face_samples(grid: FlankGrid) -> tuple[np.ndarray, np.ndarray]:
-    """Arc lengths and z (n_face, n, n) mm of the samples of all faces of a flank."""
-    n = len(SAMPLES)
-    shape = (len(grid.s) - 1, len(grid.z) - 1, n, n)
-    s = grid.s[:-1, None] + np.diff(grid.s)[:, None] * SAMPLES
+def face_samples(grid: FlankGrid, along: np.ndarray = SAMPLES) -> tuple[np.ndarray, np.ndarray]:
+    """Arc lengths and z (n_face, n_along, n) mm of the samples of all faces of a flank. along :
+    places along the profile, in [0, 1]"""
+    shape = (len(grid.s) - 1, len(grid.z) - 1, len(along), len(SAMPLES))
+    s = grid.s[:-1, None] + np.diff(grid.s)[:, None] * along
     z = grid.z[:-1, None] + np.diff(grid.z)[:, None] * SAMPLES
     s, z = np.broadcast_to(s[:, None, :, None], shape), np.broadcast_to(z[None, :, None, :], shape)
-    return s.reshape(-1, n, n), z.reshape(-1, n, n)
+    return s.reshape(-1, *shape[2:]), z.reshape(-1, *shape[2:])
 
 
 def exact_arc_lengths(

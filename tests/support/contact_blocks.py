@@ -132,6 +132,11 @@ class Surface:
     facing: int
     radius: float = np.inf
 
+    @property
+    def breaks(self) -> np.ndarray:
+        """Arc lengths (n,) mm of its joints."""
+        return np.zeros(0)
+
     def _angle(self, s: np.ndarray) -> np.ndarray:
         return (self.first + np.asarray(s)) / self.radius
 

@@ -31,6 +31,11 @@ class TwoArcs(Surface):
     curvatures: tuple[float, float] = (1.0, 1.0)
 
     @property
+    def breaks(self) -> np.ndarray:
+        jumps = self.curvatures[0] != self.curvatures[1]
+        return np.array([self.joint - self.first] if jumps else [])
+
+    @property
     def _at_joint(self) -> tuple[float, float]:
         """Angle of the joint and curvature from the apex to it."""
         curvature = self.curvatures[int(self.joint < 0.0)]
@@ -79,13 +84,15 @@ def test_arc_of_few_elements(place: float) -> None:
     """Elements that turn by half a radian: Hertz's pressure and width, wherever in an element the
     arc touches.
 
-    With arc lengths that are linear over an element the pressure is 4 % low at a node.
+    With arc lengths that are linear over an element the pressure is 4 % low at a node. It is 0.31 %
+    low there with seven and more samples of the heights: they are along the flank's normal, which
+    leans by a quarter of a radian to those of both facets.
     """
     nodes = 0.5 * (np.arange(-2, 3) - place)
     load, peak, width = pressed(nodes, TwoArcs((0.0, 0.0), nodes[0], -1))
     exact = np.sqrt(load * MODULUS / np.pi)
     print(f"place {place}: peak {peak / exact:.4f}, width {width * np.pi * exact / (4 * load):.4f}")
-    assert peak == pytest.approx(exact, rel=0.003)
+    assert peak == pytest.approx(exact, rel=0.004)
     assert width == pytest.approx(4.0 * load / (np.pi * exact), rel=0.025)
 
 
