@@ -21,6 +21,11 @@ POINTS = 24
 PLACES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS)
 """Of these points, as shares of the element: Chebyshev points."""
 
+FITTED = np.linalg.pinv(
+    (PLACES * (1.0 - PLACES))[:, None] ** 2 * np.vander(PLACES - 0.5, TERMS, increasing=True)
+)
+"""Coefficients (`TERMS`, `POINTS`) by least squares of values at these points."""
+
 
 def above_cubics(profile: ToothProfile, s: np.ndarray) -> np.ndarray:
     """What the exact profile has above the cubics through its points and tangents at s (n,) mm:
@@ -38,9 +43,8 @@ def above_cubics(profile: ToothProfile, s: np.ndarray) -> np.ndarray:
     cubic = cubic + (t**3 - t**2) * length * tangent[1:, None]
     between = s[:-1, None] + np.diff(s)[:, None] * PLACES
     exact = profile.point(between.ravel()).reshape(*between.shape, 2)
-    terms = (t * (1.0 - t)) ** 2 * np.vander(PLACES - 0.5, TERMS, increasing=True)
     smooth = ~has_a_joint(profile, s)[:, None, None]
-    return np.einsum("kq,iqd->ikd", np.linalg.pinv(terms), (exact - cubic) * smooth)
+    return np.einsum("kq,iqd->ikd", FITTED, (exact - cubic) * smooth)
 
 
 def has_a_joint(profile: ToothProfile, s: np.ndarray) -> np.ndarray:
