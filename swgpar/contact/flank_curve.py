@@ -9,6 +9,7 @@ the force of a pair (docs/verification/error_sources_plane.md).
 from __future__ import annotations
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebpts1
 
 from swgpar.profiles.flank import ToothProfile
 
@@ -18,7 +19,7 @@ TERMS = 4
 POINTS = 24
 """Points of an element at which they are fitted to the exact flank."""
 
-PLACES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS)
+PLACES = 0.5 + 0.5 * chebpts1(POINTS)
 """Of these points, as shares of the element: Chebyshev points."""
 
 FITTED = np.linalg.pinv(
