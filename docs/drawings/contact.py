@@ -9,7 +9,7 @@ from _drafting import INK, NOTE, RING, SPLINE, label, leader, reference, run
 from matplotlib.figure import Figure
 
 from swgpar.contact.cells import Cells, Stations, divided
-from swgpar.contact.flank_faces import flank_faces
+from swgpar.contact.flank_faces import SAMPLES, flank_faces
 from swgpar.contact.missing_compliance import MissingCompliance
 from swgpar.meshing import build_sector_meshes
 from swgpar.meshing.recipe import load_recipe
@@ -157,8 +157,7 @@ def offset() -> Figure:
         chord = nodes[i] + t[:, None] * (nodes[i + 1] - nodes[i])
         height = 1e3 * np.sum((exact - chord) * profile.normal(s0 + t * (s1 - s0)), axis=1)
         right.plot(s0 + t * (s1 - s0), height, color=NOTE, lw=1.6)
-        samples = 0.5 - 0.5 * np.cos(np.pi * (np.arange(5) + 0.5) / 5)
-        right.plot(s0 + samples * (s1 - s0), 1e3 * faces.offset[i, :, 0], "o", color=SPLINE, ms=5)
+        right.plot(s0 + SAMPLES * (s1 - s0), 1e3 * faces.offset[i, :, 0], "o", color=SPLINE, ms=5)
         right.axvline(s0, color=INK, lw=0.5, ls=":")
     right.axvline(grid.s[-1], color=INK, lw=0.5, ls=":")
     right.axhline(0.0, color=INK, lw=1.2)
