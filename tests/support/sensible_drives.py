@@ -7,6 +7,7 @@ seed and a number give the same drive whatever else is drawn.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,6 +17,7 @@ from support.drawn_drive import CAMS, Case, draw
 from support.paths import DRIVERS
 from swgpar.checks.clearance import clearances
 from swgpar.checks.design_file import make_drive
+from swgpar.checks.starter_teeth import ADDENDUM, DEDENDUM, RIM_OF_HEIGHT
 from swgpar.errors import InputError
 from swgpar.input.toml_file import read_toml, with_value
 from swgpar.meshing import build_sector_meshes, load_recipe
@@ -39,12 +41,23 @@ has 24 N·m, the cup reference drive 72 N·m."""
 KINDS = (*CAMS, "harmonic", "arcs")
 """Cams that are drawn."""
 
+SMOOTH = ("elliptical", "simplified", "harmonic", "arcs")
+"""Cams of S-shaped and other teeth: on the path that parabolas and rollers give, most of them would
+be too high."""
+
 BACKLASH = (0.0, 0.01, 0.02, 0.03, 0.05, 0.08, 0.12, 0.2)
 """Thinner teeth of the ring gear that are tried, of the tooth's thickness; for involutes their
 profile shift, for conjugate teeth the backlash over half of the pitch."""
 
 CONJUGATE, THREE_LOBES = 0.1, 0.1
 """Shares of drives with conjugate teeth of the ring gear, and with three lobes."""
+
+OTHER_TEETH = {"s_shaped": 0.7, "trapezoid": 0.12, "cycloid": 0.12, "common_tangent": 0.06}
+"""Shares of the teeth that arcs and involutes have not."""
+
+OF_THEIR_OWN, RELIEVED = 0.3, 0.5
+"""Shares of S-shaped teeth whose ring gear has S-shaped teeth too, where that of the others is
+conjugate, and of those with tip relief."""
 
 SHAPES = ("cup", "cup", "short", "hat")
 """Shapes of the flexible spline of a cup drive."""
@@ -65,7 +78,8 @@ rim's thickness without teeth."""
 class SensibleDrive:
     """A drive that has been drawn.
 
-    name : "p" (plane) or "c" (cup) and a number;  model : "plane" or "cup"
+    name : "p" (plane) or "c" (cup) and a number, with an "o" where the teeth are others than arcs
+        and involutes;  model : "plane" or "cup"
     table : content of the design file;  kind : profile, cam, lobes, layout and shape in words
     """
 
@@ -76,16 +90,22 @@ class SensibleDrive:
 
 
 def sensible_drives(
-    count: int, seed: int, model: str = "plane", most_modelled: int | None = None
+    count: int,
+    seed: int,
+    model: str = "plane",
+    most_modelled: int | None = None,
+    *,
+    other_teeth: bool = False,
 ) -> list[SensibleDrive]:
     """The first `count` drives of a seed.
 
     most_modelled : drives of which more teeth of the flexible spline are modelled are left out
+    other_teeth : whether teeth are those of `OTHER_TEETH`, not arcs and involutes
     """
     found: list[SensibleDrive] = []
     number = 0
     while len(found) < count:
-        drive = _drive(seed, number, model, most_modelled)
+        drive = _drive(seed, number, model, most_modelled, other_teeth)
         number += 1
         if drive is not None:
             found.append(drive)
@@ -93,12 +113,14 @@ def sensible_drives(
 
 
 def _drive(
-    seed: int, number: int, model: str, most_modelled: int | None = None
+    seed: int, number: int, model: str, most_modelled: int | None, other_teeth: bool
 ) -> SensibleDrive | None:
     """The drive of a number; None where its teeth overlap whatever their backlash, where it cannot
     be built, or where too much of it is modelled."""
     rng = np.random.default_rng((seed, number, len(model)))
-    case = _case(rng, model)
+    case = _case(rng, model, SMOOTH if other_teeth else KINDS)
+    if other_teeth:
+        case |= _other_teeth(rng, case, case["drive.module"])
     if most_modelled is not None and _modelled(case) > most_modelled:
         return None
     if model == "cup" and _bending(case) > MOST_BENDING:
@@ -115,7 +137,8 @@ def _drive(
             build_sector_meshes(design.geometry, load_recipe(MESHES[model]))
         except InputError:
             continue
-        return SensibleDrive(f"{model[0]}{number:03d}", model, thinner, _words(thinner))
+        name = f"{model[0]}{number:03d}{'o' * other_teeth}"
+        return SensibleDrive(name, model, thinner, _words(thinner))
     return None
 
 
@@ -147,12 +170,12 @@ def _words(table: dict[str, Any]) -> str:
     return ", ".join(words).replace("_", " ")
 
 
-def _case(rng: np.random.Generator, model: str) -> Case:
-    """Values of the design file."""
+def _case(rng: np.random.Generator, model: str, cams: Sequence[str]) -> Case:
+    """Values of the design file. cams : kinds that are drawn"""
     teeth = int(rng.integers(TEETH[0], TEETH[1] + 1))
     module = round(float(np.exp(rng.uniform(*np.log(MODULES)))), 3)
     three = rng.uniform() < THREE_LOBES
-    case = draw(rng, model, teeth, module, ("harmonic",) if three else KINDS)
+    case = draw(rng, model, teeth, module, ("harmonic",) if three else cams)
     case["contact.friction"] = 0.0
     radius = 0.5 * teeth * module
     if model == "cup":
@@ -175,6 +198,72 @@ def _case(rng: np.random.Generator, model: str) -> Case:
         case["cup"]["length"] = round(radius * float(rng.uniform(*CUP_LENGTH)), 4)
         case["cup"] |= _shape(rng, str(rng.choice(SHAPES)), case, radius)
     return case
+
+
+def _other_teeth(rng: np.random.Generator, case: Case, module: float) -> Case:
+    """Values of teeth in place of those of a case."""
+
+    def modules(low: float, high: float) -> float:
+        return round(float(rng.uniform(low, high)) * module, 4)
+
+    kind = str(rng.choice(list(OTHER_TEETH), p=list(OTHER_TEETH.values())))
+    # double arcs, which may be the teeth of the case, have none
+    lines = {"flexible_spline.c_l": 0.5, "ring_gear.c_l": 0.5}
+    if kind == "s_shaped":
+        return lines | _s_shaped(rng, case, module)
+    profile = {
+        "trapezoid": lambda: {
+            "flank_angle": round(float(rng.uniform(15.0, 30.0)), 4),
+            "r_tip": modules(0.05, 0.2),
+            "r_root": modules(0.15, 0.3),
+        },
+        "cycloid": lambda: {
+            "r_epicycloid": modules(0.6, 1.5),
+            "r_hypocycloid": modules(0.6, 1.5),
+            "r_tip": modules(0.1, 0.2),
+            "r_root": modules(0.2, 0.35),
+        },
+        "common_tangent": lambda: {
+            "r_addendum": modules(0.9, 1.5),
+            "c_addendum": modules(-0.2, 0.2),
+            "e_addendum": modules(0.0, 0.2),
+            "r_dedendum": modules(0.9, 1.5),
+            "c_dedendum": modules(-0.2, 0.2),
+            "e_dedendum": modules(0.0, 0.2),
+            "r_root": modules(0.2, 0.35),
+        },
+    }[kind]()
+    teeth = {"type": kind, **profile}
+    return lines | {
+        "flexible_spline.profile": teeth,
+        "ring_gear.profile": teeth,
+        "ring_gear.c_P": round(float(rng.uniform(0.85, 1.0)), 4),
+    }
+
+
+def _s_shaped(rng: np.random.Generator, case: Case, module: float) -> Case:
+    """S-shaped teeth, lower on a thin rim as `swgpar new` has them."""
+    rim = case["flexible_spline.rim"] / module
+    low = min(1.0, rim / (RIM_OF_HEIGHT * (ADDENDUM + DEDENDUM))) * float(rng.uniform(0.8, 1.0))
+
+    def modules(smallest: float, largest: float) -> float:
+        return round(low * module * float(rng.uniform(smallest, largest)), 4)
+
+    teeth = {"type": "s_shaped", "r_tip": modules(0.1, 0.2), "r_root": modules(0.25, 0.4)}
+    own = rng.uniform() < OF_THEIR_OWN
+    ring = {"type": "conjugate", "r_tip": modules(0.1, 0.2), "r_root": modules(0.15, 0.25)}
+    relief = {}
+    if rng.uniform() < RELIEVED:
+        relief = {"tip_relief": modules(0.01, 0.03), "tip_relief_height": round(0.5 * low, 4)}
+    gears = ("flexible_spline", "ring_gear")
+    return {
+        **{f"{gear}.{key}": value for gear in gears for key, value in relief.items()},
+        "drive.addendum_coef": round(low * ADDENDUM, 4),
+        "drive.dedendum_coef": round(low * DEDENDUM, 4),
+        "flexible_spline.profile": teeth,
+        "ring_gear.profile": teeth if own else ring,
+        "ring_gear.c_P": 1.0,
+    }
 
 
 def _shape(rng: np.random.Generator, shape: str, case: Case, radius: float) -> Case:
