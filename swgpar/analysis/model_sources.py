@@ -209,8 +209,9 @@ class LoadedDrives(ModelSource):
             known = [each for each in known if abs(each[1].torque) <= enough]
         if not known:
             return False
+        # of drives alike the last one: a key is changed little by little, and it has the factor
         nearest, stepper.load_state, x = min(
-            known,
+            reversed(known),
             key=lambda one: (
                 abs(one[1].torque - target.torque),
                 one[0] is not drive,

@@ -126,14 +126,19 @@ def test_a_drive_that_is_near_begins_with_the_loaded_state(
         )
         for rim in (0.45, 0.446, 0.43)
     )
+    nearer = near.with_values({"flexible_spline.rim": 0.444})
     with swgpar.Session(starts_near=True) as session:
         session.run(one, RECIPE)
         steps.clear()
         shared = values(session.run(near, RECIPE))
         assert begun.count(True) == 1
         assert steps[0] == "old factor"
+        steps.clear()
+        session.run(nearer, RECIPE)  # from the last one, which has the factor
+        assert begun.count(True) == 2
+        assert steps[0] == "old factor"
         session.run(far, RECIPE)
-    assert begun.count(True) == 1
+    assert begun.count(True) == 2
     alone = values(swgpar.run(near, RECIPE))
     for name, value in alone.items():
         assert shared[name] == pytest.approx(value, rel=SOLVED[name])
