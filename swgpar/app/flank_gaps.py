@@ -50,7 +50,7 @@ def flank_gaps(
     to_tooth = np.exp(1j * np.pi / motion.teeth_rg)
     found = []
     for points in (flank, -np.conj(flank)):
-        moved = pose.c[:, None] + np.exp(1j * pose.angle)[:, None] * points
+        moved = pose.c[:, None] + pose.turn[:, None] * points
         # the ring gear has no material nearer to the axis than its tips
         looked = np.abs(moved) > np.abs(ring.point).min() - near
         distance = np.full(moved.shape, np.inf)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -45,7 +46,8 @@ SYMMETRY = 1e-9
 """Amplitudes over the first below which a cam counts as symmetric to its major axis."""
 
 SERIES_POINTS = 1024
-"""Points of the Fourier series of the curve, whose terms fall to round-off long before."""
+"""Points around one lobe for the Fourier series of the curve, whose terms fall to round-off long
+before."""
 
 
 @cache
@@ -177,6 +179,19 @@ class _RingOnCam:
         return gap / self.radius, moved.real / self.radius, curved / self.radius
 
 
+class LinePoints(NamedTuple):
+    """Points of a neutral line at material angles theta (n,).
+
+    offset : (n,) complex, mm, the points X times exp(-i theta)
+    tilt, tilt1, tilt2 : (n,) rad, of the tangents, and its derivatives by theta
+    """
+
+    offset: Complex
+    tilt: Floats
+    tilt1: Floats
+    tilt2: Floats
+
+
 @dataclass(frozen=True)
 class NeutralLine:
     """A closed curve of given length.
@@ -199,37 +214,45 @@ class NeutralLine:
     stretched: float
     lobes: int = 2
 
+    def _powers(self, theta: Floats, count: int) -> Complex:
+        """Powers (count, n) from 1 on of exp(i lobes theta)."""
+        wave = np.exp(1j * self.lobes * theta)
+        # products of the wave take a fifth of the time of exponentials
+        return np.cumprod(np.broadcast_to(wave, (count, len(wave))), axis=0)
+
+    @cached_property
+    def _series(self) -> tuple[complex, Complex]:
+        """Mean of X exp(-i theta), mm, and amplitudes (5, k) of the powers of exp(i lobes theta):
+        of its other terms, those of negative powers as their conjugates, and of the tilt and its
+        first two derivatives, which are imaginary parts."""
+        index = np.fft.fftfreq(SERIES_POINTS, 1.0 / SERIES_POINTS)
+        theta = 2.0 * np.pi / self.lobes / SERIES_POINTS * np.arange(SERIES_POINTS)
+        tilts = np.array(self.tilts)
+        tilt = (tilts @ self._powers(theta, len(tilts))).imag
+        slope = np.fft.fft(-self.stretched * np.exp(1j * tilt)) / SERIES_POINTS
+        terms = slope / (1j * (1.0 + self.lobes * index))
+        kept = np.abs(terms) > 1e-16 * self.radius
+        count = max(int(np.abs(index[kept]).max()), len(tilts))
+        series = np.zeros((5, count), dtype=complex)
+        series[:2] = terms[1 : count + 1], np.conj(terms[: -count - 1 : -1])
+        order = 1j * self.lobes * np.arange(1, len(tilts) + 1)
+        series[2:, : len(tilts)] = tilts * order ** np.arange(3)[:, None]
+        return complex(terms[0]), series
+
+    def at(self, theta: Floats) -> LinePoints:
+        """State at the material angles `theta` : (n,) rad."""
+        mean, series = self._series
+        ahead, behind, *tilts = series @ self._powers(theta, series.shape[1])
+        return LinePoints(mean + ahead + np.conj(behind), *(each.imag for each in tilts))
+
     def tilt(self, theta: Floats) -> tuple[Floats, Floats, Floats]:
         """Tilt L (n,) rad of the tangents at material angles `theta` : (n,) rad, and its first two
         derivatives."""
-        order = float(self.lobes) * np.arange(1, len(self.tilts) + 1)[:, None]
-        first = np.exp(1j * self.lobes * np.asarray(theta))
-        # products of the first wave take a fifth of the time of exponentials
-        waves = np.cumprod(np.broadcast_to(first, (len(self.tilts), *first.shape)), axis=0)
-        wave = np.array(self.tilts)[:, None] * waves
-        return (
-            wave.imag.sum(axis=0),
-            (order * wave.real).sum(axis=0),
-            -(order**2 * wave.imag).sum(axis=0),
-        )
+        return self.at(theta)[1:]
 
-    @cached_property
-    def _series(self) -> tuple[np.ndarray, np.ndarray]:
-        """Orders and complex amplitudes, mm, of X."""
-        theta = 2.0 * np.pi * np.arange(SERIES_POINTS) / SERIES_POINTS
-        slope = (
-            np.fft.fft(-self.stretched * np.exp(1j * (theta + self.tilt(theta)[0]))) / SERIES_POINTS
-        )
-        order = np.fft.fftfreq(SERIES_POINTS, 1.0 / SERIES_POINTS)
-        # the mean is zero: the tangents of all lobes cancel
-        terms = np.divide(slope, 1j * order, out=np.zeros_like(slope), where=order != 0.0)
-        kept = np.abs(terms) > 1e-16 * self.radius
-        return order[kept], terms[kept]
-
-    def position(self, theta: Floats) -> np.ndarray:
+    def position(self, theta: Floats) -> Complex:
         """Points x + i y (n,), mm, at the material angles `theta` : (n,) rad."""
-        order, terms = self._series
-        return np.exp(1j * np.outer(theta, order)) @ terms
+        return np.exp(1j * theta) * self.at(theta).offset
 
     @property
     def stretch(self) -> float:

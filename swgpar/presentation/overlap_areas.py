@@ -61,7 +61,7 @@ class SlotOverlap:
         points = np.concatenate([land, flank])
         points = points if side > 0.0 else -np.conj(points)
         pose, end = self.motion.pose(psi), len(land)
-        turn = np.exp(1j * pose.angle)[:, None]
+        turn = pose.turn[:, None]
         tips = np.abs(pose.c[:, None] + turn * points[: end + 1])
         rows = np.flatnonzero(tips.max(axis=1) > self.radii[0])
         placed = pose.c[rows, None] + turn[rows] * points
@@ -132,7 +132,7 @@ def slot_overlap(
     moving, resting = outline(spline), outline(ring)
     psi = np.linspace(-np.pi, np.pi, PLACES) / motion.line.lobes
     pose, tips = motion.pose(psi), moving.point[: moving.flank.start + 1 : STRIDE]
-    farthest = float(np.abs(pose.c[:, None] + np.exp(1j * pose.angle)[:, None] * tips).max())
+    farthest = float(np.abs(pose.c[:, None] + pose.turn[:, None] * tips).max())
     radii = np.linspace(ring.r_tip_circle, max(farthest, ring.r_tip_circle), RADII)
     flank = resting.point[resting.flank]
     begins = np.interp(

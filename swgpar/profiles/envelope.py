@@ -107,7 +107,7 @@ class Envelope:
         if not self.given.external:
             z, phi, kappa = self.motion.mirrored(z), np.pi - phi - half_pitch, -kappa
         pose, tangent = self.pose(psi), np.exp(1j * phi)
-        back = np.exp(-1j * pose.angle)
+        back = np.conj(pose.turn)
         v = back * pose.c1 + 1j * pose.angle1 * z
         along = (np.conj(tangent) * v).real
         value = (np.conj(1j * tangent) * v).real
@@ -133,14 +133,14 @@ class Envelope:
 
         pose : of n positions
         """
-        arm = np.exp(1j * pose.angle) * self._moving(s)
+        arm: Complex = pose.turn * self._moving(s)
         first = pose.c1 + 1j * pose.angle1 * arm
         second = pose.c2 + (1j * pose.angle2 - pose.angle1**2) * arm
         return self._placed(pose.c + arm), self._placed(first), self._placed(second)
 
     def places(self, s: Floats, pose: Pose) -> Complex:
         """The same points at each of m positions, (m, n)."""
-        turn = np.exp(1j * pose.angle)[:, None]
+        turn = pose.turn[:, None]
         return self._placed(pose.c[:, None] + turn * self._moving(s))
 
     def _moving(self, s: Floats) -> Complex:

@@ -223,7 +223,7 @@ class OutlinePair:
         facing : whether the flank of the ring gear that the spline's faces counts alone, else all
         """
         middle, last, reach = self._parts(first, stride)
-        turn = np.exp(1j * pose.angle)
+        turn = pose.turn
         arm = turn * self.spline.point[middle]
         velocity, points = pose.c1 + 1j * pose.angle1 * arm, pose.c + arm
         to_tooth = np.exp(1j * np.pi / self.motion.teeth_rg)
@@ -311,7 +311,7 @@ class OutlinePair:
         known = self._intervals(at_axis, starts, stride, facing=False).feet.distance.min()
         angles, index = np.unique(psi, return_inverse=True)
         pose = self.motion.pose(angles).taken(index)
-        arm = np.exp(1j * pose.angle) * self.spline.point[middle]
+        arm = pose.turn * self.spline.point[middle]
         moved = 0.5 * step * SPEED_MARGIN * np.abs(pose.c1 + 1j * pose.angle1 * arm)
         apart = np.abs(self.ring.point).min() - np.abs(pose.c + arm)
         return apart - moved - reach < min(known, below)

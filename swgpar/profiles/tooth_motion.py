@@ -23,6 +23,7 @@ class Pose(NamedTuple):
     """Positions of a moving frame: z = c + exp(i alpha) Z, with the derivatives by psi.
 
     c, c1, c2 : (n,) complex, mm;  angle, angle1, angle2 : (n,) rad
+    turn : (n,) exp(i alpha)
     """
 
     c: np.ndarray
@@ -31,10 +32,11 @@ class Pose(NamedTuple):
     angle: Floats
     angle1: Floats
     angle2: Floats
+    turn: np.ndarray
 
     def inverse(self) -> Pose:
         """The fixed frame as seen from the moving one."""
-        turn = np.exp(-1j * self.angle)
+        turn = np.conj(self.turn)
         a1, a2 = self.angle1, self.angle2
         second = self.c2 - 2j * a1 * self.c1 - (1j * a2 + a1**2) * self.c
         return Pose(
@@ -44,6 +46,7 @@ class Pose(NamedTuple):
             -self.angle,
             -a1,
             -a2,
+            turn,
         )
 
     def taken(self, index: NDArray[np.intp]) -> Pose:
@@ -54,12 +57,14 @@ class Pose(NamedTuple):
         """These positions turned about the axis by `angle` (n,) rad, which does not depend on
         psi."""
         turn = np.exp(1j * angle)
-        c, c1, c2, own, *rates = self
-        return Pose(turn * c, turn * c1, turn * c2, own + angle, *rates)
+        c, c1, c2, own, angle1, angle2, own_turn = self
+        return Pose(
+            turn * c, turn * c1, turn * c2, own + angle, angle1, angle2, turn * own_turn
+        )
 
     def moved(self, points: np.ndarray) -> np.ndarray:
         """Points of the moving frame (n,) complex, mm, in the fixed one."""
-        return self.c + np.exp(1j * self.angle) * points
+        return self.c + self.turn * points
 
 
 @dataclass(frozen=True)
@@ -73,19 +78,19 @@ class ToothMotion:
     def pose(self, psi: Floats) -> Pose:
         """Pose of the flexible spline's tooth in its slot, at the material angles psi (n,) rad."""
         line, q = self.line, self.teeth_fs / self.teeth_rg
-        tilt, tilt1, tilt2 = line.tilt(psi)
-        around, slip = np.exp(1j * (psi + tilt)), line.radius * (1.0 + tilt1) - line.stretched
-        y = line.position(psi) - 1j * line.radius * around
-        y1 = around * slip
-        y2 = around * (1j * (1.0 + tilt1) * slip + line.radius * tilt2)
-        back = np.exp(-1j * q * psi)
+        offset, tilt, tilt1, tilt2 = line.at(psi)
+        angle = (1.0 - q) * psi + tilt
+        turn, slip = np.exp(1j * angle), line.radius * (1.0 + tilt1) - line.stretched
+        c = np.exp(1j * (1.0 - q) * psi) * offset - 1j * line.radius * turn
+        bend = 1j * (1.0 + tilt1 - 2.0 * q) * slip + line.radius * tilt2
         return Pose(
-            y * back,
-            (y1 - 1j * q * y) * back,
-            (y2 - 2j * q * y1 - q**2 * y) * back,
-            psi + tilt - q * psi,
+            c,
+            turn * slip - 1j * q * c,
+            turn * bend - q**2 * c,
+            angle,
             1.0 + tilt1 - q,
             tilt2,
+            turn,
         )
 
     def mirror_image(self) -> ToothMotion:
