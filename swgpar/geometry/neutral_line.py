@@ -18,11 +18,11 @@ import numpy as np
 from swgpar.geometry.arrays import Complex, Floats
 from swgpar.geometry.cams import Cam, WaveGenerator, make_cam, taut_length
 
-HARMONICS, POINTS = 16, 1440
+HARMONICS, POINTS = 16, 480
 """Harmonics of the shape of first order, and points around one lobe of the ring that stay outside
 of the cam."""
 
-PENALTY = 1e3 / 9.0
+PENALTY = 3e3 / 9.0
 """Stiffness of the cam at a point, over that of the first harmonic: 9 with two lobes."""
 
 ROUNDS, MAX_CHANGES = 4, 50
@@ -113,29 +113,33 @@ class _RingOnCam:
 
         Newton's method on the Lagrangian of the energy and of the distances at points around one
         lobe, from the shape of first order. The points that touch change until they are those that
-        the cam presses on.
+        the cam presses on. On a cam whose lobes are symmetric, half a lobe is looked at.
         """
         order = float(self.lobes) * np.arange(1, LINE_HARMONICS + 1)
         cosines, sines = _waves(LINE_POINTS, LINE_HARMONICS)
-        waves, energy = sines, order**2
+        waves, energy, weight = sines, order**2, np.ones(LINE_POINTS)
         start = bent_ring(self.cam, self.inner_radius, self.radius, self.lobes)[1:]
         first = np.zeros(LINE_HARMONICS, dtype=complex)
         # v = -int w, L = (v - w') / r of the radial displacement w: both of the imaginary part
         first[:HARMONICS] = (order - 1.0 / order)[:HARMONICS] * start / self.radius
         amplitudes, symmetric = first.real, np.abs(first.imag).max() < SYMMETRY * abs(first[0])
-        if not symmetric:
+        if symmetric:
+            waves, weight = sines[: LINE_POINTS // 2 + 1], np.full(LINE_POINTS // 2 + 1, 2.0)
+            weight[[0, -1]] = 1.0
+        else:
             waves, energy = np.hstack([sines, cosines]), np.tile(energy, 2)
             amplitudes = np.append(amplitudes, first.imag)
-        pressure, penalty = np.zeros(LINE_POINTS), LINE_PENALTY * self.lobes**2
+        pressure, penalty = np.zeros(len(waves)), LINE_PENALTY * self.lobes**2
         for _ in range(LINE_ROUNDS):
-            gap, slope, stiffness = self._gaps(waves, amplitudes, pressure)
+            gap, slope, stiffness = self._gaps(waves, amplitudes, weight * pressure)
             stiffness += np.diag(energy)
             acting = pressure - penalty * gap
             for _ in range(MAX_CHANGES):
                 touching = acting > 0.0
                 pressed = slope[touching]
-                force = pressed.T @ (pressure - penalty * gap)[touching] - energy * amplitudes
-                change = np.linalg.solve(stiffness + penalty * pressed.T @ pressed, force)
+                weighed = pressed.T * weight[touching]
+                force = weighed @ (pressure - penalty * gap)[touching] - energy * amplitudes
+                change = np.linalg.solve(stiffness + penalty * weighed @ pressed, force)
                 acting = pressure - penalty * (gap + slope @ change)
                 if np.array_equal(acting > 0.0, touching):
                     break
@@ -152,16 +156,26 @@ class _RingOnCam:
         derivatives (n, k) by the amplitudes (k,), and the second derivatives (k, k) of their sum
         with the factors -`pressure` (n,).
 
-        waves : (n, k), of the tilt
+        waves : (n, k), of the tilt; over half a lobe the other half is its mirror image
         """
-        theta = 2.0 * np.pi / self.lobes * np.arange(len(waves)) / len(waves)
-        around = np.exp(1j * theta)
-        order = 1.0 + self.lobes * np.fft.fftfreq(len(waves), 1.0 / len(waves))
+        half = len(waves) < LINE_POINTS
+        around = np.exp(2j * np.pi / self.lobes * np.arange(len(waves)) / LINE_POINTS)
+        order = 1.0 + self.lobes * np.fft.fftfreq(LINE_POINTS, 1.0 / LINE_POINTS)
 
         def integral(along: Complex) -> Complex:
-            """Of along exp(i theta), without a mean."""
+            """Of along exp(i theta), without a mean. Terms of a mirror image are real."""
+            if half:
+                terms = np.fft.hfft(along, LINE_POINTS, axis=0) / order[:, None]
+                return -1j * around[:, None] * np.fft.ihfft(terms, axis=0)
             terms = np.fft.fft(along, axis=0) / (1j * order)[:, None]
             return around[:, None] * np.fft.ifft(terms, axis=0)
+
+        def transposed(forces: Complex) -> Complex:
+            """The integral's transpose, of `forces` exp(-i theta)."""
+            if half:
+                terms = np.fft.hfft(np.conj(1j * forces), LINE_POINTS) / LINE_POINTS
+                return -np.fft.rfft(terms / order)
+            return np.fft.fft(np.fft.ifft(forces) / (1j * order))
 
         along = -self.stretched * np.exp(1j * (waves @ amplitudes))[:, None]
         points = integral(along)[:, 0]
@@ -169,13 +183,14 @@ class _RingOnCam:
         normal = xy @ (1.0, 1j)
         gap = distance - (self.radius - self.inner_radius)
         moved = integral(1j * along * waves) * np.conj(normal)[:, None]
-        # the integral's transpose, of the forces
-        back = np.fft.fft(np.fft.ifft(around * np.conj(normal) * pressure) / (1j * order))
-        bent = (back * along[:, 0]).real[:, None]
-        # products of parts of complex numbers are slow
-        along_cam = np.ascontiguousarray(moved.imag)
-        sideways = (hessian * pressure)[:, None] * along_cam
-        curved = waves.T @ (bent * waves) - along_cam.T @ sideways
+        curved = np.zeros((waves.shape[1], waves.shape[1]))
+        if pressure.any():
+            back = transposed(around * np.conj(normal) * pressure)
+            bent = (back * along[:, 0]).real[:, None]
+            # products of parts of complex numbers are slow
+            along_cam = np.ascontiguousarray(moved.imag)
+            sideways = (hessian * pressure)[:, None] * along_cam
+            curved = waves.T @ (bent * waves) - along_cam.T @ sideways
         return gap / self.radius, moved.real / self.radius, curved / self.radius
 
 
