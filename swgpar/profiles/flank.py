@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -192,12 +191,16 @@ class ToothProfile:
         degrees on external teeth, by -90 degrees on internal ones."""
         return 1.0 if self.external else -1.0
 
+    @cached_property
+    def ends(self) -> list[FlankPoints]:
+        """Beginning and end of every segment."""
+        return [segment.at(np.array([0.0, segment.length])) for segment in self.segments]
+
     @property
     def kinks(self) -> Floats:
         """Angles (k - 2,), rad, by which tangents turn counter-clockwise where segments meet."""
-        begins = [float(segment.at(np.zeros(1)).angle[0]) for segment in self.segments]
-        ends = [float(one.at(np.array([one.length])).angle[0]) for one in self.segments]
-        return np.angle(np.exp(1j * np.subtract(begins[1:], ends[:-1])))
+        begin, end = np.array([each.angle for each in self.ends]).T
+        return np.angle(np.exp(1j * (begin[1:] - end[:-1])))
 
     @property
     def has_corners(self) -> bool:
@@ -331,16 +334,18 @@ def check_flank(profile: ToothProfile, *, corners: bool = False) -> None:
 
     corners : whether segments may join with an angle, and tangents be off by `OF_POINTS`
     """
-    for (before, after), kink in zip(pairwise(profile.segments), profile.kinks, strict=True):
-        jump = before.at(np.array([before.length])).point[0] - after.at(np.zeros(1)).point[0]
-        bent = abs(kink) > MISMATCH and not corners
-        if np.hypot(*jump) > MISMATCH * profile.r_tip_circle or bent:
-            raise InputError(f"the {before.name} and {after.name} segments do not join smoothly")
+    begin, end = np.array([each.point for each in profile.ends]).transpose(1, 0, 2)
+    jumps = np.linalg.norm(begin[1:] - end[:-1], axis=1)
+    bent = (np.abs(profile.kinks) > MISMATCH) & (not corners)
+    broken = np.flatnonzero((jumps > MISMATCH * profile.r_tip_circle) | bent)
+    if broken.size:
+        before, after = profile.segments[broken[0] : broken[0] + 2]
+        raise InputError(f"the {before.name} and {after.name} segments do not join smoothly")
     for name, at, circle, radius in (
-        ("tip", 0.0, "addendum", profile.r_tip_circle),
-        ("root", profile.length, "dedendum", profile.r_root_circle),
+        ("tip", begin[0], "addendum", profile.r_tip_circle),
+        ("root", end[-1], "dedendum", profile.r_root_circle),
     ):
-        reached = float(np.hypot(*profile.point(at)[0]))
+        reached = float(np.hypot(*at))
         if abs(reached - radius) > MISMATCH * profile.r_tip_circle:
             raise InputError(
                 f"the {name} end has the radius {reached:.10g} mm, that of the {circle} circle is "
