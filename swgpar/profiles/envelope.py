@@ -154,7 +154,8 @@ class Envelope:
         for _ in range(12):
             step = contacts.value / contacts.slope
             contacts = self.contacts(segment, s, contacts.psi - step)
-            if not np.nanmax(np.abs(step), initial=0.0) > 1e-13:
+            # the next change would be its square
+            if not np.nanmax(np.abs(step), initial=0.0) > 1e-8:
                 break
         return contacts
 
@@ -221,23 +222,21 @@ class Envelope:
         near the angle `start`; NaN from where the envelope has a cusp or ends."""
         psi_of, index = np.full(len(s), np.nan), self._segment_of(s)
         before, rate = start, 0.0
-        # the first station of a group gives the rate by which the others begin
-        firsts = np.flatnonzero(np.diff(index, prepend=-1) | (np.arange(len(s)) % GROUP == 0))
+        # the first station of a segment gives the rate by which its others begin
+        begins = np.diff(index, prepend=-1) != 0
+        alone = begins | np.roll(begins, 1)
+        firsts = np.flatnonzero(alone | (np.arange(len(s)) % GROUP == 0))
         for first, end in zip(firsts, np.append(firsts[1:], len(s)), strict=True):
-            for stations in (slice(first, first + 1), slice(first + 1, end)):
-                local = s[stations] - self.given.breaks[index[first]]
-                if not local.size:
-                    continue
-                away = s[stations] - s[max(stations.start - 1, 0)]
-                segment = self.given.segments[index[first]]
-                contacts = self.solved(segment, local, before + rate * away)
-                change = np.abs(np.diff(contacts.psi, prepend=before))
-                good = (contacts.speed > 0.0) & (change < np.radians(5.0))
-                count = len(good) if good.all() else int(np.argmin(good))
-                psi_of[stations][:count] = contacts.psi[:count]
-                if count < len(good):
-                    return psi_of
-                before, rate = float(contacts.psi[-1]), float(contacts.psi_rate[-1])
+            segment, begin = self.given.segments[index[first]], self.given.breaks[index[first]]
+            away = s[first:end] - s[max(first - 1, 0)]
+            contacts = self.solved(segment, s[first:end] - begin, before + rate * away)
+            change = np.abs(np.diff(contacts.psi, prepend=before))
+            good = (contacts.speed > 0.0) & (change < np.radians(5.0))
+            count = len(good) if good.all() else int(np.argmin(good))
+            psi_of[first : first + count] = contacts.psi[:count]
+            if count < len(good):
+                break
+            before, rate = float(contacts.psi[-1]), float(contacts.psi_rate[-1])
         return psi_of
 
     def point(self, s: float) -> tuple[complex, float]:
