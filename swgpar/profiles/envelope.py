@@ -140,8 +140,9 @@ class Envelope:
 
     def places(self, s: Floats, pose: Pose) -> Complex:
         """The same points at each of m positions, (m, n)."""
-        turn = pose.turn[:, None]
-        return self._placed(pose.c[:, None] + turn * self._moving(s))
+        moving = self._moving(s)
+        arm = np.conj(moving) if self.given.external else moving  # as `_placed` mirrors it
+        return self._placed(pose.c)[:, None] + self._placed(pose.turn)[:, None] * arm
 
     def _moving(self, s: Floats) -> Complex:
         """Points x + i y (n,), mm, of the given flank in the moving frame."""

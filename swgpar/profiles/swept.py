@@ -255,8 +255,9 @@ class SweptArea:
         about at the boundary."""
         given, reach = self.envelope.given, REACH / self.envelope.motion.line.lobes
         s = np.concatenate([np.linspace(*ends, PLACES)[:-1] for ends in pairwise(given.breaks)])
-        along = np.abs(np.einsum("ij,ij->i", given.tangent(s), given.point(s)))
-        s = s[along > STEEP * np.hypot(*given.point(s).T)]
+        at = given.at(s)
+        along = (np.exp(-1j * at.angle) * (at.point @ (1.0, 1j))).real
+        s = s[np.abs(along) > STEEP * np.hypot(*at.point.T)]
         psi = np.linspace(-reach, reach, POSITIONS)
         sign = -given.sign
         points = self.envelope.places(s, self.envelope.pose(psi))
@@ -272,15 +273,17 @@ class SweptArea:
         radius, angle = np.abs(points), clockwise_from_y(points)
         radii = np.linspace(self.tip, farthest, RADII)
         order = slice(None) if radius[0, 0] < radius[0, -1] else slice(None, None, -1)
-        angles, places = np.empty((len(psi), RADII)), np.empty(RADII)
+        radius, angle, s = radius[:, order], angle[:, order], s[order]
+        angles = np.empty((len(psi), RADII))
         for k in range(len(psi)):
-            beyond = {"left": np.inf, "right": np.inf}
-            angles[k] = np.interp(radii, radius[k, order], angle[k, order], **beyond)
+            angles[k] = np.interp(radii, radius[k], angle[k], left=np.inf, right=np.inf)
         least = angles.argmin(axis=0)
-        for k in np.unique(least):
-            here = least == k
-            places[here] = np.interp(radii[here], radius[k, order], s[order])
-        return radii, places, psi[least]
+        # the samples beside each radius, at the position with the least angle
+        below = np.count_nonzero(radius[least] <= radii[:, None], axis=1) - 1
+        below = np.clip(below, 0, len(s) - 2)
+        low, high = radius[least, below], radius[least, below + 1]
+        share = np.clip((radii - low) / (high - low), 0.0, 1.0)
+        return radii, s[below] + share * (s[below + 1] - s[below]), psi[least]
 
     def _runs(self) -> list[_Run]:
         """What is on the boundary, from tip to root."""
