@@ -58,9 +58,7 @@ class Pose(NamedTuple):
         psi."""
         turn = np.exp(1j * angle)
         c, c1, c2, own, angle1, angle2, own_turn = self
-        return Pose(
-            turn * c, turn * c1, turn * c2, own + angle, angle1, angle2, turn * own_turn
-        )
+        return Pose(turn * c, turn * c1, turn * c2, own + angle, angle1, angle2, turn * own_turn)
 
     def moved(self, points: np.ndarray) -> np.ndarray:
         """Points of the moving frame (n,) complex, mm, in the fixed one."""
