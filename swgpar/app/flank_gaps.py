@@ -8,7 +8,7 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GearName
-from swgpar.geometry.arrays import Floats
+from swgpar.geometry.arrays import Floats, as_points
 from swgpar.presentation.body_curves import moved_points, tooth_angles
 from swgpar.profiles.mesh_gap import outline
 
@@ -57,7 +57,7 @@ def flank_gaps(
         distance[looked] = ring.distance(ring.folded(moved[looked] * to_tooth)[0]).distance
         tooth = np.flatnonzero(distance.min(axis=1) < near)
         nearest = distance[tooth].argmin(axis=1)
-        both = np.column_stack([points.real, points.imag])
+        both = as_points(points)
         places = moved_points(motion.line, psi[tooth], both, cam_angle)
         index = np.arange(len(tooth))
         found.append((tooth, places[index, nearest], distance[tooth, nearest]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.geometry.arrays import Floats
+from swgpar.geometry.arrays import Floats, as_points
 from swgpar.geometry.cams import Cam, cam_outlines
 from swgpar.geometry.neutral_line import NeutralLine
 from swgpar.geometry.rotation import rotated
@@ -32,7 +32,7 @@ def moved_points(line: NeutralLine, psi: Floats, points: Floats, cam_angle: floa
     """Points (k, 2) mm of the undeformed spline at the angle 0, after every rotation by one of the
     angles psi (n,) rad, and the deflection; (n, k, 2)."""
     place = line.position(psi)
-    middle = np.column_stack([place.real, place.imag])
+    middle = as_points(place)
     turned = rotated((points - [0.0, line.radius])[None], (psi + line.tilt(psi)[0])[:, None])
     return rotated(middle[:, None] + turned, cam_angle)
 

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 import scipy
 
-from swgpar.geometry.arrays import Complex, Floats
+from swgpar.geometry.arrays import Complex, Floats, as_points
 from swgpar.geometry.rotation import rotated
 from swgpar.profiles.flank import FlankPoints, NearestPoints
 
@@ -47,7 +47,7 @@ def points_of(z: Complex, first: Complex, second: Complex) -> CurvePoints:
     """Points of a curve x + i y : (n,) mm with its first and second derivatives by t."""
     speed = np.abs(first)
     return CurvePoints(
-        np.stack((z.real, z.imag), axis=-1),
+        as_points(z),
         np.angle(first),
         speed,
         (np.conj(first) * second).imag / speed**2,

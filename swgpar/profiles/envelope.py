@@ -20,7 +20,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from swgpar.geometry.arrays import Complex, Floats
+from swgpar.geometry.arrays import Complex, Floats, as_complex, as_points
 from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints
 from swgpar.profiles.fitted_curve import fitted
 from swgpar.profiles.flank import FlankSegment, Segment, ToothProfile
@@ -102,7 +102,7 @@ class Envelope:
         """State of the points `s` (n,) mm of a segment of the given flank, at the angles psi (n,)
         rad."""
         point, phi, kappa = segment.at(s)
-        z = point @ (1.0, 1j)
+        z = as_complex(point)
         half_pitch = np.pi / self.motion.teeth_rg
         if not self.given.external:
             z, phi, kappa = self.motion.mirrored(z), np.pi - phi - half_pitch, -kappa
@@ -146,7 +146,7 @@ class Envelope:
 
     def _moving(self, s: Floats) -> Complex:
         """Points x + i y (n,), mm, of the given flank in the moving frame."""
-        point = self.given.point(s) @ (1.0, 1j)
+        point = as_complex(self.given.point(s))
         return point if self.given.external else self.motion.mirrored(point)
 
     def solved(self, segment: FlankSegment, s: Floats, psi: Floats) -> Contacts:
@@ -259,7 +259,7 @@ class Envelope:
             # without Newton's method points move along the envelope, by 1e-9 of its length, with a
             # kink at every station
             contacts = self.solved(segment, s, psi(s))
-            point, span = np.stack((contacts.point.real, contacts.point.imag), axis=-1), low - high
+            point, span = as_points(contacts.point), low - high
             return CurvePoints(
                 point, contacts.angle, np.abs(span * contacts.speed), span * contacts.angle_rate
             )

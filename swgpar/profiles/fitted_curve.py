@@ -9,7 +9,7 @@ from functools import cache, cached_property
 import numpy as np
 import scipy
 
-from swgpar.geometry.arrays import Floats
+from swgpar.geometry.arrays import Floats, as_complex
 from swgpar.profiles.curved_segment import (
     DEGREE,
     CurvedSegment,
@@ -106,7 +106,7 @@ def fitted(curve: CurvedSegment) -> CurvedSegment:
         exact = curve.evaluate(splines.between)
         value, slope = splines.values
         middle = points[intervals // 2]
-        tangent = np.exp(-1j * exact.angle) * (slope @ (points - middle) @ (1.0, 1j))
+        tangent = np.exp(-1j * exact.angle) * as_complex(slope @ (points - middle))
         distance = np.linalg.norm(value @ (points - middle) + middle - exact.point, axis=1).max()
         turned = np.abs(np.angle(tangent)).max()
         if distance < CLOSE * float(exact.speed.mean()) and turned < TURNED:

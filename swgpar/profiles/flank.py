@@ -226,8 +226,11 @@ class ToothProfile:
         """Return points, angles and curvatures at the arc lengths `s` : (n,) mm, in less time than
         each of them alone; curvatures are changes of the angle."""
         s, index, local = self._split(s)
+        every = np.flatnonzero(np.bincount(index))
+        if len(every) == 1:
+            return self.segments[every[0]].at(local)
         found = FlankPoints(np.empty((s.size, 2)), np.empty(s.size), np.empty(s.size))
-        for k in np.flatnonzero(np.bincount(index)):
+        for k in every:
             inside = index == k
             for values, each in zip(found, self.segments[k].at(local[inside]), strict=True):
                 values[inside] = each

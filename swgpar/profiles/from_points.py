@@ -17,7 +17,7 @@ import scipy
 from numpy.typing import NDArray
 
 from swgpar.errors import InputError
-from swgpar.geometry.arrays import Complex, Floats
+from swgpar.geometry.arrays import Complex, Floats, as_points
 from swgpar.input.quantities import show
 from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints, points_of
 from swgpar.profiles.flank import ToothProfile
@@ -303,5 +303,5 @@ def _with_root(piece: _Piece, teeth: Teeth, name: str) -> list[_Piece]:
 def _farthest(piece: _Piece, points: Complex) -> float:
     """Largest distance of points x + i y (n,) from a part, mm."""
     segment = CurvedSegment("flank", piece.evaluate)
-    xy = np.column_stack([points.real, points.imag])
+    xy = as_points(points)
     return float(np.linalg.norm(segment.nearest(xy).point - xy, axis=1).max())

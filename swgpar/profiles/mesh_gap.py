@@ -16,7 +16,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from swgpar.geometry.arrays import Complex, Floats
+from swgpar.geometry.arrays import Complex, Floats, as_complex, as_points
 from swgpar.profiles.flank import FlankSegment, Segment, ToothProfile
 from swgpar.profiles.tooth_motion import Pose, ToothMotion
 
@@ -79,7 +79,7 @@ class Outline:
 
     @cached_property
     def _tree(self) -> scipy.spatial.cKDTree:
-        xy = np.column_stack([self.point.real, self.point.imag])
+        xy = as_points(self.point)
         return scipy.spatial.cKDTree(xy, leafsize=LEAF, compact_nodes=False)
 
     @cached_property
@@ -92,7 +92,7 @@ class Outline:
 
     def distance(self, points: Complex) -> Feet:
         """Distance of points x + i y (n,), mm, from the samples."""
-        xy = np.column_stack([points.real, points.imag])
+        xy = as_points(points)
         apart, nearest = self._tree.query(xy)
         before, after = self._neighbours[0][nearest], self._neighbours[1][nearest]
         distance, along = self._to_circle(points, after)
@@ -156,7 +156,7 @@ def outline(profile: ToothProfile) -> Outline:
         external=profile.external,
         pitch=2.0 * np.pi / profile.n_teeth,
         place=np.concatenate([begin + s for begin, s in zip(begins, local, strict=True)]),
-        point=np.concatenate([each.point for each in at]) @ (1.0, 1j),
+        point=as_complex(np.concatenate([each.point for each in at])),
         normal=profile.sign * 1j * np.exp(1j * angle),
         curvature=profile.sign * np.concatenate([each.curvature for each in at]),
         flank=slice(LAND_STEPS + 1, -LAND_STEPS - 1),

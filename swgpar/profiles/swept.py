@@ -18,7 +18,7 @@ import numpy as np
 import scipy
 
 from swgpar.errors import InputError
-from swgpar.geometry.arrays import Floats
+from swgpar.geometry.arrays import Floats, as_complex, as_points
 from swgpar.geometry.bracketed_root import root_between
 from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints, points_of
 from swgpar.profiles.envelope import REACH, Contacts, Envelope
@@ -151,7 +151,7 @@ class _SegmentEnvelope:
             radius = first + span * t
             s, psi, _ = self._solved(radius, s_of(radius), psi_of(radius))
             contacts, outwards, square = self._contacts(s, psi)
-            point = np.stack((contacts.point.real, contacts.point.imag), axis=-1)
+            point = as_points(contacts.point)
             turning = contacts.turning / (square * outwards)
             return CurvePoints(point, contacts.angle, np.abs(span / outwards), span * turning)
 
@@ -256,7 +256,7 @@ class SweptArea:
         given, reach = self.envelope.given, REACH / self.envelope.motion.line.lobes
         s = np.concatenate([np.linspace(*ends, PLACES)[:-1] for ends in pairwise(given.breaks)])
         at = given.at(s)
-        along = (np.exp(-1j * at.angle) * (at.point @ (1.0, 1j))).real
+        along = (np.exp(-1j * at.angle) * as_complex(at.point)).real
         s = s[np.abs(along) > STEEP * np.hypot(*at.point.T)]
         psi = np.linspace(-reach, reach, POSITIONS)
         sign = -given.sign

@@ -16,7 +16,7 @@ from functools import lru_cache
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.geometry.arrays import Floats
+from swgpar.geometry.arrays import Floats, as_complex, as_points
 from swgpar.geometry.bracketed_root import root_between
 from swgpar.input.require import require
 from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints
@@ -33,7 +33,7 @@ def _turned(segment: FlankSegment, end: float, turn: float, base: float) -> Curv
 
     def evaluate(t: Floats) -> CurvePoints:
         point, angle, curvature = segment.at(end * t)
-        z, tangent = point @ (1.0, 1j), np.exp(1j * angle)
+        z, tangent = as_complex(point), np.exp(1j * angle)
         r = np.abs(z)
         # derivatives by arc length of the radius and of the angle of rotation
         slope = (np.conj(z) * tangent).real / r
@@ -47,7 +47,7 @@ def _turned(segment: FlankSegment, end: float, turn: float, base: float) -> Curv
         growth = (1j * change * z + rate * (1j * tangent + curvature * z)) / tangent
         turned = z * np.exp(1j * delta)
         return CurvePoints(
-            np.stack((turned.real, turned.imag), axis=-1),
+            as_points(turned),
             angle + delta + np.angle(stretch),
             end * np.abs(stretch),
             end * (curvature + rate + (growth / stretch).imag),

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 import scipy
 
+from swgpar.geometry.arrays import as_complex
 from swgpar.geometry.cams.arcs import arcs
 from swgpar.geometry.cams.bearing_keys import Bearing
 from swgpar.geometry.cams.curve import Cam
@@ -97,7 +98,7 @@ STRAIGHT = 1e-9
 def taut_length(cam: Cam, n: int = 7200) -> float:
     """Length of a band drawn tight around the cam, mm: the perimeter of its convex hull."""
     outline = cam.outline(n)
-    side = np.diff(outline, axis=0, append=outline[:1]) @ (1.0, 1j)
+    side = as_complex(np.diff(outline, axis=0, append=outline[:1]))
     turned = np.angle(np.roll(side, -1) / side)
     turned *= np.sign(turned.sum())
     if (turned > -STRAIGHT).all() and turned.sum() < 3.0 * np.pi:  # it is its own hull
