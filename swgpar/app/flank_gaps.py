@@ -45,7 +45,9 @@ def flank_gaps(
     spline, ring = (outline(design.profile(one)) for one in ("flexible_spline", gear))
     motion = design.tooth_motion(ring=gear)
     psi = tooth_angles(design.tooth_motion(), cam_angle)
-    pose, near = motion.pose(psi), NEAR * design.drive.module
+    # teeth have the same gaps at all lobes, where these are whole pitches apart
+    alike = motion.line.lobes if motion.teeth_fs % motion.line.lobes == 0 else 1
+    pose, near = motion.pose(psi[: len(psi) // alike]), NEAR * design.drive.module
     flank = spline.point[spline.flank][::STRIDE]
     to_tooth = np.exp(1j * np.pi / motion.teeth_rg)
     found = []
@@ -55,6 +57,7 @@ def flank_gaps(
         looked = np.abs(moved) > np.abs(ring.point).min() - near
         distance = np.full(moved.shape, np.inf)
         distance[looked] = ring.distance(ring.folded(moved[looked] * to_tooth)[0]).distance
+        distance = np.tile(distance, (alike, 1))
         tooth = np.flatnonzero(distance.min(axis=1) < near)
         nearest = distance[tooth].argmin(axis=1)
         both = as_points(points)
