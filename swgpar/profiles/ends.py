@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NoReturn
 
 import numpy as np
 
 from swgpar.errors import InputError
+from swgpar.geometry.arrays import Floats
 from swgpar.geometry.bracketed_root import root_between
 from swgpar.profiles.flank import FlankSegment, Segment, ToothProfile
 
@@ -70,6 +72,13 @@ class _Ends:
         at = self.curve.at(s)
         return complex(*at.point[0]), complex(*self.curve.normals(at.angle)[0])
 
+    @cached_property
+    def _samples(self) -> tuple[Floats, Floats, Floats]:
+        """Arc lengths (n,) mm, points and unit normals (n, 2) of the curve."""
+        s = np.unique(np.append(np.linspace(0.0, self.curve.length, SAMPLES), self.curve.breaks))
+        at = self.curve.at(s)
+        return s, at.point, self.curve.normals(at.angle)
+
     def above(self, s: float, offset: float, radius: float) -> float:
         """How far (mm) towards the tip the point `offset` mm along the normal lies from the circle
         of `radius`, mm."""
@@ -79,10 +88,8 @@ class _Ends:
     def passing(self, offset: float, radius: float) -> float | None:
         """First arc length, mm, at which that point passes the circle towards the root; None where
         it never does."""
-        s = np.unique(np.append(np.linspace(0.0, self.curve.length, SAMPLES), self.curve.breaks))
-        at = self.curve.at(s)
-        places = at.point + offset * self.curve.normals(at.angle)
-        above = self.curve.sign * (np.hypot(*places.T) - radius)
+        s, points, normals = self._samples
+        above = self.curve.sign * (np.hypot(*(points + offset * normals).T) - radius)
         if abs(above[0]) < SAME * self.module:
             return 0.0
         passed = np.flatnonzero((above[:-1] > 0.0) & (above[1:] <= 0.0))

@@ -106,13 +106,13 @@ class Envelope:
         half_pitch = np.pi / self.motion.teeth_rg
         if not self.given.external:
             z, phi, kappa = self.motion.mirrored(z), np.pi - phi - half_pitch, -kappa
-        pose, tangent = self.pose(psi), np.exp(1j * phi)
-        back = np.conj(pose.turn)
-        v = back * pose.c1 + 1j * pose.angle1 * z
-        along = (np.conj(tangent) * v).real
-        value = (np.conj(1j * tangent) * v).real
-        change = back * (pose.c2 - 1j * pose.angle1 * pose.c1) + 1j * pose.angle2 * z
-        slope = (np.conj(1j * tangent) * change).real
+        pose, back = self.pose(psi), np.exp(-1j * phi)
+        unturned = np.conj(pose.turn)
+        # along the flank, and across it
+        velocity = back * (unturned * pose.c1 + 1j * pose.angle1 * z)
+        along, value = velocity.real, velocity.imag
+        change = unturned * (pose.c2 - 1j * pose.angle1 * pose.c1) + 1j * pose.angle2 * z
+        slope = (back * change).imag
         bend = pose.angle1 - kappa * along
         turning = kappa * slope - pose.angle1 * bend
         angle = phi + pose.angle + np.pi
