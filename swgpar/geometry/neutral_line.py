@@ -134,12 +134,12 @@ class _RingOnCam:
             gap, slope, stiffness = self._gaps(waves, amplitudes, weight * pressure)
             stiffness += np.diag(energy)
             acting = pressure - penalty * gap
+            rows, forces = np.sqrt(weight)[:, None] * slope, np.sqrt(weight) * acting
             for _ in range(MAX_CHANGES):
                 touching = acting > 0.0
-                pressed = slope[touching]
-                weighed = pressed.T * weight[touching]
-                force = weighed @ (pressure - penalty * gap)[touching] - energy * amplitudes
-                change = np.linalg.solve(stiffness + penalty * weighed @ pressed, force)
+                pressed = rows[touching]
+                force = pressed.T @ forces[touching] - energy * amplitudes
+                change = np.linalg.solve(stiffness + penalty * (pressed.T @ pressed), force)
                 acting = pressure - penalty * (gap + slope @ change)
                 if np.array_equal(acting > 0.0, touching):
                     break
