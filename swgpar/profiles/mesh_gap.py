@@ -27,8 +27,8 @@ ANGLES, STRIDE = 181, 64
 """Intervals of the angle between minor axes, and samples in an interval of the outline, at the
 first level of the search."""
 
-DIVISION, LEVELS = 4, 5
-"""Parts into which both are divided from level to level, and number of levels."""
+DIVISION, LEVELS = 4, 8
+"""Parts into which the one or the other is divided from level to level, and number of levels."""
 
 SHIFTS = np.arange(DIVISION) - 0.5 * (DIVISION - 1)
 """Middles of these parts, in parts from the middle of the interval."""
@@ -278,7 +278,7 @@ class OutlinePair:
         kept = self._reaching(psi, first, stride, step, below)
         psi, first = psi[kept], first[kept]
         nearest = NearestPlace(np.inf, 0.0, "", "")
-        for _ in range(LEVELS):
+        for level in range(LEVELS):
             if not psi.size:
                 break
             angles, index = np.unique(psi, return_inverse=True)
@@ -293,11 +293,14 @@ class OutlinePair:
                     self.ring.part(intervals.feet.sample[k]),
                 )
             kept = self._lowest(intervals, step) < min(nearest.distance, below)
-            step /= DIVISION
-            psi = (psi[kept][:, None] + step * SHIFTS).ravel()
-            first = np.repeat(first[kept], DIVISION)
-            psi, first = self._divided(psi, first, stride)
-            stride = max(stride // DIVISION, 1)
+            psi, first = psi[kept], first[kept]
+            if level % 2 == 0 and stride > 1:
+                psi, first = self._divided(psi, first, stride)
+                stride //= DIVISION
+            else:
+                step /= DIVISION
+                psi = (psi[:, None] + step * SHIFTS).ravel()
+                first = np.repeat(first, DIVISION)
         return nearest
 
     def _reaching(
