@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial.chebyshev import chebpts1, chebvander
+from numpy.polynomial.chebyshev import chebpts2, chebvander
 
 from swgpar.contact.flank_curve import has_a_joint
 from swgpar.geometry.micro_geometry import crowning
@@ -19,13 +19,13 @@ PER_DIRECTION = 9
 elements are 0.02 to 0.06 micrometres off: where they nearly conform that is a multiple of the
 pressure (docs/verification/error_sources_plane.md)."""
 
-SAMPLES = 0.5 + 0.5 * chebpts1(PER_DIRECTION)
+SAMPLES = 0.5 + 0.5 * chebpts2(PER_DIRECTION)
 """Their positions in [0, 1]; the surface is interpolated by polynomials."""
 
 OF_SAMPLES = np.linalg.inv(chebvander(1.0 - 2.0 * SAMPLES, len(SAMPLES) - 1))
 """Chebyshev coefficients (n, n) of the polynomials that are one at one of `SAMPLES`."""
 
-AT_JOINTS = 0.5 + 0.5 * chebpts1(5)
+AT_JOINTS = 0.5 + 0.5 * chebpts2(5)
 """Samples along the profile of faces with a joint of it inside: with more of them the polynomial
 swings about a curvature that jumps."""
 

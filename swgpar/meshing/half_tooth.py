@@ -39,6 +39,11 @@ SHORTEST_EDGE = 0.045
 starts have 0.048 and more. With an element on edges of 0.042, teeth that jump over stop at their
 tips: their ratcheting run finds no equilibrium behind its peak."""
 
+SHORT = 0.5
+"""Length of a segment of the flank over that of equal elements, below which its element is one more
+than asked for: S-shaped teeth have up to three such segments, and of six elements one was left for
+half of the flank (docs/verification/error_sources_plane.md)."""
+
 LOWEST_CAP = 0.5
 """Largest part of the height from J to K that the cap takes: the core needs the rest."""
 
@@ -55,14 +60,25 @@ def stations(profile: ToothProfile, first: float, last: float, n: int) -> Floats
 
     The ends of segments are among them where elements suffice; else the distances are equal.
     """
-    margin = 1e-9 * profile.length
-    breaks = profile.breaks[(profile.breaks > first + margin) & (profile.breaks < last - margin)]
-    ends = np.concatenate(([first], breaks, [last]))
+    ends = _ends(profile, first, last)
     if n < len(ends) - 1:
         return first + (last - first) * even(n)
     counts = share(n, np.diff(ends))
     parts = [a + (b - a) * even(k)[1:] for a, b, k in zip(ends[:-1], ends[1:], counts, strict=True)]
     return np.concatenate(([first], *parts))
+
+
+def _ends(profile: ToothProfile, first: float, last: float) -> Floats:
+    """Arc lengths (n,) mm of the ends of segments from `first` to `last`, these included."""
+    margin = 1e-9 * profile.length
+    breaks = profile.breaks[(profile.breaks > first + margin) & (profile.breaks < last - margin)]
+    return np.concatenate(([first], breaks, [last]))
+
+
+def with_short_segments(profile: ToothProfile, first: float, last: float, n: int) -> int:
+    """Elements between two arc lengths (mm), of which n were asked for: one more for each segment
+    that is `SHORT`."""
+    return n + int(np.sum(np.diff(_ends(profile, first, last)) < SHORT * (last - first) / n))
 
 
 def inclination(profile: ToothProfile, s: Floats) -> Floats:
@@ -142,10 +158,10 @@ class HalfTooth:
         profile, count, s_q = self.profile, self.recipe.flank, float(s_root[0])
         begin = profile.root_start
         if not (self.recipe.even_root and s_k < begin < s_q and len(s_root) > 1 and count > 1):
-            return stations(profile, s_k, s_q, count)
+            return stations(profile, s_k, s_q, with_short_segments(profile, s_k, s_q, count))
         arc = math.ceil((s_q - begin) / (s_root[1] - s_root[0]) * (1.0 - 1e-9))
         arc = min(arc, count // 2)
-        above = stations(profile, s_k, begin, count - arc)
+        above = stations(profile, s_k, begin, with_short_segments(profile, s_k, begin, count - arc))
         return np.concatenate((above, begin + (s_q - begin) * even(arc)[1:]))
 
     def blocks(self) -> list[Sides]:
