@@ -78,7 +78,8 @@ def _ends(profile: ToothProfile, first: float, last: float) -> Floats:
 def with_short_segments(profile: ToothProfile, first: float, last: float, n: int) -> int:
     """Elements between two arc lengths (mm), of which n were asked for: one more for each segment
     that is `SHORT`."""
-    return n + int(np.sum(np.diff(_ends(profile, first, last)) < SHORT * (last - first) / n))
+    lengths = np.diff(_ends(profile, first, last))
+    return n + int(np.sum(lengths < SHORT * (last - first) / n)) if n >= len(lengths) else n
 
 
 def inclination(profile: ToothProfile, s: Floats) -> Floats:
