@@ -207,9 +207,19 @@ class HalfTooth:
         # the core)
         t = ((self.s_side - self.s_side[0]) / (self.s_side[-1] - self.s_side[0]))[:, None]
         parallel = side + (1.0 - t) * (i - k) + t * (j - q)
-        inner = 0.5 * parallel + 0.5 * (i + t * (j - i))
+        straight = i + t * (j - i)
+        inner = straight + 0.5 * self._follows(t) * (parallel - straight)
         height = inner[:, 1] + ((1.0 - t) * (a - i) + t * (w - j))[:, 1]
         return inner, np.stack((np.zeros_like(height), height), axis=-1)
+
+    def _follows(self, t: Floats) -> Floats:
+        """How far the inner line follows the flank's shape at shares t (n, 1) of its length. Along
+        a rounded edge below which there is no cap it begins straight: the edge begins as the top
+        land ends, and an inner line like it would fold the core."""
+        first = self.profile.segments[0]
+        if self.s_side[0] > 0.0 or first.name != "tip":
+            return np.ones_like(t)
+        return np.minimum(t * (self.s_side[-1] / first.length), 1.0)
 
     def _root_bottom(self, theta_b: float) -> tuple[Floats, Floats]:
         """Polar angles (n,) rad and nodes (n, 2) mm on the interface circle from B to E'."""
