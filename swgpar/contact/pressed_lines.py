@@ -23,6 +23,19 @@ ROUND_OFF = 1e-9
 
 
 @dataclass(frozen=True)
+class Strips:
+    """Equal strips across a contact.
+
+    first, width : mm, arc length at which the first one begins, and length of each
+    pressure : (n,) MPa, means
+    """
+
+    first: float
+    width: float
+    pressure: np.ndarray
+
+
+@dataclass(frozen=True)
 class PressedLine:
     """The cells that carry on a line of contact.
 
@@ -87,20 +100,36 @@ class PressedLine:
         low, high, pressure = (each[cells] for each in (self.low, self.high, self.pressure))
         return replace(self, low=low, high=high, pressure=pressure)
 
-    def strips(self, number: int) -> np.ndarray:
-        """Mean pressures (number,) MPa on equal strips between the ends of the contact."""
-        ends = np.linspace(self.low[0], self.high[-1], number + 1)
+    def strips(self, number: int) -> Strips:
+        """Equal strips that cover the contact, one less than their number as long as it, with the
+        largest mean pressure that a strip has anywhere: where the pressure has a peak as narrow as
+        they are, its place among fixed strips would decide."""
+        begin, end = float(self.low[0]), float(self.high[-1])
+        width = (end - begin) / (number - 1)
         places = np.column_stack([self.low, self.high]).ravel()
         steps = np.zeros(len(places))
         steps[1::2] = self.pressure * (self.high - self.low)
-        return np.diff(np.interp(ends, places, np.cumsum(steps))) / np.diff(ends)
+        load = np.cumsum(steps)
+        # the load of a strip is piecewise linear in its place
+        starts = np.concatenate([places, places - width])
+        top = float(starts[_loads(starts, width, places, load).argmax()])
+        first = top - width * np.ceil((top - begin) / width)
+        every = _loads(first + width * np.arange(number), width, places, load)
+        return Strips(float(first), width, every / width)
 
     @property
     def has_narrow_peak(self) -> bool:
         """Whether the pressure has a peak that is not much wider than the cells, as where the
         curvature of flanks that nearly conform jumps."""
-        contact = self.contact
-        return bool(contact.strips(2 * WIDE).max() > (1.0 + PEAKED) * contact.strips(WIDE).max())
+        narrow, wide = (self.contact.strips(number).pressure for number in (2 * WIDE, WIDE))
+        return bool(narrow.max() > (1.0 + PEAKED) * wide.max())
+
+
+def _loads(starts: np.ndarray, width: float, places: np.ndarray, load: np.ndarray) -> np.ndarray:
+    """Line loads (n,) N/mm of strips from `starts` (n,) mm on. load : (m,) N/mm up to each of the
+    places (m,) mm, linear between them"""
+    up_to: np.ndarray = np.interp(starts + width, places, load) - np.interp(starts, places, load)
+    return up_to
 
 
 def _rises(pressure: np.ndarray, gaps: np.ndarray) -> bool:
