@@ -23,19 +23,6 @@ ROUND_OFF = 1e-9
 
 
 @dataclass(frozen=True)
-class Strips:
-    """Equal strips across a contact.
-
-    first, width : mm, arc length at which the first one begins, and length of each
-    pressure : (n,) MPa, means
-    """
-
-    first: float
-    width: float
-    pressure: np.ndarray
-
-
-@dataclass(frozen=True)
 class PressedLine:
     """The cells that carry on a line of contact.
 
@@ -100,36 +87,34 @@ class PressedLine:
         low, high, pressure = (each[cells] for each in (self.low, self.high, self.pressure))
         return replace(self, low=low, high=high, pressure=pressure)
 
-    def strips(self, number: int) -> Strips:
-        """Equal strips that cover the contact, one less than their number as long as it, with the
-        largest mean pressure that a strip has anywhere: where the pressure has a peak as narrow as
-        they are, its place among fixed strips would decide."""
-        begin, end = float(self.low[0]), float(self.high[-1])
-        width = (end - begin) / (number - 1)
+    def strips(self, number: int) -> np.ndarray:
+        """Mean pressures (number,) MPa on equal strips between the ends of the contact."""
+        ends = np.linspace(self.low[0], self.high[-1], number + 1)
+        return np.diff(self._load_up_to(ends)) / np.diff(ends)
+
+    def largest_mean(self, number: int) -> float:
+        """Largest mean pressure (MPa) on a strip of the contact, of which `number` are as long as
+        it. Of a peak as narrow as a strip those at fixed places would have more or less."""
+        width = (self.high[-1] - self.low[0]) / number
+        # the load of a strip is linear in its place between those where an end meets a cell's
+        ends = np.concatenate([self.low, self.high])
+        starts = np.concatenate([ends, ends - width])
+        return float((self._load_up_to(starts + width) - self._load_up_to(starts)).max() / width)
+
+    def _load_up_to(self, s: np.ndarray) -> np.ndarray:
+        """Line load (n,) N/mm of the cells up to arc lengths s (n,) mm."""
         places = np.column_stack([self.low, self.high]).ravel()
         steps = np.zeros(len(places))
         steps[1::2] = self.pressure * (self.high - self.low)
-        load = np.cumsum(steps)
-        # the load of a strip is piecewise linear in its place
-        starts = np.concatenate([places, places - width])
-        top = float(starts[_loads(starts, width, places, load).argmax()])
-        first = top - width * np.ceil((top - begin) / width)
-        every = _loads(first + width * np.arange(number), width, places, load)
-        return Strips(float(first), width, every / width)
+        load: np.ndarray = np.interp(s, places, np.cumsum(steps))
+        return load
 
     @property
     def has_narrow_peak(self) -> bool:
         """Whether the pressure has a peak that is not much wider than the cells, as where the
         curvature of flanks that nearly conform jumps."""
-        narrow, wide = (self.contact.strips(number).pressure for number in (2 * WIDE, WIDE))
-        return bool(narrow.max() > (1.0 + PEAKED) * wide.max())
-
-
-def _loads(starts: np.ndarray, width: float, places: np.ndarray, load: np.ndarray) -> np.ndarray:
-    """Line loads (n,) N/mm of strips from `starts` (n,) mm on. load : (m,) N/mm up to each of the
-    places (m,) mm, linear between them"""
-    up_to: np.ndarray = np.interp(starts + width, places, load) - np.interp(starts, places, load)
-    return up_to
+        contact = self.contact
+        return contact.largest_mean(2 * WIDE) > (1.0 + PEAKED) * contact.largest_mean(WIDE)
 
 
 def _rises(pressure: np.ndarray, gaps: np.ndarray) -> bool:

@@ -48,18 +48,18 @@ def line_station(line: PressedLine, strips: int) -> ContactStation:
     The largest pressure is that on strips of the contact which has it: those of the line are wide
     where it has two contacts far apart.
     """
-    contact, drawn = line.contact, line.strips(strips)
+    contact, width = line.contact, (line.high[-1] - line.low[0]) / strips
     low, high = contact.ends
     return ContactStation(
         z_mm=line.z,
         line_load_Nmm=line.line_load,
         s_mm=0.5 * (low + high),
         half_width_mm=0.5 * (high - low),
-        pressure_MPa=float(contact.strips(strips).pressure.max()),
-        first_cell_mm=drawn.first + 0.5 * drawn.width,
-        cell_width_mm=drawn.width,
+        pressure_MPa=contact.largest_mean(strips),
+        first_cell_mm=float(line.low[0] + 0.5 * width),
+        cell_width_mm=float(width),
         cell_length_mm=line.length,
-        cells_MPa=tuple(drawn.pressure.tolist()),
+        cells_MPa=tuple(line.strips(strips).tolist()),
     )
 
 

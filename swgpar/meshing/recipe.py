@@ -24,7 +24,10 @@ class ToothRecipe(Section):
         1.0, text="thickness of each layer over that of the next nearer the flank", ge=1.0, le=3.0
     )
     flank: int = quantity(
-        text="elements along the flank, from the tip edge to the root arc's split", ge=1, le=400
+        text="elements along the flank, from the tip edge to the root arc's split; segments "
+        "shorter than half of one have theirs beside these",
+        ge=1,
+        le=400,
     )
     root: int = quantity(
         text="elements from the split in the root arc to the middle of the root", ge=2, le=200

@@ -51,7 +51,8 @@ def test_the_map_of_a_cup_has_the_forces(values: tuple[str, ...]) -> None:
         drawn = sorted((drawn_force(axes) for axes in maps), reverse=True)
         for (force, pressure), known, top in zip(drawn, *expected(result, step), strict=True):
             assert force == pytest.approx(known, rel=0.01)
-            assert pressure == pytest.approx(top, rel=1e-5)
+            # half spaces have cells, ends of the face width strips: see below
+            assert top * (1.0 - 5e-3) <= pressure <= top * (1.0 + 1e-5)
 
 
 @pytest.mark.parametrize("mesh", ["plane_coarse"])
@@ -68,7 +69,8 @@ def test_the_lines_of_a_plane_drive_have_the_forces(mesh: str) -> None:
     )
     for (force, pressure), known, top in zip(drawn, *expected(result, step), strict=True):
         assert force == pytest.approx(known, rel=0.01)
-        assert pressure == pytest.approx(top, rel=1e-5)
+        # the figure has strips at fixed places, the largest pressure is that of the best place
+        assert top * (1.0 - 5e-3) <= pressure <= top * (1.0 + 1e-5)
 
 
 def test_the_pattern_begins_with_the_largest_pressure_of_all() -> None:

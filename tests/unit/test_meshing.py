@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from support.paths import RECIPE, REFERENCE
-from swgpar import load_design
+from swgpar import load_design, new
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes, load_recipe
@@ -19,8 +19,9 @@ from swgpar.meshing.cross_section import cross_section
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.drive_mesh import DriveMesh
 from swgpar.meshing.export import whole_body, whole_drive
+from swgpar.meshing.half_tooth import block_ends
 from swgpar.meshing.quality import element_quality, hex_volumes
-from swgpar.meshing.recipe import make_recipe
+from swgpar.meshing.recipe import ToothRecipe, make_recipe
 from swgpar.meshing.sweep import axial_stations
 from swgpar.meshing.tooth_sector import build_sector
 from swgpar.profiles.flank import Segment, ToothProfile
@@ -250,6 +251,50 @@ def test_segment_ends_are_nodes(name: str) -> None:
     for mesh in meshes(name).values():
         for end in mesh.profile.breaks:
             assert np.abs(mesh.flanks[0].s - end).min() < 1e-12
+
+
+def test_short_segments_have_elements_of_their_own() -> None:
+    """S-shaped teeth have a short segment in their middle: the six elements of the recipe share the
+    rest of the flank."""
+    case = new(ratio=80, diameter=60.0, torque=5.0, model="plane")
+    mesh = build_sector_meshes(case.geometry, load_recipe("plane_coarse"))["flexible_spline"]
+    profile, s = mesh.profile, mesh.flanks[0].s
+    k, q = block_ends(profile)
+    side = s[(s >= k - 1e-9) & (s <= q + 1e-9)]
+    ends = profile.breaks[(profile.breaks > k) & (profile.breaks < q)]
+    assert all(np.abs(side - end).min() < 1e-9 for end in ends)
+    lengths = np.diff([k, *ends, q])
+    short = int((lengths < 0.5 * (q - k) / 6).sum())
+    assert short > 0
+    assert len(side) - 1 == 6 + short
+    assert np.diff(side).max() < 1.5 * (q - k) / 6
+
+
+def test_windows_of_a_tooth_with_a_small_rounded_edge_can_be_meshed() -> None:
+    """The edge is too short for a cap, and begins as the top land ends: an inner line of the same
+    shape folds the core."""
+    case = plane_design().with_values(
+        {
+            "drive.teeth_fs": 118,
+            "drive.teeth_rg": 120,
+            "drive.module": 0.723,
+            "drive.addendum_coef": 0.517,
+            "drive.dedendum_coef": 0.6893,
+            "flexible_spline.rim": 1.086,
+            "flexible_spline.profile": {"type": "s_shaped", "r_tip": 0.068, "r_root": 0.191},
+            "ring_gear.profile": {"type": "conjugate", "r_tip": 0.124, "r_root": 0.118},
+            "ring_gear.c_P": 1.0,
+            "wave_generator": {"type": "elliptical", "C": 0.9644, "face_width": 7.23},
+        }
+    )
+    profile = case.profile("flexible_spline")
+    window = ToothRecipe(tip=16, layers=8, flank=64, root=32, under=24, rim=32)
+    inner = case.inner_radius
+    interface = 0.5 * (inner + profile.r_root_circle)
+    section = cross_section(profile, window, interface, inner)
+    corners = section.coords[section.quads]
+    first, second = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
+    assert np.min(first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]) > 0.0
 
 
 @pytest.mark.parametrize(("recipe", "overrides"), CASES)

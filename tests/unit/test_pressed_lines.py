@@ -82,3 +82,18 @@ def test_a_peak_as_narrow_as_the_cells_is_seen() -> None:
     assert not line(smooth).has_narrow_peak
     assert not line(smooth * (1.0 + 0.5 * x)).has_narrow_peak
     assert line(smooth + 0.8 * np.exp(-(((x + 0.8) / 0.05) ** 2))).has_narrow_peak
+
+
+@pytest.mark.parametrize("begin", [0.0, 0.3, 0.5, 0.8])
+def test_the_largest_mean_does_not_depend_on_where_a_peak_lies(begin: float) -> None:
+    """A peak as long as a strip lies between two strips at fixed places."""
+    fine = np.full(480, 100.0)
+    first = 200 + round(10 * begin)
+    fine[first : first + 10] = 300.0
+    assert line(fine).largest_mean(48) == pytest.approx(300.0)
+
+
+def test_the_largest_mean_of_a_smooth_contact_is_that_of_its_middle() -> None:
+    x = np.linspace(-1.0, 1.0, 481)
+    smooth = line(np.sqrt(1.0 - (0.5 * (x[:-1] + x[1:])) ** 2))
+    assert smooth.largest_mean(48) == pytest.approx(smooth.strips(48).max(), rel=3e-4)
