@@ -12,6 +12,7 @@ import numpy as np
 
 from swgpar.geometry.arrays import Complex, Floats
 from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints, points_of
+from swgpar.profiles.fitted_curve import fitted
 from swgpar.profiles.flank import ToothProfile
 from swgpar.profiles.teeth import Teeth
 
@@ -54,7 +55,7 @@ def _along(
         z, first, second = curve(begin + span * t)
         return points_of(z, span * first, span**2 * second)
 
-    return CurvedSegment(name, evaluate)
+    return fitted(CurvedSegment(name, evaluate))
 
 
 def _cubic(above: CurvedSegment, below: CurvedSegment) -> CurvedSegment:
