@@ -134,7 +134,8 @@ class Outline:
 @lru_cache(maxsize=16)
 def outline(profile: ToothProfile) -> Outline:
     """Sampled outline of a gear; kept, because every search of a design asks for it."""
-    top, bottom = profile.polar_angle([0.0, profile.length])
+    ends = np.concatenate([profile.ends[0].point[:1], profile.ends[-1].point[1:]])
+    top, bottom = np.arctan2(*ends.T)
     segments: list[FlankSegment] = [
         _land("top land", profile.r_tip_circle, 0.0, float(top)),
         *profile.segments,

@@ -261,7 +261,8 @@ class SweptArea:
         psi = np.linspace(-reach, reach, POSITIONS)
         sign = -given.sign
         points = self.envelope.places(s, self.envelope.pose(psi))
-        nearest = (sign * np.abs(points)).min(axis=1)
+        radius = np.abs(points)
+        nearest = (sign * radius).min(axis=1)
         farthest = sign * (float(nearest.min()) + EDGE * self.module)
         if sign * (self.tip - farthest) <= 0.0:
             raise InputError(
@@ -269,14 +270,14 @@ class SweptArea:
                 "are higher teeth or a larger deflection"
             )
         reaching = nearest < sign * self.tip
-        psi, points = psi[reaching], points[reaching]
-        radius, angle = np.abs(points), clockwise_from_y(points)
+        psi, radius, angle = psi[reaching], radius[reaching], clockwise_from_y(points[reaching])
         radii = np.linspace(self.tip, farthest, RADII)
         order = slice(None) if radius[0, 0] < radius[0, -1] else slice(None, None, -1)
         radius, angle, s = radius[:, order], angle[:, order], s[order]
-        angles = np.empty((len(psi), RADII))
-        for k in range(len(psi)):
-            angles[k] = np.interp(radii, radius[k], angle[k], left=np.inf, right=np.inf)
+        angles = np.full((len(psi), RADII), np.inf)
+        counts = np.count_nonzero(sign * radii >= nearest[reaching, None], axis=1)
+        for k, n in enumerate(counts):  # of the radii that the tooth reaches
+            angles[k, :n] = np.interp(radii[:n], radius[k], angle[k], left=np.inf, right=np.inf)
         least = angles.argmin(axis=0)
         # the samples beside each radius, at the position with the least angle
         below = np.count_nonzero(radius[least] <= radii[:, None], axis=1) - 1
