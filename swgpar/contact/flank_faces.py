@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial.chebyshev import chebpts2, chebvander
+from numpy.polynomial.chebyshev import chebpts1, chebpts2, chebvander
 
 from swgpar.contact.flank_curve import has_a_joint
 from swgpar.geometry.micro_geometry import crowning
@@ -26,9 +26,9 @@ step of a nanometre between two faces is a multiple of the pressure on the fines
 OF_SAMPLES = np.linalg.inv(chebvander(1.0 - 2.0 * SAMPLES, len(SAMPLES) - 1))
 """Chebyshev coefficients (n, n) of the polynomials that are one at one of `SAMPLES`."""
 
-AT_JOINTS = 0.5 + 0.5 * chebpts2(5)
-"""Samples along the profile of faces with a joint of it inside: with more of them the polynomial
-swings about a curvature that jumps."""
+AT_JOINTS = 0.5 + 0.5 * chebpts1(5)
+"""Samples along the profile of faces with a joint of it inside: with more of them, and with the
+ends among them, the polynomial swings further about a curvature that jumps."""
 
 FROM_FEWER = chebvander(1.0 - 2.0 * SAMPLES, len(AT_JOINTS) - 1) @ np.linalg.inv(
     chebvander(1.0 - 2.0 * AT_JOINTS, len(AT_JOINTS) - 1)
