@@ -274,10 +274,10 @@ def write(
     if not page or (levels == LEVELS[model] and len(finished) < count):
         print(table(rows), *without, sep="\n")
         return
-    if levels != LEVELS[model]:
-        write_results(f"effectivity_{model}_{levels}", COLUMNS, rows, table(rows), "effectivity")
-        return
     name = model + "_other_teeth" * other_teeth
+    if levels != LEVELS[model]:
+        write_results(f"effectivity_{name}_{levels}", COLUMNS, rows, table(rows), "effectivity")
+        return
     text = f"{WORDS[model]}:\n\n{table(rows)}"
     write_results(f"effectivity_{name}", COLUMNS, rows, text, "effectivity")
     path = Path("docs/verification/effectivity.md")

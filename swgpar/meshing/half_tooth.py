@@ -75,11 +75,11 @@ def _ends(profile: ToothProfile, first: float, last: float) -> Floats:
     return np.concatenate(([first], breaks, [last]))
 
 
-def with_short_segments(profile: ToothProfile, first: float, last: float, n: int) -> int:
-    """Elements between two arc lengths (mm), of which n were asked for: one more for each segment
-    that is `SHORT`."""
+def flank_stations(profile: ToothProfile, first: float, last: float, n: int) -> Floats:
+    """As `stations`, with an element beside the n for each segment that is `SHORT`."""
     lengths = np.diff(_ends(profile, first, last))
-    return n + int(np.sum(lengths < SHORT * (last - first) / n)) if n >= len(lengths) else n
+    short = lengths < SHORT * (last - first) / n
+    return stations(profile, first, last, n + int(short.sum()) if n >= len(lengths) else n)
 
 
 def inclination(profile: ToothProfile, s: Floats) -> Floats:
@@ -159,10 +159,10 @@ class HalfTooth:
         profile, count, s_q = self.profile, self.recipe.flank, float(s_root[0])
         begin = profile.root_start
         if not (self.recipe.even_root and s_k < begin < s_q and len(s_root) > 1 and count > 1):
-            return stations(profile, s_k, s_q, with_short_segments(profile, s_k, s_q, count))
+            return flank_stations(profile, s_k, s_q, count)
         arc = math.ceil((s_q - begin) / (s_root[1] - s_root[0]) * (1.0 - 1e-9))
         arc = min(arc, count // 2)
-        above = stations(profile, s_k, begin, with_short_segments(profile, s_k, begin, count - arc))
+        above = flank_stations(profile, s_k, begin, count - arc)
         return np.concatenate((above, begin + (s_q - begin) * even(arc)[1:]))
 
     def blocks(self) -> list[Sides]:

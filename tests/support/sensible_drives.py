@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -202,10 +203,7 @@ def _case(rng: np.random.Generator, model: str, cams: Sequence[str]) -> Case:
 
 def _other_teeth(rng: np.random.Generator, case: Case, module: float) -> Case:
     """Values of teeth in place of those of a case."""
-
-    def modules(low: float, high: float) -> float:
-        return round(float(rng.uniform(low, high)) * module, 4)
-
+    modules = partial(_length, rng, module)
     kind = str(rng.choice(list(OTHER_TEETH), p=list(OTHER_TEETH.values())))
     # double arcs, which may be the teeth of the case, have none
     lines = {"flexible_spline.c_l": 0.5, "ring_gear.c_l": 0.5}
@@ -241,14 +239,16 @@ def _other_teeth(rng: np.random.Generator, case: Case, module: float) -> Case:
     }
 
 
+def _length(rng: np.random.Generator, unit: float, low: float, high: float) -> float:
+    """A length (mm) between two, of this unit, mm."""
+    return round(unit * float(rng.uniform(low, high)), 4)
+
+
 def _s_shaped(rng: np.random.Generator, case: Case, module: float) -> Case:
     """S-shaped teeth, lower on a thin rim as `swgpar new` has them."""
     rim = case["flexible_spline.rim"] / module
     low = min(1.0, rim / (RIM_OF_HEIGHT * (ADDENDUM + DEDENDUM))) * float(rng.uniform(0.8, 1.0))
-
-    def modules(smallest: float, largest: float) -> float:
-        return round(low * module * float(rng.uniform(smallest, largest)), 4)
-
+    modules = partial(_length, rng, low * module)
     teeth = {"type": "s_shaped", "r_tip": modules(0.1, 0.2), "r_root": modules(0.25, 0.4)}
     own = rng.uniform() < OF_THEIR_OWN
     ring = {"type": "conjugate", "r_tip": modules(0.1, 0.2), "r_root": modules(0.15, 0.25)}
