@@ -1,13 +1,11 @@
 """Errors by the mesh of the drive of what a bearing gives.
 
-The loaded drive is solved on coarser meshes for the error of the tension at the teeth. The bearing
-there shows the errors by the same groups of counts (`swgpar.analysis.drive_mesh_error`). They are
-shares: at other angles the same share of the value stands for the error.
+The loaded drive is solved on a coarser mesh for the error of the tension at the teeth. The bearing
+there shows its own errors (`swgpar.analysis.drive_mesh_error`). They are shares: at other angles
+the same share of the value stands for the error.
 """
 
 from __future__ import annotations
-
-from collections.abc import Sequence
 
 from swgpar.analysis.drive_mesh_error import CoarserMesh, shown_error
 from swgpar.evaluation.bearing_loads import (
@@ -30,19 +28,20 @@ the race. The tangent of balls with little load decides about the others. They c
 
 
 def bearing_errors(
-    coarser: Sequence[CoarserMesh], recipe: MeshRecipe, fine: BallLoads
+    coarser: CoarserMesh | None, recipe: MeshRecipe, fine: BallLoads
 ) -> dict[str, float]:
-    """Errors as shares of the values, by the names of answers that all meshes have.
+    """Errors as shares of the values, by the names of answers that both meshes have; none without
+    a coarser mesh.
 
     recipe, fine : the mesh itself
     """
-    meshes = [(one.recipe, _estimated(one.bearing)) for one in coarser]
-    meshes.append((recipe, _estimated(fine)))
-    hidden = {kind.name for kind in NOT_SHOWN}
+    if coarser is None:
+        return {}
+    coarse, hidden = _estimated(coarser.bearing), {kind.name for kind in NOT_SHOWN}
     return {
-        name: max(shown_error([(one, known[name]) for one, known in meshes]) / abs(value), LEAST)
-        for name, value in meshes[-1][1].items()
-        if value and name not in hidden and all(name in known for _, known in meshes)
+        name: max(shown_error(coarser.recipe, recipe, value - coarse[name]) / abs(value), LEAST)
+        for name, value in _estimated(fine).items()
+        if value and name not in hidden and name in coarse
     }
 
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from mpi4py import MPI
 
 from swgpar.analysis.bent_start import bend
-from swgpar.analysis.drive_mesh_error import coarser_recipes, with_finer_flanks
+from swgpar.analysis.drive_mesh_error import coarser_recipe
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.model_sources import NEW_MODELS, ModelSource
 from swgpar.analysis.saved_state import StartStates
@@ -163,25 +163,24 @@ def start_at_load(
     drive, on_coarse, kept : see `start_loaded`
     """
     recipe, compares = stepper.model.recipe, drive.design.compares_meshes
-    coarser_ones = levels(drive.design.start_levels, recipe)
-    ways: list[tuple[list[MeshRecipe], list[MeshRecipe]]] = []
-    if coarser_ones:
-        last = coarser_ones.pop()
-        ways.append((coarser_ones, with_finer_flanks(last, recipe) if compares else [last]))
+    ways: list[list[MeshRecipe]] = []
+    if coarser_ones := levels(drive.design.start_levels, recipe):
+        ways.append(coarser_ones)
     if drive.design.starts_bent:
-        if compares and not ways and (compared := coarser_recipes(recipe)):
-            ways.append(([], compared))
-        ways.append(([], []))
+        compared = coarser_recipe(recipe)
+        if compares and not ways and compared is not None:
+            ways.append([compared])
+        ways.append([])
     if ways and drive.models.resume(stepper):
         asked = compares or stepper.sequence.samples > 0
-        ways.insert(0, ([], ways[0][1] if asked else []))
-    for recipes, compared in ways:
+        ways.insert(0, ways[0][-1:] if asked else [])
+    for recipes in ways:
         try:
-            start_loaded(stepper, drive, recipes + compared, on_coarse, kept, len(compared))
+            start_loaded(stepper, drive, recipes, on_coarse, kept)
             return True
         except (ConvergenceError, InputError) as error:
             known = stepper.load_state != stepper.sequence.start
-            what = "on coarser meshes" if compared else "from the bent shape"
+            what = "on coarser meshes" if recipes else "from the bent shape"
             logger.info("no start %s: %s", "from another load" if known else what, error)
             stepper.reset()
     return False
@@ -193,14 +192,12 @@ def start_loaded(
     recipes: list[MeshRecipe],
     on_coarse: Callable[[DriveModel], None] = lambda model: None,
     kept: StartStates | None = None,
-    compared: int = 0,
 ) -> None:
     """Bring `stepper` to the loaded state: from that under another load where it has one that is
     `LIKE_LOAD`, by way of coarser meshes, the coarsest of `recipes` first, or bent at once.
 
     drive : that of the stepper, on any mesh
-    on_coarse : called with the model on each of the last `compared` ones of the coarser meshes; it
-        raises nothing
+    on_coarse : called with the model on the last one of the coarser meshes; it raises nothing
     kept : see `MeshedDrive.load`
 
     Raises ConvergenceError or InputError where a mesh does not allow it; `stepper` is then to be
@@ -208,10 +205,10 @@ def start_loaded(
     """
     models, coarse = drive.models, None
     with stepper.model.phases("start"):
-        for left, recipe in zip(range(len(recipes), 0, -1), recipes):
+        for recipe in recipes:
             coarse = drive.load(recipe, coarse, kept)
-            if left <= compared:
-                on_coarse(coarse)
+        if coarse is not None:
+            on_coarse(coarse)
         known = stepper.load_state != stepper.sequence.start  # that under another load
         if coarse is not None and not (known and _is_like_load(stepper)):
             take_over(coarse, stepper, models)

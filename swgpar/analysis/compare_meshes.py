@@ -1,4 +1,4 @@
-"""The loaded drive on its mesh beside coarser ones: errors of contacts, bearing and stresses."""
+"""The loaded drive on its mesh beside a coarser one: errors of contacts, bearing and stresses."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ def compare_meshes(
     model: DriveModel,
     state: LoadState,
     contacts: Sequence[PairContact],
-    coarser: Sequence[CoarserMesh],
+    coarser: CoarserMesh | None,
     before: RootStress | None = None,
 ) -> MeshComparison:
-    """The loaded model, with these contacts of flanks, beside coarser meshes, the coarsest first;
-    collective. before : see `drive_error`"""
+    """The loaded model, with these contacts of flanks, beside a coarser mesh; collective.
+    before : see `drive_error`"""
     bearing, lobes = loaded_bearing(model, state), model.design.wave_generator.lobes
     return MeshComparison(
         model.recipe,

@@ -1,15 +1,15 @@
 """Errors by the mesh of the drive of what the contacts of its flanks give.
 
-The loaded drive is solved on coarser meshes for the error of the tension at the teeth. The contacts
-there show the errors by the same groups of counts (`swgpar.analysis.drive_mesh_error`). They are
-shares: at other angles the same share of the value stands for the error.
+The loaded drive is solved on a coarser mesh for the error of the tension at the teeth. The contacts
+there show their own errors (`swgpar.analysis.drive_mesh_error`). They are shares: at other angles
+the same share of the value stands for the error.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -52,24 +52,23 @@ Measure = Callable[[PairContact], float]
 
 
 def contact_errors(
-    coarser: Sequence[CoarserMesh],
+    coarser: CoarserMesh | None,
     recipe: MeshRecipe,
     contacts: Sequence[PairContact],
     lobes: int,
 ) -> ContactErrorShares:
     """Errors on the mesh of `recipe`, on which the loaded drive has these contacts; none of them is
-    known without coarser meshes."""
-    if not coarser or not contacts:
+    known without a coarser mesh."""
+    if coarser is None or not contacts:
         return UNKNOWN
     model, on_edge = recipe.model, touches_edges(contacts)
     alone = any(lobes * pair.force_share > ALONE for pair in contacts)
-    meshes = [*((one.recipe, one.contacts) for one in coarser), (recipe, contacts)]
-
+    shown = _ErrorShare(coarser, recipe, contacts)
     least = least_error_of_force(model, contacts)
     least_pressure = LEAST_PRESSURE_WITH_EDGES if on_edge else LEAST_PRESSURE
 
     def of_force(measure: Measure) -> float | None:
-        share = None if alone else _error_share(meshes, measure)
+        share = None if alone else shown.of_largest(measure)
         return None if share is None else max(share, least)
 
     force = of_force(lambda pair: pair.force_N)
@@ -77,7 +76,7 @@ def contact_errors(
     by_force = HERTZ * (least if force is None else force)
 
     def of_pressure(measure: Measure) -> float | None:
-        share = _error_share(meshes, measure)
+        share = shown.of_largest(measure)
         if share is None:
             return None
         if model != "plane":
@@ -90,7 +89,7 @@ def contact_errors(
     share = of_force(lambda pair: pair.force_share)
     if share is not None and force is not None and model == "plane":
         # the force of a pair and that of all may have changed together by chance
-        share = max(share, math.hypot(force, _error_of_total(meshes)))
+        share = max(share, math.hypot(force, shown.of_total()))
     off_edges = None if _is_slight(contacts) else of_pressure(_pressure_off_edges)
     return ContactErrorShares(
         pressure=of_pressure(lambda pair: pair.pressure_MPa),
@@ -99,13 +98,6 @@ def contact_errors(
         force_share=share,
         on_lines=model == "plane",
     )
-
-
-def _error_of_total(meshes: Sequence[tuple[MeshRecipe, Sequence[PairContact]]]) -> float:
-    """Error of the sum of the forces of all pairs, over that sum. The torque tells it where all
-    press one flank of their teeth; it changes where other pairs press against it."""
-    totals = [(recipe, sum(pair.force_N for pair in pairs)) for recipe, pairs in meshes]
-    return _shown(totals) / totals[-1][1]
 
 
 def _pressure_off_edges(pair: PairContact) -> float:
@@ -122,29 +114,45 @@ def _is_slight(contacts: Sequence[PairContact]) -> bool:
     return max(known, key=_pressure_off_edges).force_N < SLIGHT * largest
 
 
-_shown = partial(shown_error, of_contact=True)
+@dataclass(frozen=True)
+class _ErrorShare:
+    """Errors as shares of values of the pairs in contact, by the change from the coarser mesh.
 
-
-def _error_share(
-    meshes: Sequence[tuple[MeshRecipe, Sequence[PairContact]]], measure: Measure
-) -> float | None:
-    """Error of the largest value of all pairs over that value; None where a mesh has none.
-
-    The larger one of what the largest values of all pairs show, and of what the pair that has it on
-    the finest mesh shows: another pair may have nearly as much.
+    recipe, contacts : the mesh itself
     """
-    by_pair = [
-        (
-            recipe,
-            {pair.key: value for pair in pairs if np.isfinite(value := measure(pair))},
+
+    coarser: CoarserMesh
+    recipe: MeshRecipe
+    contacts: Sequence[PairContact]
+
+    def _shown(self, change: float) -> float:
+        return shown_error(self.coarser.recipe, self.recipe, change, of_contact=True)
+
+    def of_total(self) -> float:
+        """Of the sum of the forces of all pairs. The torque tells it where all press one flank of
+        their teeth; it changes where other pairs press against it."""
+        coarse, fine = (
+            sum(pair.force_N for pair in pairs) for pairs in (self.coarser.contacts, self.contacts)
         )
-        for recipe, pairs in meshes
-    ]
-    if not all(values for _, values in by_pair):
-        return None
-    finest = by_pair[-1][1]
-    place = max(finest, key=lambda pair: finest[pair])
-    shown = [_shown([(recipe, max(values.values())) for recipe, values in by_pair])]
-    if all(place in values for _, values in by_pair):
-        shown.append(_shown([(recipe, values[place]) for recipe, values in by_pair]))
-    return max(shown) / finest[place] if finest[place] > 0.0 else None
+        return self._shown(fine - coarse) / fine
+
+    def of_largest(self, measure: Measure) -> float | None:
+        """Of the largest value of all pairs; None where a mesh has none.
+
+        The larger one of what the largest values of all pairs show, and of what the pair that has
+        it on the mesh shows: another pair may have nearly as much.
+        """
+        coarse, fine = (_known(pairs, measure) for pairs in (self.coarser.contacts, self.contacts))
+        if not coarse or not fine:
+            return None
+        place = max(fine, key=lambda pair: fine[pair])
+        shown = self._shown(fine[place] - max(coarse.values()))
+        if place in coarse:
+            shown = max(shown, self._shown(fine[place] - coarse[place]))
+        return shown / fine[place] if fine[place] > 0.0 else None
+
+
+def _known(pairs: Sequence[PairContact], measure: Measure) -> dict[Hashable, float]:
+    """What is taken of the pairs that have it."""
+    values = ((pair.key, measure(pair)) for pair in pairs)
+    return {key: value for key, value in values if np.isfinite(value)}

@@ -1,9 +1,7 @@
 """Error of the largest tension at the teeth by the mesh of the drive (docs/theory/windows.md).
 
-The drive is loaded on a coarser mesh, in the plane on one that has only the finer flanks, and on
-its own mesh. The changes of the stress in a window between them show two errors: that of the
-contact, and that of the stiffness of teeth and rim. They may have different signs, so their sizes
-are added. Few elements along the flanks stay: the contact law needs no more.
+The drive is loaded on a coarser mesh and on its own. The change of the stress in a window between
+them shows the error. Few elements along the flanks stay: fewer would not find the contacts.
 """
 
 from __future__ import annotations
@@ -11,9 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 
-from swgpar.analysis.shortcuts import finds_contacts
+from swgpar.analysis.shortcuts import FEWEST, finds_contacts
 from swgpar.evaluation.bearing_loads import BallLoads
 from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares
 from swgpar.evaluation.loaded_bearing import loaded_bearing
@@ -33,7 +30,6 @@ from swgpar.meshing.recipe_counts import (
     body_ratio,
     coarsened,
     contact_ratio,
-    with_contact_of,
     with_flanks_of,
 )
 from swgpar.model.drive_model import DriveModel
@@ -84,16 +80,10 @@ forces of some ten pairs move with the layers along the face width, by 1 to 6.5 
 LEAST_FORCE_WITH_EDGES = 0.03
 """The same in the plane where a contact lies on an edge, whose compliance no mesh resolves."""
 
-FEWEST_ALONG_FLANKS = 6
-"""Elements along a flank below which no coarser mesh is taken: pressures on four are off by 5 %,
-and by a multiple where the curvature of the profile changes. With the contact law six and nine
-differ by 0.1 % in the stress in the plane (docs/verification/error_sources_plane.md). In a cup with
-S-shaped teeth four change it by 8 %, nine by 0.3 % (docs/howto/rate.md)."""
-
 
 @dataclass(frozen=True)
 class CoarserMesh:
-    """A coarser mesh of the drive.
+    """The coarser mesh with which a mesh of the drive is compared.
 
     stresses : s1 (MPa) on windows, coarse to fine, by part of the teeth
     contacts : of all touching pairs
@@ -110,15 +100,15 @@ class CoarserMesh:
 
 @dataclass(frozen=True)
 class MeshComparison:
-    """A mesh of the drive and the coarser ones with which it is compared.
+    """A mesh of the drive and the coarser one with which it is compared.
 
-    coarser : the coarsest first;  contacts : of all touching pairs on the mesh
+    coarser : None where it could not be loaded;  contacts : of all touching pairs on the mesh
     ring_teeth : modelled teeth of the ring gear;  before : see `drive_error`
     contact_errors, bearing_errors : of the contacts of flanks, and see `bearing_errors`
     """
 
     recipe: MeshRecipe
-    coarser: Sequence[CoarserMesh]
+    coarser: CoarserMesh | None
     contacts: Sequence[PairContact]
     ring_teeth: int
     before: RootStress | None = None
@@ -136,55 +126,31 @@ class MeshComparison:
         return replace(found, drive_error=error, regions=regions)
 
 
-def coarser_recipes(recipe: MeshRecipe) -> list[MeshRecipe]:
-    """Recipes with which a mesh is compared, the coarsest first; none where the coarser one would
-    not find the contacts, nor in a cup with fewer elements along the flanks than a coarser mesh
-    needs: no mesh would show what they change."""
+def coarser_recipe(recipe: MeshRecipe) -> MeshRecipe | None:
+    """Recipe with which a mesh is compared; None where it would not find the contacts."""
     coarse = coarsened(recipe)
-    if _along_flanks(coarse) < FEWEST_ALONG_FLANKS:
+    if min(coarse.flexible_spline.flank, coarse.ring_gear.flank) < FEWEST:
         coarse = with_flanks_of(coarse, recipe)
-    too_few = recipe.model == "cup" and _along_flanks(coarse) < FEWEST_ALONG_FLANKS
-    if too_few or not finds_contacts(coarse):
-        return []
-    return with_finer_flanks(coarse, recipe)
+    return coarse if finds_contacts(coarse) else None
 
 
-def _along_flanks(recipe: MeshRecipe) -> int:
-    return min(recipe.flexible_spline.flank, recipe.ring_gear.flank)
-
-
-def with_finer_flanks(coarse: MeshRecipe, recipe: MeshRecipe) -> list[MeshRecipe]:
-    """The coarser recipe, and in the plane, where it is another one, that between both with the
-    finer flanks. In a cup drive it has nearly all elements, and would cost a quarter of a run."""
-    between = with_contact_of(coarse, recipe)
-    return (
-        [coarse, between]
-        if recipe.model == "plane" and between not in (coarse, recipe)
-        else [coarse]
-    )
-
-
-def coarser_mesh(
-    model: DriveModel, state: LoadState, *, windows: bool, coarsest: bool
-) -> CoarserMesh:
+def coarser_mesh(model: DriveModel, state: LoadState, *, windows: bool) -> CoarserMesh:
     """What the loaded model on a coarser mesh gives in contacts and bearing, and in windows;
     collective.
 
     windows : whether they are computed
-    coarsest : whether it is the coarsest one. There the ring gear has windows too: of it one change
-    shows both errors.
 
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
     contacts, bearing = pair_contacts(model, state), loaded_bearing(model, state)
     if not windows:
         return CoarserMesh(model.recipe, {}, contacts, {}, bearing)
-    found = resolve_root_stress(model, state, COMPARED_LEVELS, COMPARED_LEVELS - 1, ring=coarsest)
+    found = resolve_root_stress(model, state, COMPARED_LEVELS, COMPARED_LEVELS - 1)
     return CoarserMesh(model.recipe, found.by_part, contacts, found.regions, bearing)
 
 
 def drive_error(
-    coarser: Sequence[CoarserMesh],
+    coarser: CoarserMesh | None,
     recipe: MeshRecipe,
     fine: RootStress,
     least: float,
@@ -192,32 +158,32 @@ def drive_error(
 ) -> float | None:
     """Error (MPa) by the mesh of the drive; None where no coarser mesh shows it.
 
-    coarser : of the same windows, the coarsest first;  recipe, fine : the mesh itself
+    coarser : of the same windows;  recipe, fine : the mesh itself
     least : share of the stress, see `least_error`
-    before : on the coarsest mesh, with its error, if it is known; of no account where another part
+    before : on the coarser mesh, with its error, if it is known; of no account where another part
         of the teeth has the largest stress
 
     A change that is small by chance is no convergence: the error is at least what remains of that
     before, and `least` of the stress.
     """
-    if not coarser:
+    if coarser is None:
         return None
-    ratio = body_ratio(coarser[0].recipe, recipe)
+    ratio = body_ratio(coarser.recipe, recipe)
     if ratio is None:
         return None
-    shared = min(len(fine.levels), *(len(one.stresses[fine.part]) for one in coarser)) - 1
-    meshes = [(one.recipe, one.stresses[fine.part][shared]) for one in coarser]
-    meshes.append((recipe, fine.levels[shared]))
-    if any(math.isnan(s1) for _, s1 in meshes):  # a part that was followed on no shared window
+    of_part = coarser.stresses[fine.part]
+    shared = min(len(fine.levels), len(of_part)) - 1
+    found, coarse = fine.levels[shared], of_part[shared]
+    if math.isnan(found) or math.isnan(coarse):  # a part that was followed on no shared window
         return None
-    error = shown_error(meshes) * abs(fine.s1 / fine.levels[shared])
+    error = shown_error(coarser.recipe, recipe, found - coarse) * abs(fine.s1 / found)
     known = before.drive_error if before is not None and before.part == fine.part else None
     remains = 0.0 if known is None else known / ratio**ORDER
     return max(error, remains, least * abs(fine.s1))
 
 
 def region_errors(
-    coarser: Sequence[CoarserMesh],
+    coarser: CoarserMesh | None,
     recipe: MeshRecipe,
     fine: RootStress,
     least: float,
@@ -225,7 +191,7 @@ def region_errors(
     ring_teeth: int,
 ) -> dict[str, RegionStress]:
     """The stresses of the regions with their errors by the mesh of the drive, where the coarser
-    meshes show them. Tips have none where a contact lies on an edge: the stress has no limit there.
+    mesh shows them. Tips have none where a contact lies on an edge: the stress has no limit there.
 
     contacts : of all touching pairs;  ring_teeth : modelled teeth of the ring gear
     others : see `drive_error`
@@ -247,15 +213,13 @@ def region_errors(
             by_pairs = _force_error(coarser, recipe, contacts, stress.place, ring_teeth)
             share = max(share, of_force, by_pairs)
         floor = share * _largest_apart(fine.regions, kind)
-        meshes = [(one.recipe, one.regions.get(name)) for one in coarser]
-        of_forces = stress.place.body != FLEXIBLE_SPLINE
-        error = _region_error(meshes, recipe, stress, floor, of_forces)
+        error = _region_error(coarser, recipe, name, stress, floor)
         found[name] = replace(stress, drive_error=error)
     return found
 
 
 def _force_error(
-    coarser: Sequence[CoarserMesh],
+    coarser: CoarserMesh | None,
     recipe: MeshRecipe,
     contacts: Sequence[PairContact],
     place: Place,
@@ -264,15 +228,18 @@ def _force_error(
     """Error of the forces beside a place of the ring gear, of the pairs on its tooth and on those
     beside it, as a share of their sum. Each of them adds to the stress in proportion to its force,
     and their errors are independent."""
-    forces = [(one.recipe, {pair.key: pair.force_N for pair in one.contacts}) for one in coarser]
-    forces.append((recipe, {pair.key: pair.force_N for pair in contacts}))
+    if coarser is None:
+        return 0.0
+    coarse = {pair.key: pair.force_N for pair in coarser.contacts}
     near = [
         pair
         for pair in contacts
         if pair.ring in ("", place.body) and (pair.ring_tooth - place.tooth + 1) % ring_teeth <= 2
     ]
     errors = [
-        shown_error([(one, by_pair.get(pair.key, 0.0)) for one, by_pair in forces], of_contact=True)
+        shown_error(
+            coarser.recipe, recipe, pair.force_N - coarse.get(pair.key, 0.0), of_contact=True
+        )
         for pair in near
     ]
     total = sum(pair.force_N for pair in near)
@@ -289,51 +256,47 @@ def _largest_apart(regions: Mapping[str, RegionStress], kind: str) -> float:
 
 
 def _region_error(
-    coarser: Sequence[tuple[MeshRecipe, RegionStress | None]],
+    coarser: CoarserMesh | None,
     recipe: MeshRecipe,
+    name: str,
     fine: RegionStress,
     least: float,
-    of_forces: bool,
 ) -> float | None:
-    """least : MPa;  of_forces : whether meshes change it by the forces of the flanks alone: the
-    flexible spline's root and rim are no part of the ring gear"""
+    """Error (MPa) of the stress of a region; None where the coarser mesh has none there.
+
+    least : MPa
+    """
     if fine.nodal:  # its error is far larger
         return least
-    known = [(one, stress) for one, stress in coarser if stress is not None]
-    if not known or coarser[0][1] is None:
+    coarse = None if coarser is None else coarser.regions.get(name)
+    if coarser is None or coarse is None:
         return None
-    known.append((recipe, fine))
-    shared = min(len(stress.tops) for _, stress in known) - 1
-    meshes = [(one, stress.tops[shared]) for one, stress in known]
-    if not all(value > 0.0 for _, value in meshes):
+    shared = min(len(coarse.tops), len(fine.tops)) - 1
+    before, value = coarse.tops[shared], fine.tops[shared]
+    if not (before > 0.0 and value > 0.0):
         return None
-    shown = shown_error(meshes, of_contact=of_forces)
-    return max(shown * fine.place.value / meshes[-1][1], least)
+    # the flexible spline's root and rim are no part of the ring gear: forces change its stresses
+    of_forces = fine.place.body != FLEXIBLE_SPLINE
+    shown = shown_error(coarser.recipe, recipe, value - before, of_contact=of_forces)
+    return max(shown * fine.place.value / value, least)
 
 
-def shown_error(meshes: Sequence[tuple[MeshRecipe, float]], *, of_contact: bool = False) -> float:
-    """Error of a value by the mesh, from the last two or three meshes and the value on each, the
-    coarsest first. Every mesh has other counts of `BODY` or `CONTACT` than the one before.
+def shown_error(
+    coarse: MeshRecipe, fine: MeshRecipe, change: float, *, of_contact: bool = False
+) -> float:
+    """Error of a value on a mesh by its change from a coarser one, which has other counts.
 
-    of_contact : of a force or pressure of the flanks, for which those of `CONTACT` decide where
-    both differ
+    of_contact : of a force or pressure of the flanks, for which the counts of `CONTACT` decide
+        where they differ
     """
-    ratio = _contact_first if of_contact else smallest_ratio
-    return SAFETY * sum(
-        abs(value - before) / (ratio(one, finer) ** ORDER - 1.0)
-        for (one, before), (finer, value) in pairwise(meshes)
-    )
+    ratio = contact_ratio(coarse, fine) if of_contact else None
+    return SAFETY * abs(change) / ((ratio or smallest_ratio(coarse, fine)) ** ORDER - 1.0)
 
 
 def smallest_ratio(coarse: MeshRecipe, fine: MeshRecipe) -> float:
     """The smallest ratio of counts that differ, one of which does."""
     ratios = body_ratio(coarse, fine), contact_ratio(coarse, fine)
     return min(ratio for ratio in ratios if ratio is not None)
-
-
-def _contact_first(coarse: MeshRecipe, fine: MeshRecipe) -> float:
-    """The ratio of the counts for the contact of the flanks where they differ, else of others."""
-    return contact_ratio(coarse, fine) or smallest_ratio(coarse, fine)
 
 
 def least_error_of_force(model: str, contacts: Sequence[PairContact]) -> float:

@@ -15,7 +15,7 @@ from swgpar.analysis.drive_mesh_error import (
     CoarserMesh,
     MeshComparison,
     coarser_mesh,
-    coarser_recipes,
+    coarser_recipe,
 )
 from swgpar.analysis.evaluate_run import evaluate_run
 from swgpar.analysis.follow_turns import follow_turns
@@ -57,7 +57,8 @@ class DriveRun:
         self.recorder, self.stepper, self.model = recorder, recorder.stepper, recorder.model
         self.drive, self.kept, self.options, self.begin = drive, kept, options, begin
         self.earlier_seconds, self.ended_early = 0.0, False
-        self.coarser: list[CoarserMesh | None] = []
+        self.coarser: CoarserMesh | None = None
+        self._tried_coarser = False
         self.comparison: MeshComparison | None = None
         counts = self.model.counts()
         logger.info(
@@ -97,44 +98,37 @@ class DriveRun:
         return sequence.from_loaded if record.starts_loaded else sequence.states
 
     def _keep_coarse(self, model: DriveModel) -> None:
-        """Keep what the meshes give that this one is compared with: the coarsest one, and that with
-        the finer flanks."""
-        loaded = self.stepper.sequence.loaded
-        ratio = body_ratio(model.recipe, self.model.recipe)
-        if not self.coarser:
-            wall = coarse_wall(model, loaded, self.model.recipe)
-            self.recorder.record.coarse_wall = wall
-        found = None
+        """Keep what the coarser mesh gives that this one is compared with."""
+        self._tried_coarser = True
+        loaded, record = self.stepper.sequence.loaded, self.recorder.record
+        record.coarse_wall = coarse_wall(model, loaded, self.model.recipe)
         if model.design.compares_meshes:
             model.take_over_windows(self.model)
+            windows = model.design.resolves_root_stress
             try:
-                found = coarser_mesh(
-                    model,
-                    loaded,
-                    windows=model.design.resolves_root_stress,
-                    coarsest=not self.coarser,
-                )
+                self.coarser = coarser_mesh(model, loaded, windows=windows)
             except (ConvergenceError, InputError) as error:
                 logger.info("the error by the mesh of the drive is not known: %s", error)
             self.model.take_over_windows(model)
-        if not self.coarser and ratio is not None:
-            self.recorder.record.coarse_period = coarse_period(model, self.stepper)
-        self.coarser.append(found)
+        if body_ratio(model.recipe, self.model.recipe) is not None:
+            record.coarse_period = coarse_period(model, self.stepper)
 
     def _load_coarser(self) -> None:
-        """Load the drive on the coarser meshes in the steps of the run, where it did not start on
-        them."""
-        for recipe in coarser_recipes(self.model.recipe):
-            try:
-                model = self.drive.load(recipe)
-            except (ConvergenceError, InputError) as error:
-                logger.info("the error by the mesh of the drive is not known: %s", error)
-                self.coarser.append(None)
-                return
-            try:
-                self._keep_coarse(model)
-            finally:
-                self.drive.models.give_back(model)
+        """Load the drive on the coarser mesh in the steps of the run, where it did not start on
+        it."""
+        recipe = coarser_recipe(self.model.recipe)
+        if recipe is None:
+            return
+        self._tried_coarser = True
+        try:
+            model = self.drive.load(recipe)
+        except (ConvergenceError, InputError) as error:
+            logger.info("the error by the mesh of the drive is not known: %s", error)
+            return
+        try:
+            self._keep_coarse(model)
+        finally:
+            self.drive.models.give_back(model)
 
     def go_through(self, states: Sequence[LoadState]) -> None:
         """Compute and record the increments that are left."""
@@ -220,19 +214,18 @@ class DriveRun:
         return known
 
     def _compare(self, state: LoadState) -> None:
-        """Compare contacts and bearing of the loaded state with those on coarser meshes, where that
+        """Compare contacts and bearing of the loaded state with those on a coarser mesh, where that
         is asked for and not known before."""
         record = self.recorder.record
         # the choice of the mesh has compared the state whose stress is known
         if not self.model.design.compares_meshes or record.root_stress is not None:
             return
-        if not self.coarser:
+        if not self._tried_coarser:
             with self.model.phases("coarser mesh"):
                 self._load_coarser()
-        known = [one for one in self.coarser if one is not None]
-        if len(known) < len(self.coarser):
+        if self._tried_coarser and self.coarser is None:
             return
-        found = compare_meshes(self.model, state, self.recorder.contacts(), known)
+        found = compare_meshes(self.model, state, self.recorder.contacts(), self.coarser)
         record.contact_errors, record.bearing_errors = found.contact_errors, found.bearing_errors
         self.comparison = found
 

@@ -1,7 +1,7 @@
 """Meshes for an accuracy: of the drive, and of the windows at its teeth.
 
-The drive is loaded on a mesh and on coarser ones. The changes of the stress in a window between
-them give the error of the drive's mesh, the order seen on three windows that of the window's mesh.
+The drive is loaded on a mesh and on a coarser one. The change of the stress in a window between
+them gives the error of the drive's mesh, the order seen on three windows that of the window's mesh.
 The larger of both is reduced until they are small enough together (docs/theory/meshes.md).
 """
 
@@ -17,9 +17,8 @@ from swgpar.analysis.compare_meshes import compare_meshes
 from swgpar.analysis.drive_mesh_error import (
     MeshComparison,
     coarser_mesh,
-    coarser_recipes,
+    coarser_recipe,
     least_error,
-    with_finer_flanks,
 )
 from swgpar.analysis.forecast import fits, forecast
 from swgpar.analysis.saved_state import StartStates
@@ -58,9 +57,9 @@ class ChosenMesh:
 
 @dataclass(frozen=True)
 class Refined:
-    """What a mesh gives in comparison with coarser ones.
+    """What a mesh gives in comparison with a coarser one.
 
-    coarse_wall : stresses of the wall on the coarsest of these, where they are known
+    coarse_wall : stresses of the wall on that one, where they are known
     found : by windows, with both errors
     """
 
@@ -97,32 +96,27 @@ class Refinement:
         self.drive, self.design, self.largest, self.kept = drive, drive.design, largest, kept
         self.loaded, self.kind = load_sequence(self.design).loaded, self.design.drive.model
         self.levels = levels or LEVELS[self.kind]
-        coarser = coarser_recipes(recipe)
-        if not coarser:
-            coarser, recipe = with_finer_flanks(recipe, refined(recipe)), refined(recipe)
-        self.model = self._solved(coarser[0])
+        coarser = coarser_recipe(recipe)
+        if coarser is None:
+            coarser, recipe = recipe, refined(recipe)
+        self.model = self._solved(coarser)
         try:
-            self.known = self._refined(coarser, recipe)
+            self.known = self._refined(recipe)
         except SwgparError:
             drive.models.drop(self.model)
             raise
 
-    def _refined(
-        self, coarser: list[MeshRecipe], recipe: MeshRecipe, before: RootStress | None = None
-    ) -> Refined:
-        """Go from the present mesh, the first of `coarser`, by way of the others to `recipe`.
+    def _refined(self, recipe: MeshRecipe, before: RootStress | None = None) -> Refined:
+        """Go from the present mesh to a finer one.
 
         before : stress on the present mesh with its error, if it is known
         """
         compared = coarse_wall(self.model, self.loaded, recipe)
-        meshes = [coarser_mesh(self.model, self.loaded, windows=True, coarsest=True)]
-        for between in coarser[1:]:
-            self._replace(between)
-            meshes.append(coarser_mesh(self.model, self.loaded, windows=True, coarsest=False))
+        coarser = coarser_mesh(self.model, self.loaded, windows=True)
         self._replace(recipe)
         found = resolve_root_stress(self.model, self.loaded, self.levels)
         contacts = pair_contacts(self.model, self.loaded)
-        comparison = compare_meshes(self.model, self.loaded, contacts, meshes, before)
+        comparison = compare_meshes(self.model, self.loaded, contacts, coarser, before)
         found = comparison.with_errors(found)
         self._log(found)
         return Refined(comparison, compared, found)
@@ -203,8 +197,7 @@ class Refinement:
             logger.info("no finer mesh is taken: %s", error)
             return False
         try:
-            coarser = with_finer_flanks(recipe, finer)
-            self.known = self._refined(coarser, finer, self.known.found)
+            self.known = self._refined(finer, self.known.found)
         except (ConvergenceError, InputError) as error:
             logger.warning("no finer mesh of the drive: %s", error)
             self.drive.models.give_back(self.model)

@@ -1,4 +1,4 @@
-"""Error of the torsional stiffness by the mesh, from the first position on coarser ones.
+"""Error of the torsional stiffness by the mesh, from the first position on other ones.
 
 Two groups of counts have an error each: those that are smaller on a coarser mesh, and in the plane
 those that are too small to be: along the flanks, in the layers below them, and in the ring gear.
@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from swgpar.analysis.coarse_start import MeshedDrive
-from swgpar.analysis.drive_mesh_error import ORDER, SAFETY, coarser_recipes, smallest_ratio
+from swgpar.analysis.drive_mesh_error import ORDER, SAFETY, coarser_recipe, smallest_ratio
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError
@@ -49,15 +49,15 @@ def stiffness_error(
 
     rows : of program.csv on that mesh. Collective.
     """
-    coarser = coarser_recipes(recipe)
-    if not coarser or body_ratio(coarser[0], recipe) is None:
+    coarser = coarser_recipe(recipe)
+    if coarser is None or body_ratio(coarser, recipe) is None:
         logger.info(
             "the error of the stiffness by the mesh is not known: a coarser one would not find the "
             "contacts"
         )
         return None
     first = replace(drive, design=_first_position(drive.design))
-    coarse = with_wall_rounded_up(coarser[0], recipe)
+    coarse = with_wall_rounded_up(coarser, recipe)
     ratio = min(smallest_ratio(coarse, recipe), wall_ratio(coarse, recipe) or math.inf)
     fine = by_position(stiffness_program(first.design), rows)[0.0]
     try:

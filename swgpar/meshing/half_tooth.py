@@ -44,6 +44,10 @@ SHORT = 0.5
 than asked for: S-shaped teeth have up to three such segments, and of six elements one was left for
 half of the flank (docs/verification/error_sources_plane.md)."""
 
+ROUGH = 2
+"""Elements along a flank up to which the ends of its segments are of no account: no contact is
+found with so few."""
+
 LOWEST_CAP = 0.5
 """Largest part of the height from J to K that the cap takes: the core needs the rest."""
 
@@ -76,10 +80,10 @@ def _ends(profile: ToothProfile, first: float, last: float) -> Floats:
 
 
 def flank_stations(profile: ToothProfile, first: float, last: float, n: int) -> Floats:
-    """As `stations`, with an element beside the n for each segment that is `SHORT`."""
-    lengths = np.diff(_ends(profile, first, last))
-    short = lengths < SHORT * (last - first) / n
-    return stations(profile, first, last, n + int(short.sum()) if n >= len(lengths) else n)
+    """As `stations`, with an element beside the n for each segment that is `SHORT`; not where the n
+    are `ROUGH`."""
+    short = np.diff(_ends(profile, first, last)) < SHORT * (last - first) / n
+    return stations(profile, first, last, n if n <= ROUGH else n + int(short.sum()))
 
 
 def inclination(profile: ToothProfile, s: Floats) -> Floats:

@@ -92,21 +92,12 @@ def refined(recipe: MeshRecipe) -> MeshRecipe:
     return with_counts(recipe, lambda _, name, count: math.ceil(RATIO * count - ROUND_OFF))
 
 
-def with_contact_of(body: MeshRecipe, contact: MeshRecipe) -> MeshRecipe:
-    """The recipe `body` with the counts of `contact` for the contact of the flanks."""
-    return _with_counts_of(body, contact, CONTACT)
-
-
 def with_flanks_of(body: MeshRecipe, flanks: MeshRecipe) -> MeshRecipe:
     """The recipe `body` with the elements along the flanks of `flanks`."""
-    return _with_counts_of(body, flanks, FLANKS)
 
-
-def _with_counts_of(
-    body: MeshRecipe, other: MeshRecipe, names: Mapping[str, Sequence[str]]
-) -> MeshRecipe:
     def count(section: str, name: str, own: int) -> int:
-        return getattr(getattr(other, section), name) if name in names.get(section, ()) else own
+        of_flank = name in FLANKS.get(section, ())
+        return getattr(getattr(flanks, section), name) if of_flank else own
 
     return with_counts(body, count)
 

@@ -17,7 +17,6 @@ from swgpar import load_design
 from swgpar.analysis.accuracy import with_accuracy
 from swgpar.analysis.coarse_start import MeshedDrive
 from swgpar.analysis.drive_mesh_error import (
-    FEWEST_ALONG_FLANKS,
     LEAST,
     LEAST_AT_LOADED_ENDS,
     LEAST_WITH_EDGES,
@@ -25,12 +24,12 @@ from swgpar.analysis.drive_mesh_error import (
     SAFETY,
     CoarserMesh,
     MeshComparison,
-    coarser_recipes,
+    coarser_recipe,
     drive_error,
     least_error,
 )
 from swgpar.analysis.mesh_refinement import ChosenMesh, choose_mesh
-from swgpar.analysis.shortcuts import with_shortcuts
+from swgpar.analysis.shortcuts import FEWEST, with_shortcuts
 from swgpar.errors import InputError
 from swgpar.flank_pressure.pair_contact import FACE_END, pair_contacts
 from swgpar.input.toml_file import to_toml
@@ -46,7 +45,6 @@ from swgpar.meshing.recipe_counts import (
     contact_ratio,
     refined,
     resized,
-    with_contact_of,
     with_counts,
 )
 
@@ -122,48 +120,42 @@ def windows(levels: list[float], part: str = BETWEEN) -> RootStress:
     )
 
 
-def compared(*stresses: list[float], part: str = BETWEEN) -> list[CoarserMesh]:
-    """The meshes that plane_fine is compared with, with these stresses on their windows."""
-    recipes = coarser_recipes(load_recipe("plane_fine"))
-    return [
-        CoarserMesh(recipe, {part: levels})
-        for recipe, levels in zip(recipes, stresses, strict=True)
-    ]
+def compared(levels: list[float], part: str = BETWEEN) -> CoarserMesh:
+    """The mesh that plane_fine is compared with, with these stresses on its windows."""
+    return CoarserMesh(coarsened(load_recipe("plane_fine")), {part: levels})
 
 
 def test_ratios_are_those_of_the_counts() -> None:
     """No count of plane_fine is rounded, but for the smallest ones."""
     fine = load_recipe("plane_fine")
-    coarse, between = coarser_recipes(fine)
-    assert body_ratio(coarse, fine) == body_ratio(between, fine) == RATIO
-    assert contact_ratio(coarse, fine) == contact_ratio(coarse, between) == RATIO
-    assert contact_ratio(between, fine) is body_ratio(coarse, between) is None
+    coarse = coarser_recipe(fine)
+    assert coarse is not None
+    assert body_ratio(coarse, fine) == contact_ratio(coarse, fine) == RATIO
     for name in ("root", "under", "rim", "flank"):
         counts = [getattr(one.flexible_spline, name) for one in (fine, coarse)]
         assert counts[0] == RATIO * counts[1], name
 
 
-def test_few_elements_along_flanks_stay() -> None:
-    """The mesh of a plane run has as many as the contact law needs: one coarser mesh, which shows
-    elements across the tooth too."""
-    recipe = load_recipe("plane_coarse")
-    (coarse,) = coarser_recipes(recipe)
-    assert contact_ratio(coarse, recipe) is None and body_ratio(coarse, recipe) == RATIO
-    assert recipe.flexible_spline.tip == RATIO * coarse.flexible_spline.tip
-
-
-def test_few_elements_along_flanks_of_a_cup_stay() -> None:
-    """Four change the stress of S-shaped teeth by more than all other counts. With so few in the
-    mesh itself there is no estimate: none would show that."""
-    usual = load_recipe("forces")
-    (coarse,) = coarser_recipes(usual)
+@pytest.mark.parametrize("name", ["plane_coarse", "forces"])
+def test_the_coarser_mesh_of_a_usual_run_shows_flanks_too(name: str) -> None:
+    """It has as few elements along the flanks as find contacts."""
+    recipe = load_recipe(name)
+    coarse = coarser_recipe(recipe)
+    assert coarse == coarsened(recipe)
     for gear in ("flexible_spline", "ring_gear"):
-        assert getattr(coarse, gear).flank == getattr(usual, gear).flank == FEWEST_ALONG_FLANKS
-    assert contact_ratio(coarse, usual) == RATIO  # of the face width
-    few = with_counts(usual, lambda _, name, own: 4 if name == "flank" else own)
-    assert coarser_recipes(few) == []
-    (finer,) = coarser_recipes(load_recipe("full"))
-    assert finer == coarsened(load_recipe("full"))
+        assert getattr(recipe, gear).flank == RATIO * getattr(coarse, gear).flank == RATIO * FEWEST
+    assert contact_ratio(coarse, recipe) == RATIO
+
+
+def test_fewer_elements_along_flanks_would_find_no_contacts() -> None:
+    recipe = load_recipe("plane_coarse")
+    few = with_counts(recipe, lambda _, name, own: FEWEST if name == "flank" else own)
+    coarse = coarser_recipe(few)
+    assert coarse is not None and contact_ratio(coarse, few) is None
+    assert body_ratio(coarse, few) == RATIO
+    none = with_counts(recipe, lambda _, name, own: FEWEST - 1 if name == "flank" else own)
+    assert coarser_recipe(none) is None
+    assert coarser_recipe(load_recipe("coarse")) is None  # four along the face width
 
 
 @pytest.mark.parametrize("name", ["coarse", "forces", "medium", "full", "plane", "plane_fine"])
@@ -177,40 +169,29 @@ def test_no_ratio_is_below_the_one_that_is_meant(name: str) -> None:
         least = 4 / 3 if four and fine is recipe else RATIO
         assert ratio is None or ratio >= least
         assert contact_ratio(coarse, fine) > 1.0
-        between = with_contact_of(coarse, fine)
-        assert contact_ratio(between, fine) is None and body_ratio(coarse, between) is None
 
 
 def test_without_fewer_elements_in_root_and_rim_there_is_no_estimate() -> None:
     """The recipe `coarse` has the fewest already: a coarser one would show no error there."""
     recipe = load_recipe("coarse")
-    coarser = [CoarserMesh(coarsened(recipe), {BETWEEN: [250.0, 280.0]})]
+    coarser = CoarserMesh(coarsened(recipe), {BETWEEN: [250.0, 280.0]})
     assert drive_error(coarser, recipe, windows([252.0, 282.0, 290.0]), 0.004) is None
-    assert drive_error([], recipe, windows([252.0, 282.0, 290.0]), 0.004) is None
+    assert drive_error(None, recipe, windows([252.0, 282.0, 290.0]), 0.004) is None
 
 
-def test_the_error_of_the_drive_s_mesh_follows_from_coarser_ones() -> None:
-    """Errors of the displacements' order are found by groups of counts; the windows' own, which all
-    share, cancel."""
+def test_the_error_of_the_drive_s_mesh_follows_from_a_coarser_one() -> None:
+    """An error of the displacements' order is found; the windows' own, which both share,
+    cancels."""
     recipe, left = load_recipe("plane_fine"), 1.0 / RATIO**ORDER
-    contact, body = -4.0, 9.0  # of the coarsest mesh
-
-    def levels(of_contact: float, of_body: float) -> list[float]:
-        return [260.0 + of_contact + of_body, 290.0 + of_contact + of_body]
-
-    fine = windows([*levels(left * contact, left * body), 300.0])
-    found = drive_error(
-        compared(levels(contact, body), levels(left * contact, body)), recipe, fine, 0.004
-    )
-    # of opposite signs, they do not cancel
-    expected = SAFETY * left * (abs(contact) + abs(body)) * fine.s1 / fine.levels[1]
+    fine = windows([260.0 + 9.0 * left, 290.0 + 9.0 * left, 300.0])
+    found = drive_error(compared([269.0, 299.0]), recipe, fine, 0.004)
+    expected = SAFETY * left * 9.0 * fine.s1 / fine.levels[1]
     assert found == pytest.approx(expected)
     # the first window was not computed
-    nan = float("nan")
-    coarser = compared([nan, levels(contact, body)[1]], [nan, levels(left * contact, body)[1]])
+    coarser = compared([math.nan, 299.0])
     assert drive_error(coarser, recipe, fine, 0.004) == pytest.approx(expected)
-    # changes that are small by chance
-    same, fine = compared([270.0, 290.0], [270.0, 290.0]), windows([270.0, 290.0, 300.0])
+    # a change that is small by chance
+    same, fine = compared([270.0, 290.0]), windows([270.0, 290.0, 300.0])
     assert drive_error(same, recipe, fine, 0.004) == pytest.approx(0.004 * 300.0)
     before = replace(windows([280.0]), drive_error=9.0)
     assert drive_error(same, recipe, fine, 0.004, before) == pytest.approx(9.0 * left)
@@ -221,26 +202,21 @@ def test_the_error_of_the_drive_s_mesh_follows_from_coarser_ones() -> None:
 def test_the_same_part_of_the_teeth_is_compared_between_meshes() -> None:
     """At the ends the second window gives too much, on either mesh."""
     recipe, shown = load_recipe("plane_fine"), SAFETY / (RATIO**ORDER - 1.0)
-    coarser = [
-        CoarserMesh(one, {BETWEEN: [260.0, 280.0], ENDS: [265.0, 295.0]})
-        for one in coarser_recipes(recipe)
-    ]
+    stresses = {BETWEEN: [260.0, 280.0], ENDS: [265.0, 295.0]}
+    coarser = CoarserMesh(coarsened(recipe), stresses)
     between, ends = windows([262.0, 281.25]), windows([267.0, 297.5], ENDS)
     assert drive_error(coarser, recipe, between, 0.0) == pytest.approx(1.25 * shown)
     assert drive_error(coarser, recipe, ends, 0.0) == pytest.approx(2.5 * shown)
-    # an end that was followed on no window which all meshes have
+    # an end that was followed on no window which both meshes have
     alone = windows([267.0], ENDS)
-    unknown = [CoarserMesh(one.recipe, {ENDS: [float("nan"), 295.0]}) for one in coarser]
-    assert drive_error(unknown, recipe, alone, 0.0) is None
+    assert drive_error(compared([math.nan, 295.0], ENDS), recipe, alone, 0.0) is None
 
 
 def test_another_part_has_another_error() -> None:
     """A further window may find the largest stress in another part of the teeth."""
     recipe, shown = load_recipe("plane_fine"), SAFETY / (RATIO**ORDER - 1.0)
-    coarser = [
-        CoarserMesh(one, {BETWEEN: [math.nan, 280.0], ENDS: [math.nan, 250.0]})
-        for one in coarser_recipes(recipe)
-    ]
+    stresses = {BETWEEN: [math.nan, 280.0], ENDS: [math.nan, 250.0]}
+    coarser = CoarserMesh(coarsened(recipe), stresses)
     comparison = MeshComparison(recipe, coarser, [], 20)
     at_ends = comparison.with_errors(windows([270.0, 290.0], ENDS))
     assert at_ends.drive_error == pytest.approx(40.0 * shown)

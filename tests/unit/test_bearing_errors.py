@@ -1,4 +1,4 @@
-"""Errors of the loads of balls by coarser meshes and by the increments."""
+"""Errors of the loads of balls by a coarser mesh and by the increments."""
 
 from __future__ import annotations
 
@@ -15,16 +15,17 @@ from swgpar.analysis.drive_mesh_error import (
     ORDER,
     SAFETY,
     CoarserMesh,
-    coarser_recipes,
     smallest_ratio,
 )
 from swgpar.answers.answer import NO_ESTIMATE
 from swgpar.evaluation.bearing_loads import BallLoads, evaluate_bearing
 from swgpar.evaluation.contact_error_shares import MISSED
 from swgpar.meshing import load_recipe
+from swgpar.meshing.recipe_counts import coarsened
 from swgpar.results.history import Row
 
 FINE = load_recipe("plane_coarse")
+COARSE = coarsened(FINE)
 BALLS = 20
 
 
@@ -54,10 +55,9 @@ def bearing(loads: Sequence[float], shares: dict[str, float] | None = None) -> B
 
 
 def test_a_coarser_mesh_shows_the_errors() -> None:
-    (coarse,) = coarser_recipes(FINE)
-    coarser = [CoarserMesh(coarse, {}, bearing=bearing([27.0]))]
+    coarser = CoarserMesh(COARSE, {}, bearing=bearing([27.0]))
     found = bearing_errors(coarser, FINE, bearing([30.0]))
-    factor = SAFETY / (smallest_ratio(coarse, FINE) ** ORDER - 1.0)
+    factor = SAFETY / (smallest_ratio(COARSE, FINE) ** ORDER - 1.0)
     assert found["bearing.largest_load"] == pytest.approx(factor * 3.0 / 30.0)
     # of the power 1/3 of the load, and of its power -3
     pressure = factor * (1.0 - 0.9 ** (1.0 / 3.0))
@@ -67,13 +67,13 @@ def test_a_coarser_mesh_shows_the_errors() -> None:
     assert found.keys().isdisjoint(kind.name for kind in NOT_SHOWN)
     # one increment has no range
     assert "bearing.load_ripple" not in found and "bearing.load_rating" not in found
-    same = bearing_errors([CoarserMesh(coarse, {}, bearing=bearing([30.0]))], FINE, bearing([30.0]))
+    same = bearing_errors(CoarserMesh(COARSE, {}, bearing=bearing([30.0])), FINE, bearing([30.0]))
     assert set(same.values()) == {LEAST}
 
 
 def test_without_a_bearing_on_the_coarser_mesh_no_error_is_known() -> None:
-    (coarse,) = coarser_recipes(FINE)
-    assert bearing_errors([CoarserMesh(coarse, {})], FINE, bearing([30.0])) == {}
+    assert bearing_errors(CoarserMesh(COARSE, {}), FINE, bearing([30.0])) == {}
+    assert bearing_errors(None, FINE, bearing([30.0])) == {}
     answers = {one.name: one for one in bearing([30.0]).answers()}
     assert answers["bearing.largest_load"].no_error == NO_ESTIMATE
 

@@ -19,9 +19,10 @@ from swgpar.meshing.cross_section import cross_section
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.drive_mesh import DriveMesh
 from swgpar.meshing.export import whole_body, whole_drive
-from swgpar.meshing.half_tooth import block_ends
+from swgpar.meshing.half_tooth import SHORT, block_ends
 from swgpar.meshing.quality import element_quality, hex_volumes
 from swgpar.meshing.recipe import ToothRecipe, make_recipe
+from swgpar.meshing.recipe_counts import coarsened
 from swgpar.meshing.sweep import axial_stations
 from swgpar.meshing.tooth_sector import build_sector
 from swgpar.profiles.flank import Segment, ToothProfile
@@ -253,21 +254,25 @@ def test_segment_ends_are_nodes(name: str) -> None:
             assert np.abs(mesh.flanks[0].s - end).min() < 1e-12
 
 
-def test_short_segments_have_elements_of_their_own() -> None:
-    """S-shaped teeth have a short segment in their middle: the six elements of the recipe share the
-    rest of the flank."""
+@pytest.mark.parametrize("count", [6, 4])
+def test_short_segments_have_elements_of_their_own(count: int) -> None:
+    """S-shaped teeth have a short segment in their middle: the elements of the recipe share the
+    rest of the flank, on the coarser mesh of a run too."""
     case = new(ratio=80, diameter=60.0, torque=5.0, model="plane")
-    mesh = build_sector_meshes(case.geometry, load_recipe("plane_coarse"))["flexible_spline"]
+    recipe = load_recipe("plane_coarse")
+    recipe = recipe if count == recipe.flexible_spline.flank else coarsened(recipe)
+    assert recipe.flexible_spline.flank == count
+    mesh = build_sector_meshes(case.geometry, recipe)["flexible_spline"]
     profile, s = mesh.profile, mesh.flanks[0].s
     k, q = block_ends(profile)
     side = s[(s >= k - 1e-9) & (s <= q + 1e-9)]
     ends = profile.breaks[(profile.breaks > k) & (profile.breaks < q)]
     assert all(np.abs(side - end).min() < 1e-9 for end in ends)
     lengths = np.diff([k, *ends, q])
-    short = int((lengths < 0.5 * (q - k) / 6).sum())
+    short = int((lengths < SHORT * (q - k) / count).sum())
     assert short > 0
-    assert len(side) - 1 == 6 + short
-    assert np.diff(side).max() < 1.5 * (q - k) / 6
+    assert len(side) - 1 == count + short
+    assert np.diff(side).max() < 1.5 * (q - k) / count
 
 
 def test_windows_of_a_tooth_with_a_small_rounded_edge_can_be_meshed() -> None:

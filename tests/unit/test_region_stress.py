@@ -274,16 +274,16 @@ def test_the_error_by_the_drive_is_that_of_the_compared_window() -> None:
     assert coarse.levels[1:] == (85.0,) and np.isnan(coarse.levels[0])
     fine = stress(readings({3: LEVELS}), nodal(t3=70.0))
     root = rooted({ROOT: fine})
-    meshes = [CoarserMesh(coarse_recipe, root.by_part, regions={ROOT: coarse})]
-    found = region_errors(meshes, fine_recipe, root, 0.001, (), 20)[ROOT]
+    coarser = CoarserMesh(coarse_recipe, root.by_part, regions={ROOT: coarse})
+    found = region_errors(coarser, fine_recipe, root, 0.001, (), 20)[ROOT]
     assert found.drive_error is not None
     share = found.drive_error / 94.0
     # of second order, by the smallest ratio of counts: four elements along the root over three
     assert share == pytest.approx(SAFETY * (5.0 / 90.0) / ((4 / 3) ** 2 - 1.0))
-    assert region_errors(meshes, fine_recipe, root, 0.5, (), 20)[ROOT].drive_error == 47.0
-    unknown = [replace(meshes[0], regions={})]
+    assert region_errors(coarser, fine_recipe, root, 0.5, (), 20)[ROOT].drive_error == 47.0
+    unknown = replace(coarser, regions={})
     assert region_errors(unknown, fine_recipe, root, 0.5, (), 20)[ROOT].drive_error is None
-    assert region_errors([], fine_recipe, root, 0.5, (), 20)[ROOT].resolved.error is None
+    assert region_errors(None, fine_recipe, root, 0.5, (), 20)[ROOT].resolved.error is None
 
 
 def region(name: str, value: float) -> RegionStress:
@@ -308,8 +308,8 @@ def test_small_stresses_are_as_uncertain_as_the_largest_one_of_their_body(
     # what lies under a contact has no limit and is no measure
     regions |= {"fs_s1 in flank under contact": region("fs_s1 in flank under contact", 900.0)}
     fine = load_recipe(mesh)
-    meshes = [CoarserMesh(coarsened(fine), {}, [pair(0)], regions)]
-    found = region_errors(meshes, fine, rooted(regions), 0.004, [pair(0)], 20)
+    coarser = CoarserMesh(coarsened(fine), {}, [pair(0)], regions)
+    found = region_errors(coarser, fine, rooted(regions), 0.004, [pair(0)], 20)
     assert found["rg_s1 in rim"].drive_error == pytest.approx(LEAST_IN_RING[model] * 50.0)
     # forces have errors that no mesh shows
     root = LEAST_FORCE["plane"] if model == "plane" else LEAST_IN_RING[model]
@@ -322,8 +322,8 @@ def test_a_contact_on_an_edge_leaves_no_estimate_in_the_tips() -> None:
     names = "rg_vm in tip", "rg_vm in tooth root", "fs_vm in tip"
     regions = {name: region(name, 50.0) for name in names}
     fine = load_recipe("plane_coarse")
-    meshes = [CoarserMesh(coarsened(fine), {}, regions=regions)]
-    found = region_errors(meshes, fine, rooted(regions), 0.02, [pair(0), pair(1)], 20)
+    coarser = CoarserMesh(coarsened(fine), {}, regions=regions)
+    found = region_errors(coarser, fine, rooted(regions), 0.02, [pair(0), pair(1)], 20)
     without = {name for name, one in found.items() if one.resolved.error is None}
     assert without == {"rg_vm in tip", "fs_vm in tip"}
 
@@ -343,9 +343,9 @@ def test_the_ring_gear_is_as_uncertain_as_the_forces_beside_the_stress(
     coarse = coarsened(fine)
     # errors of the pairs beside the stress are independent, and count by the sum of their forces
     before = [pair(0, 9.0), pair(0, 3.0, 1), pair(0, 0.1, 18), pair(0, 7.0, 4)]
-    meshes = [CoarserMesh(coarse, {}, before, regions)]
+    coarser = CoarserMesh(coarse, {}, before, regions)
     after = [pair(0, 10.0), pair(0, 5.0, 1), pair(0, 0.9, 18), pair(0, 5.0, 4)]
-    found = region_errors(meshes, fine, rooted(regions), 0.004, after, 20)[name]
+    found = region_errors(coarser, fine, rooted(regions), 0.004, after, 20)[name]
     expected = max(SAFETY * change / (1.5**2 - 1.0), LEAST_FORCE["plane"])
     assert found.drive_error == pytest.approx(50.0 * expected)
 
@@ -355,7 +355,7 @@ def test_stresses_of_the_ring_gear_follow_the_counts_of_the_contact() -> None:
     it."""
     name = "rg_s1 in tooth root"
     fine = load_recipe("forces")
-    meshes = [CoarserMesh(coarsened(fine), {}, [pair(0)], {name: region(name, 20.0)})]
+    coarser = CoarserMesh(coarsened(fine), {}, [pair(0)], {name: region(name, 20.0)})
     regions = {name: region(name, 50.0)}
-    found = region_errors(meshes, fine, rooted(regions), 0.004, [pair(0)], 20)[name]
+    found = region_errors(coarser, fine, rooted(regions), 0.004, [pair(0)], 20)[name]
     assert found.drive_error == pytest.approx(SAFETY * 30.0 / (1.5**2 - 1.0))
