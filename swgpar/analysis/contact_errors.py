@@ -71,6 +71,7 @@ def contact_errors(
         share = None if alone else shown.of_largest(measure)
         return None if share is None else max(share, least)
 
+    of_largest_force = shown.of_largest(lambda pair: pair.force_N)
     force = of_force(lambda pair: pair.force_N)
     # the force of a pair that is alone changes where another one touches: that has no estimate
     by_force = HERTZ * (least if force is None else force)
@@ -81,7 +82,7 @@ def contact_errors(
             return None
         if model != "plane":
             # the face width decides, which is coarser: no others are to be shown
-            return max(share / SAFETY, least_pressure)
+            return max(share / SAFETY, HERTZ * (of_largest_force or 0.0), least_pressure)
         # another mesh puts the cells elsewhere at a peak that is as narrow as they are
         peak = max(contacts, key=lambda pair: np.nan_to_num(measure(pair))).unresolved
         return max(math.hypot(max(share, by_force), LAW), peak)

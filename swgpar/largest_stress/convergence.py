@@ -37,9 +37,14 @@ def error_at_ends(ends: Sequence[float], between: Sequence[float], ratio: float)
     """Error of the last value at the ends of the teeth, which is the largest one.
 
     Where it falls from window to window, the largest stress is not above it, and not below the one
-    between the ends.
+    between the ends. Where that was the larger one on the window before, the largest of both is
+    followed: coarser windows may have no node at the end that is read.
     """
     error = error_of(ends, ratio)
-    if len(between) == len(ends) > 1 and ends[-1] < ends[-2]:
-        error = min(error, ends[-1] - between[-1] + error_of(between, ratio))
+    if len(between) != len(ends) or len(ends) == 1:
+        return error
+    if ends[-1] < ends[-2]:
+        return min(error, ends[-1] - between[-1] + error_of(between, ratio))
+    if ends[-2] < between[-2]:
+        return min(error, error_of(np.fmax(ends, between), ratio))
     return error

@@ -61,7 +61,7 @@ NEAR = 0.02
 
 BESIDE = 0.5
 """Distance over the thickness of the wall within which a place belongs to the fillet beside it, or
-to the edge of an attachment: as far as the stress there reaches."""
+to the edge of an attachment or of the wave generator: as far as the stress there reaches."""
 
 AT_CORNER = 0.1
 """Distance over the thickness of the wall within which a place on the back of the teeth belongs to
@@ -104,11 +104,12 @@ def regions_of(
 
 
 def _at_the_cam_edge(geometry: DriveGeometry, points: np.ndarray) -> np.ndarray:
-    """Whether points (n, 3) mm have the z of an edge of the wave generator, (n,) bool."""
+    """Whether points (n, 3) mm are as close to an edge of the wave generator along the axis as the
+    stress there reaches, (n,) bool."""
     if geometry.model == "plane":
         return np.zeros(len(points), dtype=bool)
     beyond = np.abs(points[:, 2]) - 0.5 * geometry.cam_width
-    return np.abs(beyond) < NEAR * geometry.module
+    return np.abs(beyond) < BESIDE * geometry.gears[FLEXIBLE_SPLINE].rim
 
 
 def _beside_the_wall(geometry: DriveGeometry, mesh: SectorMesh) -> np.ndarray:

@@ -105,6 +105,11 @@ def test_in_space_one_mesh_with_fewer_elements_in_all_directions_shows_the_error
     assert found.force == LEAST_FORCE["cup"]
     same = contact_errors(CoarserMesh(coarse, {}, [pair(1, 600.0)]), cup, [pair(1, 600.0)], 2)
     assert same.pressure == LEAST_PRESSURE
+    # a pressure goes with the root of the force, also where it is the same by chance
+    before, after = [pair(1, 600.0, force=90.0)], [pair(1, 600.0, force=100.0)]
+    found = contact_errors(CoarserMesh(coarse, {}, before), cup, after, 2)
+    assert found.force == pytest.approx(SAFETY * 0.1 / (ratio**2 - 1.0))
+    assert found.pressure == pytest.approx(0.5 * found.force)
 
 
 def test_without_a_coarser_mesh_nothing_is_known() -> None:

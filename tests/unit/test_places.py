@@ -10,6 +10,7 @@ from support.paths import DESIGN, RECIPE, REFERENCE
 from support.small_drive import PLANE
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.rotation import GEAR_STRESSES
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.largest_stress.local_problem import window_sector
 from swgpar.largest_stress.places import (
     APART,
@@ -157,6 +158,19 @@ def test_nodes_inside_of_teeth_are_on_no_surface(
 
 def test_roots_are_where_the_region_says_it(cup: tuple[DriveDesign, SectorMesh]) -> None:
     assert regions(cup, root_nodes(cup[0].geometry, cup[1])) == {"tooth root"}
+
+
+def test_windows_read_no_rim_as_close_to_the_edge_of_the_cam_as_its_stress_reaches() -> None:
+    """The elements of windows are shorter than that: the next node rises with every window too."""
+    geometry = swgpar.load_design(REFERENCE).geometry
+    mesh = window_sector(geometry, window_recipe("cup", 2))
+    inner = np.unique(mesh.faces["inner"])
+    inner = inner[np.abs(mesh.coords[inner, 2]) < 0.5 * geometry.face_width]
+    below = 0.5 * geometry.cam_width - np.abs(mesh.coords[inner, 2])
+    close = below < 0.5 * geometry.gears[FLEXIBLE_SPLINE].rim
+    found = regions_of(geometry, mesh, inner, False)
+    assert np.unique(below[close].round(9)).size > 1
+    assert set(found[close]) == {CAM_EDGE} and CAM_EDGE not in found[~close]
 
 
 def test_roots_on_elements_of_the_wall_are_at_the_corner() -> None:

@@ -194,6 +194,11 @@ def test_a_stress_at_the_ends_that_falls_is_bounded_by_the_one_between_them() ->
     assert error_at_ends(falling, between, 1.5) == pytest.approx(2.0 + error_of(between, 1.5))
     assert 2.0 + error_of(between, 1.5) < alone
     assert error_at_ends(rising, between, 1.5) == error_of(rising, 1.5)
+    # coarser windows have no node at the end that the last one reads
+    moved, inside = [1752.3, 1793.4, 4389.6], [4330.5, 4346.5, 4347.5]
+    expected = error_of([4330.5, 4346.5, 4389.6], 1.5)
+    assert error_at_ends(moved, inside, 1.5) == pytest.approx(expected)
+    assert expected < 100.0 < error_of(moved, 1.5)
 
 
 def test_a_narrow_window_counts_for_the_roots_and_the_ends_of_its_tooth(
