@@ -10,7 +10,8 @@ and the teeth of a dynamic spline are the thickest of a list.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -175,8 +176,21 @@ def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
         A value that is out of range.
     """
     _check(request)
-    refusal: InputError | None = None
-    built = False
+    made = _made(request)
+    if not isinstance(made, str):
+        return made
+    fitting = {name: _choices_that_fit(request, name) for name in ("cam", "profile")}
+    others = [f"{name} = {' or '.join(found)}" for name, found in fitting.items() if found]
+    raise InputError(
+        f"ratio = {request.ratio:g} with profile = {request.profile} and cam = {request.cam} "
+        f"{made}: allowed are {', '.join([*others, 'or other ratios'])}"
+    )
+
+
+def _made(request: Request) -> tuple[DriveDesign, dict[str, Any]] | str:
+    """The design of a request with the least backlash that clears its teeth, and the content of its
+    file; what it lacks where there is none."""
+    refusal, built = None, False
     for play in PLAY if request.profile != "s_shaped" else PLAY[:1]:
         table = _table(request, play)
         try:
@@ -187,13 +201,21 @@ def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
         built = True
         if design.rigid_teeth().clearance() > LEAST_CLEARANCE * design.drive.module:
             return (design, table) if design.dynamic_spline is None else _thin_teeth(table)
-    lacks = "leaves no clearance between the flanks"
     if refusal is not None and not built:
-        lacks = f"gives no teeth that can be built ({refusal})"
-    raise InputError(
-        f"ratio = {request.ratio:g} with profile = {request.profile} and cam = {request.cam} "
-        f"{lacks}: allowed are other ratios, profiles or cams"
-    )
+        return f"gives no teeth that can be built ({refusal})"
+    return "leaves no clearance between the flanks"
+
+
+def _choices_that_fit(request: Request, name: str) -> list[str]:
+    """Other values of one of `CHOICES` with which the request gives a drive."""
+    found = []
+    for value in get_args(CHOICES[name]):
+        other = replace(request, **{name: value})
+        with suppress(InputError):
+            _check(other)
+            if value != getattr(request, name) and not isinstance(_made(other), str):
+                found.append(value)
+    return found
 
 
 def _thin_teeth(table: dict[str, Any]) -> tuple[DriveDesign, dict[str, Any]]:

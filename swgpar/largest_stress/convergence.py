@@ -46,5 +46,5 @@ def error_at_ends(ends: Sequence[float], between: Sequence[float], ratio: float)
     if ends[-1] < ends[-2]:
         return min(error, ends[-1] - between[-1] + error_of(between, ratio))
     if ends[-2] < between[-2]:
-        return min(error, error_of(np.fmax(ends, between), ratio))
+        return min(error, error_of(list(np.fmax(ends, between)), ratio))
     return error
