@@ -33,7 +33,9 @@ OBSERVE = """
 () => {
   window.seen = {};
   const plot = document.querySelector('.js-plotly-plot');
-  plot.on('plotly_afterplot', () => { window.seen.picture ||= performance.now(); });
+  // a picture whose curves are moved ends with the second event alone
+  for (const name of ['plotly_afterplot', 'plotly_react'])
+    plot.on(name, () => { window.seen.picture ||= performance.now(); });
   new MutationObserver(() => {
     const busy = document.querySelector('[data-loaded-state]')?.dataset.loadedState;
     if (busy === 'computed' && window.seen.begun) window.seen.answer ||= performance.now();

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -24,13 +24,19 @@ class FlankGaps:
     """Gaps of the undeformed flanks of the flexible spline that are near a ring gear.
 
     tooth : (n,) numbers from the one that is on +y at the cam's angle 0, counter-clockwise
+    clockwise : (n,) whether it is the flank on that side of the tooth
     place : (n, 2) mm, of the flank, where it is nearest to that ring gear
     gap : (n,) mm, below 0 where flanks overlap
     """
 
     tooth: np.ndarray
+    clockwise: np.ndarray
     place: Floats
     gap: Floats
+
+    def taken(self, index: np.ndarray) -> FlankGaps:
+        """Some of these, or all in another order. index : their numbers, or (n,) whether each is"""
+        return FlankGaps(*(getattr(self, one.name)[index] for one in fields(self)))
 
 
 def flank_gaps(
@@ -51,7 +57,7 @@ def flank_gaps(
     flank = spline.point[spline.flank][::STRIDE]
     to_tooth = np.exp(1j * np.pi / motion.teeth_rg)
     found = []
-    for points in (flank, -np.conj(flank)):
+    for clockwise, points in ((True, flank), (False, -np.conj(flank))):
         moved = pose.c[:, None] + pose.turn[:, None] * points
         # the ring gear has no material nearer to the axis than its tips
         looked = np.abs(moved) > np.abs(ring.point).min() - near
@@ -63,5 +69,6 @@ def flank_gaps(
         both = as_points(points)
         places = moved_points(motion.line, psi[tooth], both, cam_angle)
         index = np.arange(len(tooth))
-        found.append((tooth, places[index, nearest], distance[tooth, nearest]))
+        side = np.full(len(tooth), clockwise)
+        found.append((tooth, side, places[index, nearest], distance[tooth, nearest]))
     return FlankGaps(*map(np.concatenate, zip(*found, strict=True)))

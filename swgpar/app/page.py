@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from functools import partial
 
 from nicegui import events, ui
@@ -210,9 +211,9 @@ class Page:
 
     # -- what the state draws ----------------------------------------------------------------------
 
-    def draw_section(self) -> None:
-        """Draw the pictures of the teeth."""
-        self.section.draw()
+    def draw_section(self) -> list[asyncio.Task[None]]:
+        """Draw the pictures of the teeth; tasks that end when the browser has drawn them."""
+        return self.section.draw()
 
     def draw_design(self) -> None:
         """Draw all else that depends on designs."""

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import asyncio
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from nicegui import ui
+from nicegui import background_tasks, ui
 
 from swgpar.app.section_plot import section_figure
 from swgpar.app.slider import Slider
-from swgpar.app.state import AppState
+from swgpar.app.state import DRAWN, AppState
 from swgpar.app.workspace import Variant
 from swgpar.checks.clearance import smallest_clearance
 from swgpar.design.drive_design import DriveDesign
@@ -72,15 +74,17 @@ class SectionPanel:
         with ui.element("div").props("role=status"):
             self.clearance()
 
-    def draw(self) -> None:
-        """Draw the pictures, others where variants come or go."""
+    def draw(self) -> list[asyncio.Task[None]]:
+        """Draw the pictures, others where variants come or go; tasks that end when the browser has
+        drawn them."""
         self._show_view()
         self.angle.text = f"{self.state.angle_deg:.0f}°"
         if not self._moves:
             self.slider.show(self.state.angle_deg)
         if len(self.plots) != len(self.state.shown):
             self.pictures.refresh()
-            return
+            return []
+        tasks = []
         for k, (plot, variant) in enumerate(zip(self.plots, self.state.shown, strict=True)):
             picture = self._picture(variant)
             if picture.shows_the_same(self.drawn[k]):
@@ -88,10 +92,10 @@ class SectionPanel:
             self.drawn[k], figure = picture, picture.figure()
             if plot in self.ready:
                 plot.figure = figure
-                # an update of the element would draw all controls of the window anew before it
-                plot.run_plot_method("react", figure["data"], figure["layout"], figure["config"])
+                tasks.append(background_tasks.create(_react(plot, figure)))
             else:
                 plot.update_figure(figure)
+        return tasks
 
     def draw_states(self) -> None:
         """Draw loaded states."""
@@ -154,3 +158,11 @@ class SectionPanel:
     def _play(self) -> None:
         self.state.plays = not self.state.plays
         self.play.text = "stop" if self.state.plays else "play"
+
+
+async def _react(plot: ui.plotly, figure: dict[str, Any]) -> None:
+    """Draw a figure in a plot of the browser, and wait until it has done so. An update of the
+    element would draw all controls of the window anew before it."""
+    content = figure["data"], figure["layout"], figure["config"]
+    with suppress(TimeoutError):
+        await plot.run_plot_method("react", *content, timeout=DRAWN)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from swgpar.app.flank_gaps import NEAR, flank_gaps
+from swgpar.app.flank_gaps import NEAR, FlankGaps, flank_gaps
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GearName
 from swgpar.geometry.arrays import Floats
@@ -50,13 +50,14 @@ def section_figure(
     traces = [_body(name, curves) for name, curves in bodies.items()]
     traces += [_behind(design, gear, angle) for gear in design.gears[2:]]
     shades = [shade for gear in design.gears[1:] for shade in _overlaps(design, gear, angle)]
-    marks = _loads(loaded) if loaded else [*shades, _gaps(design, angle_deg)]
+    marks = _loads(loaded) if loaded else [*shades, *_gaps(design, angle_deg)]
     (x, y), width = _view(design, angle, loaded)
     sizes = design.drive.module, design.major_semi_axis
-    lines = {"showgrid": False, "zeroline": False, "title": {"text": "mm"}}
+    lines = {"type": "linear", "showgrid": False, "zeroline": False, "title": {"text": "mm"}}
     return {
         "data": [*traces, *marks],
         "layout": {
+            **({} if loaded else _moving(design)),
             "uirevision": f"{loaded is None} {np.round(np.log(sizes) / OTHER_SIZE)}",
             "dragmode": "pan",
             "margin": {"l": 45, "r": 10, "t": 30, "b": 40},
@@ -78,6 +79,20 @@ def section_figure(
             "displaylogo": False,
             "responsive": True,
             "modeBarButtonsToRemove": ["select2d", "lasso2d"],  # nothing follows from a selection
+        },
+    }
+
+
+def _moving(design: DriveDesign) -> dict[str, Any]:
+    """Colours of gaps, and how a change is drawn: bodies and marks are moved at once, axes and the
+    bar stay as they are."""
+    return {
+        "transition": {"duration": 0},
+        "coloraxis": {
+            "cmin": 0.0,
+            "cmax": 1e3 * NEAR * design.drive.module,
+            "colorscale": [[0.0, OVERLAP], [1e-6, TOUCHING], [1.0, APART]],
+            "colorbar": _bar("gap, µm"),
         },
     }
 
@@ -183,39 +198,37 @@ def _rounded(values: Floats) -> list[float]:
     return rounded
 
 
-def _gaps(design: DriveDesign, angle_deg: float) -> dict[str, Any]:
-    """Gaps of flanks to all ring gears, the smallest on top."""
-    rings = design.gears[1:]
-    every = [flank_gaps(design, angle_deg, gear) for gear in rings]
-    place, gap, tooth = (
-        np.concatenate([getattr(one, name) for one in every]) for name in ("place", "gap", "tooth")
-    )
-    ring = np.repeat(rings, [len(one.gap) for one in every])
-    order = np.argsort(-gap, kind="stable")
-    place, gap, tooth, ring = place[order], gap[order], tooth[order], ring[order]
-    overlap, symbol = gap < 0.0, np.where(ring == "ring_gear", "circle", "diamond")
+def _gaps(design: DriveDesign, angle_deg: float) -> list[dict[str, Any]]:
+    """Gaps of flanks to each ring gear, and overlaps above them, the smallest on top."""
+    apart, overlaps = [], []
+    for gear, symbol in zip(design.gears[1:], ("circle", "diamond"), strict=False):
+        found = flank_gaps(design, angle_deg, gear)
+        found = found.taken(np.argsort(-found.gap, kind="stable"))
+        apart.append(_marks(found.taken(found.gap >= 0.0), gear, "gap", symbol))
+        if (deep := found.gap < 0.0).any():
+            overlaps.append(_marks(found.taken(deep), gear, "overlap, gap", "x"))
+    return [*apart, *overlaps]
+
+
+def _marks(found: FlankGaps, gear: GearName, word: str, symbol: str) -> dict[str, Any]:
+    """Marks of gaps to a ring gear. Each is known by its flank, and a change moves it."""
+    sides = np.where(found.clockwise, "clockwise", "counter-clockwise")
+    ring = gear.replace("_", " ")
     return {
         "type": "scatter",
         "mode": "markers",
         "name": "gaps",
         "showlegend": False,
-        "x": _rounded(place[:, 0]),
-        "y": _rounded(place[:, 1]),
+        "x": _packed(found.place[:, 0]),
+        "y": _packed(found.place[:, 1]),
+        "ids": [f"tooth {n}, {side}" for n, side in zip(found.tooth, sides, strict=True)],
         "marker": {
-            "size": np.where(overlap, 6, 7).tolist(),
-            "symbol": np.where(overlap, "x", symbol).tolist(),
-            "color": (1e3 * gap).tolist(),
-            "cmin": 0.0,
-            "cmax": 1e3 * NEAR * design.drive.module,
-            "colorscale": [[0.0, OVERLAP], [1e-6, TOUCHING], [1.0, APART]],
-            "colorbar": _bar("gap, µm"),
+            "size": 6 if symbol == "x" else 7,
+            "symbol": symbol,
+            "color": np.round(1e3 * found.gap, 3).tolist(),
+            "coloraxis": "coloraxis",
         },
-        "text": [
-            f"tooth {number}, {name.replace('_', ' ')}: "
-            f"{'overlap' if one < 0.0 else 'gap'} {abs(1e3 * one):.2f} µm"
-            for number, name, one in zip(tooth, ring, gap, strict=True)
-        ],
-        "hoverinfo": "text",
+        "hovertemplate": f"%{{id}}, {ring}: {word} %{{marker.color:.2f}} µm<extra></extra>",
     }
 
 

@@ -20,15 +20,15 @@ from swgpar.errors import SwgparError
 from swgpar.rating.planned_runs import rating_loads
 from swgpar.results.atomic import write_file
 
-SENT = 0.02
-"""Seconds in which a picture goes to the browser before the rest is drawn."""
+DRAWN = 1.0
+"""Seconds after which nothing waits any more for the browsers to draw the pictures."""
 
 
 class Window(Protocol):
     """A page that shows the state."""
 
-    def draw_section(self) -> None:
-        """Draw the pictures of the teeth."""
+    def draw_section(self) -> list[asyncio.Task[None]]:
+        """Draw the pictures of the teeth; tasks that end when the browser has drawn them."""
 
     def draw_design(self) -> None:
         """Draw all else that depends on designs."""
@@ -153,12 +153,13 @@ class AppState:
         await self.draw(keeps=False)
 
     async def draw(self, *, keeps: bool = True) -> None:
-        """Draw all that depends on designs in all windows, the sections first.
+        """Draw all that depends on designs in all windows. The sections come first: while browsers
+        draw them, loaded states and all else would take the processor from them.
 
         keeps : whether the variant is written into its file
         """
-        self.draw_sections()
-        await asyncio.sleep(SENT)
+        if drawn := self.draw_sections():
+            await asyncio.wait(drawn, timeout=DRAWN)
         if keeps:
             self.workspace.keep()
         if (self.choices.shown, self.choices.beside) != (
@@ -176,10 +177,10 @@ class AppState:
             self.angle_deg = (self.angle_deg + 1.0) % 360.0
             self.draw_sections()
 
-    def draw_sections(self) -> None:
-        """Draw the pictures of the teeth in all windows."""
-        for window in self.windows:
-            window.draw_section()
+    def draw_sections(self) -> list[asyncio.Task[None]]:
+        """Draw the pictures of the teeth in all windows; tasks that end when the browsers have
+        drawn them."""
+        return [task for window in self.windows for task in window.draw_section()]
 
     def look_at_states(self) -> None:
         """Take over states that have been computed."""

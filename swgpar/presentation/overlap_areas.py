@@ -71,11 +71,13 @@ class SlotOverlap:
             # from the root, below which there is the rim, to the edge of the tip
             known = radius[k, end:][::-1], angle[k, end:][::-1]
             reach[k] = np.interp(self.radii, *known, left=self.pitch)
-        below = radius[:, : end + 1, None] >= self.radii
-        under_land = np.where(below, angle[:, : end + 1, None], -np.inf).max(axis=1)
         beyond = self.radii > radius[:, end, None]
+        reach[beyond] = -np.inf
+        row, at = np.nonzero(beyond & (self.radii <= tips[rows].max(axis=1)[:, None]))
+        below = radius[row, : end + 1] >= self.radii[at, None]
+        reach[row, at] = np.where(below, angle[row, : end + 1], -np.inf).max(axis=1)
         found = np.full((len(psi), len(self.radii)), -np.inf)
-        found[rows] = np.where(beyond, under_land, reach)
+        found[rows] = reach
         return np.minimum(found, 0.5 * self.pitch)
 
     def areas(self, reach: Floats, side: float) -> list[Floats]:

@@ -181,8 +181,8 @@ def test_an_overlap_is_marked() -> None:
     tight = design.with_values({"ring_gear.c_P": 1.01})
     assert clearances(tight.rigid_pairs)[0].overlaps
     marks = section_figure(tight)["data"][-1]
-    assert "x" in marks["marker"]["symbol"]
-    assert any("overlap" in text for text in marks["text"])
+    assert marks["marker"]["symbol"] == "x" and "overlap" in marks["hovertemplate"]
+    assert max(marks["marker"]["color"]) < 0.0
 
 
 @pytest.mark.parametrize("name", ["cup_45deg.toml", "three_lobes.toml"])
@@ -221,12 +221,35 @@ def test_an_overlap_with_the_second_ring_gear_is_said_and_shaded() -> None:
         points = (x + 1j * y)[np.isfinite(x)] * np.exp(-1j * angle * (1.0 - teeth / turns))
         depth = ring.distance(ring.folded(points * np.exp(1j * np.pi / turns))[0]).distance.min()
         assert depth == pytest.approx(known, rel=0.01)
-    gaps = figure["data"][-1]
-    assert {text.split(", ")[1].split(":")[0] for text in gaps["text"]} == {
-        "ring gear",
-        "dynamic spline",
+    marks = [one for one in figure["data"] if one["name"] == "gaps"]
+    words = [one["hovertemplate"].split(", ")[1].split(" %")[0] for one in marks]
+    assert words == ["ring gear: gap", "dynamic spline: gap", "dynamic spline: overlap"]
+    assert min(marks[-1]["marker"]["color"]) == pytest.approx(1e3 * known, rel=0.02)
+
+
+@pytest.mark.parametrize("c_P", [1.0, 1.01])
+@pytest.mark.parametrize(
+    ("other", "angle"), [({"drive.addendum_coef": 0.57}, 0.0), ({"flexible_spline.rim": 0.5}, 7.0)]
+)
+def test_a_change_moves_curves_and_marks(c_P: float, other: dict[str, float], angle: float) -> None:
+    """Of designs with and without overlaps. Plotly draws all anew, the axes too, where anything
+    else of a trace changes, and takes marks for one another where they share a name."""
+
+    def rest(figure: dict[str, Any]) -> list[dict[str, Any]]:
+        for trace in figure["data"]:
+            ids = trace.pop("ids", [])
+            assert len(ids) == len(set(ids))
+            trace.get("marker", {}).pop("color", None)
+            del trace["x"], trace["y"]
+        return list(figure["data"])
+
+    first = drive(DRIVERS / "cup_45deg.toml").with_values({"ring_gear.c_P": c_P})
+    figures = section_figure(first), section_figure(first.with_values(other), angle)
+    assert figures[0]["layout"] == figures[1]["layout"] | {
+        key: figures[0]["layout"][key] for key in ("xaxis", "yaxis")
     }
-    assert min(gaps["marker"]["color"]) == pytest.approx(1e3 * known, rel=0.02)
+    assert figures[0]["data"] != figures[1]["data"] and figures[0]["layout"]["transition"]
+    assert rest(figures[0]) == rest(figures[1])
 
 
 def test_a_picture_is_drawn_again_where_it_changes() -> None:
