@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from nicegui import background_tasks, ui
 
-from swgpar.app.section_plot import section_figure
+from swgpar.app.section_plot import moved, section_figure
 from swgpar.app.slider import Slider
 from swgpar.app.state import DRAWN, AppState
 from swgpar.app.workspace import Variant
@@ -91,8 +91,8 @@ class SectionPanel:
                 continue
             self.drawn[k], figure = picture, picture.figure()
             if plot in self.ready:
+                tasks.append(background_tasks.create(_react(plot, moved(figure, plot.figure))))
                 plot.figure = figure
-                tasks.append(background_tasks.create(_react(plot, figure)))
             else:
                 plot.update_figure(figure)
         return tasks

@@ -57,7 +57,7 @@ def section_figure(
     return {
         "data": [*traces, *marks],
         "layout": {
-            **({} if loaded else _moving(design)),
+            **({} if loaded else {"coloraxis": _gap_colours(design)}),
             "uirevision": f"{loaded is None} {np.round(np.log(sizes) / OTHER_SIZE)}",
             "dragmode": "pan",
             "margin": {"l": 45, "r": 10, "t": 30, "b": 40},
@@ -83,18 +83,14 @@ def section_figure(
     }
 
 
-def _moving(design: DriveDesign) -> dict[str, Any]:
-    """Colours of gaps, and how a change is drawn: bodies and marks are moved at once, axes and the
-    bar stay as they are."""
-    return {
-        "transition": {"duration": 0},
-        "coloraxis": {
-            "cmin": 0.0,
-            "cmax": 1e3 * NEAR * design.drive.module,
-            "colorscale": [[0.0, OVERLAP], [1e-6, TOUCHING], [1.0, APART]],
-            "colorbar": _bar("gap, µm"),
-        },
-    }
+def moved(figure: dict[str, Any], before: dict[str, Any]) -> dict[str, Any]:
+    """The figure, such that Plotly moves the curves and the marks of gaps that are drawn and leaves
+    axes and bar as they are; itself where more has changed since the figure before."""
+    layout = figure["layout"]
+    names, former = ([trace["name"] for trace in one["data"]] for one in (figure, before))
+    if "coloraxis" not in layout or layout != before["layout"] or names != former:
+        return figure
+    return figure | {"layout": layout | {"transition": {"duration": 0}}}
 
 
 def _view(design: DriveDesign, angle: float, loaded: LoadedOutline | None) -> tuple[Floats, float]:
@@ -208,6 +204,16 @@ def _gaps(design: DriveDesign, angle_deg: float) -> list[dict[str, Any]]:
         if (deep := found.gap < 0.0).any():
             overlaps.append(_marks(found.taken(deep), gear, "overlap, gap", "x"))
     return [*apart, *overlaps]
+
+
+def _gap_colours(design: DriveDesign) -> dict[str, Any]:
+    """Colours of gaps, with their bar."""
+    return {
+        "cmin": 0.0,
+        "cmax": 1e3 * NEAR * design.drive.module,
+        "colorscale": [[0.0, OVERLAP], [1e-6, TOUCHING], [1.0, APART]],
+        "colorbar": _bar("gap, µm"),
+    }
 
 
 def _marks(found: FlankGaps, gear: GearName, word: str, symbol: str) -> dict[str, Any]:

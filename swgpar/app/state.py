@@ -20,8 +20,9 @@ from swgpar.errors import SwgparError
 from swgpar.rating.planned_runs import rating_loads
 from swgpar.results.atomic import write_file
 
-DRAWN = 1.0
-"""Seconds after which nothing waits any more for the browsers to draw the pictures."""
+DRAWN = 0.25
+"""Seconds after which nothing waits any more for pictures in browsers: one that nobody sees is slow
+to say that it is drawn."""
 
 
 class Window(Protocol):
