@@ -38,6 +38,13 @@ CONTROLS = {"button", "textbox", "combobox", "slider", "spinbutton", "switch", "
 """Roles of what is operated."""
 
 
+ABANDONED = re.compile(
+    r"ERROR: +Exception in ASGI application\n(?:(?!ERROR:).*\n)*?"
+    r"RuntimeError: No response returned\.\n"
+)
+"""What the server's library says where a browser has left a page before all of it has come."""
+
+
 class Served:
     """A server in a workspace, and its address."""
 
@@ -63,7 +70,7 @@ class Served:
     def errors(self) -> str:
         """What it has said of errors: of handlers that have failed, for one."""
         self._errors.seek(0)
-        return self._errors.read().decode()
+        return ABANDONED.sub("", self._errors.read().decode())
 
     def ended(self, number: int) -> int:
         """Exit code of the server after a signal."""
