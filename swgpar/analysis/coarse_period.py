@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from swgpar.analysis.drive_mesh_error import ORDER, SAFETY, smallest_ratio
+from swgpar.analysis.drive_mesh_error import shown_error
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.predictor import KnownState
 from swgpar.analysis.transfer import Interpolations, interpolations, transfer
@@ -43,7 +43,7 @@ def coarse_period(model: DriveModel, run: LoadStepper) -> CoarsePeriod | None:
     finally:
         loaded.copy(model.problem.x)
     run.guides = guides
-    factor = SAFETY / (smallest_ratio(model.recipe, run.model.recipe) ** ORDER - 1.0)
+    factor = shown_error(model.recipe, run.model.recipe, 1.0)
     return CoarsePeriod(period_curves(sequence.kinematics, rows, INPUT_TORQUE), factor)
 
 

@@ -167,8 +167,7 @@ def start_at_load(
     if coarser_ones := levels(drive.design.start_levels, recipe):
         ways.append(coarser_ones)
     if drive.design.starts_bent:
-        compared = coarser_recipe(recipe)
-        if compares and not ways and compared is not None:
+        if compares and not ways and (compared := coarser_recipe(recipe)):
             ways.append([compared])
         ways.append([])
     if ways and drive.models.resume(stepper):

@@ -67,12 +67,11 @@ def contact_errors(
     least = least_error_of_force(model, contacts)
     least_pressure = LEAST_PRESSURE_WITH_EDGES if on_edge else LEAST_PRESSURE
 
-    def of_force(measure: Measure) -> float | None:
-        share = None if alone else shown.of_largest(measure)
-        return None if share is None else max(share, least)
+    def of_force(share: float | None) -> float | None:
+        return None if alone or share is None else max(share, least)
 
-    of_largest_force = shown.of_largest(lambda pair: pair.force_N)
-    force = of_force(lambda pair: pair.force_N)
+    shown_force = shown.of_largest(lambda pair: pair.force_N)
+    force = of_force(shown_force)
     # the force of a pair that is alone changes where another one touches: that has no estimate
     by_force = HERTZ * (least if force is None else force)
 
@@ -82,12 +81,12 @@ def contact_errors(
             return None
         if model != "plane":
             # the face width decides, which is coarser: no others are to be shown
-            return max(share / SAFETY, HERTZ * (of_largest_force or 0.0), least_pressure)
+            return max(share / SAFETY, HERTZ * (shown_force or 0.0), least_pressure)
         # another mesh puts the cells elsewhere at a peak that is as narrow as they are
         peak = max(contacts, key=lambda pair: np.nan_to_num(measure(pair))).unresolved
         return max(math.hypot(max(share, by_force), LAW), peak)
 
-    share = of_force(lambda pair: pair.force_share)
+    share = of_force(shown.of_largest(lambda pair: pair.force_share))
     if share is not None and force is not None and model == "plane":
         # the force of a pair and that of all may have changed together by chance
         share = max(share, math.hypot(force, shown.of_total()))

@@ -23,6 +23,7 @@ from swgpar.model.regions import (
     TIP,
     TOOTH_END,
     TOOTH_ROOT,
+    at_the_cam_edge,
 )
 
 OF_SPLINE = (TOOTH_ROOT, TOOTH_END, FLANK, TIP, RIM_INSIDE, BACK, CUP_WALL)
@@ -71,9 +72,8 @@ def _beside_edges(geometry: DriveGeometry, mesh: SectorMesh, length: float) -> n
     radius, z = np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]
     if mesh.plane or mesh.body == RING_GEAR:
         return np.zeros(len(z), dtype=bool)
-    reach = BESIDE * geometry.gears[mesh.body].rim
-    on_rim = radius < geometry.inner_radius + reach
-    beside = on_rim & (np.abs(np.abs(z) - 0.5 * geometry.cam_width) < reach)
+    on_rim = radius < geometry.inner_radius + BESIDE * geometry.gears[mesh.body].rim
+    beside = on_rim & at_the_cam_edge(geometry, mesh.coords)
     if geometry.cup is None:
         return beside
     thickness, back = geometry.cup_thickness, geometry.cup.wall.back

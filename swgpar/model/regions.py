@@ -93,7 +93,7 @@ def regions_of(
     once, index = np.unique(lower, return_inverse=True)
     of_each = [_smooth_region(geometry, mesh, int(node), touched) for node in once]
     found = np.array(of_each, dtype=object)[index]
-    found[_at_the_cam_edge(geometry, points) & (found == RIM_INSIDE)] = CAM_EDGE
+    found[at_the_cam_edge(geometry, points) & (found == RIM_INSIDE)] = CAM_EDGE
     found[_beside_the_wall(geometry, mesh)[nodes]] = NOTCH_REGION
     at_held_edge = _at_a_held_edge(geometry, mesh, points)
     found[at_held_edge & np.isin(found, (RIM, OUTER))] = ATTACHED
@@ -103,7 +103,7 @@ def regions_of(
     return found.astype(str)
 
 
-def _at_the_cam_edge(geometry: DriveGeometry, points: np.ndarray) -> np.ndarray:
+def at_the_cam_edge(geometry: DriveGeometry, points: np.ndarray) -> np.ndarray:
     """Whether points (n, 3) mm are as close to an edge of the wave generator along the axis as the
     stress there reaches, (n,) bool."""
     if geometry.model == "plane":
