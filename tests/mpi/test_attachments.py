@@ -11,7 +11,7 @@ from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
 from support.cup_shapes import ATTACHMENTS, CLAMPED, HAT_CLAMPED, Changes, bolted, shaped
-from support.stepping import WORLD, Row, assert_agree, loaded, rotate
+from support.stepping import WORLD, Row, assert_agree, load_stepper, loaded, rotate
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.constraints.distributing_coupling import ROTATION
 from swgpar.constraints.rigid_attachment import RigidAttachment
@@ -65,7 +65,7 @@ def test_the_areas_are_those_of_ring_and_washers() -> None:
         ("eight bolts", 2.0 * 8.0 * np.pi * 1.0**2),
         ("hat, ten bolts", 2.0 * 10.0 * np.pi * 1.5**2),
     ):
-        stepper, _ = on(name)
+        stepper = load_stepper(shaped(ATTACHMENTS[name]))
         area = stepper.problem.supports.couplings[0].total * stepper.model.copies
         # the mesh has chords of 9 degrees, 0.4 % less; the rims of washers are met by points 0.1 mm
         # apart

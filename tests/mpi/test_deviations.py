@@ -116,7 +116,7 @@ def test_an_ideal_drive_has_mesh_orders_only() -> None:
     """A whole turn step by step: all amplitudes but those of the mesh are below 1e-6 of it."""
     design = small("plane")
     stepper = loaded_stepper(design)
-    count = 4 * TEETH_RG
+    count = 3 * TEETH_RG
     angles = 2.0 * np.pi * np.arange(count) / count
     rows = [rotate(stepper, angle) if angle else stepper.row() for angle in angles]
     output = np.array([row["output_angle_deg"] for row in rows])

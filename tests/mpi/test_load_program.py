@@ -219,20 +219,21 @@ def test_the_wave_generator_turns_within_a_program() -> None:
     assert rows[-1]["wg_torque_Nmm"] == pytest.approx(rows[0]["wg_torque_Nmm"], rel=1e-5)
 
 
-@pytest.fixture(scope="module")
-def ratcheting() -> list[DriveResult]:
-    """With records at half pitches and at hundredths of a pitch."""
+def jumped_over(increment: float) -> DriveResult:
+    """With records at this share of a pitch."""
     keys = {**LOW_TEETH, "ratcheting.yield_strength": YIELD_STRENGTH}
-    return [
-        run(small("plane").with_values({**keys, "ratcheting.increment": increment}))
-        for increment in (0.5, 0.01)
-    ]
+    return run(small("plane").with_values({**keys, "ratcheting.increment": increment}))
 
 
-def test_ratcheting_ends_where_the_torque_is_sufficient(ratcheting: list[DriveResult]) -> None:
+@pytest.fixture(scope="module")
+def ratcheting() -> DriveResult:
+    return jumped_over(0.01)
+
+
+def test_ratcheting_ends_where_the_torque_is_sufficient(ratcheting: DriveResult) -> None:
     """Before the peak, with a lower bound of it. It may begin under a torque: the states are those
     of the rotation from the assembled drive on."""
-    peak = ratcheting[1].summary.ratcheting.peak_torque_Nm
+    peak = ratcheting.summary.ratcheting.peak_torque_Nm
     start, enough = 0.1 * peak, 0.25 * peak
     keys = {"ratcheting.increment": 0.01, "ratcheting.sufficient_torque": enough}
     keys["ratcheting.start_torque"] = start
@@ -241,7 +242,7 @@ def test_ratcheting_ends_where_the_torque_is_sufficient(ratcheting: list[DriveRe
     assert found.ended == SUFFICIENT and not found.is_peak
     assert torque[0] == pytest.approx(start) and torque[-2] < enough
     assert enough <= found.peak_torque_Nm == pytest.approx(torque[-1])
-    whole = ratcheting[1].program
+    whole = ratcheting.program
     same = np.isin(whole["step"] + 1, result.program["step"][1:-1])  # the start is a point too
     assert whole["torque_Nm"][same].min() > start
     assert torque[1:-1] == pytest.approx(whole["torque_Nm"][same], rel=1e-6, abs=1e-6)
@@ -249,34 +250,32 @@ def test_ratcheting_ends_where_the_torque_is_sufficient(ratcheting: list[DriveRe
     assert rotation[1:-1] == pytest.approx(whole["rotation_arcmin"][same])
 
 
-def test_ratcheting_ends_by_itself(ratcheting: list[DriveResult]) -> None:
-    result = ratcheting[1]
-    found, torque = result.summary.ratcheting, result.program["torque_Nm"]
+def test_ratcheting_ends_by_itself(ratcheting: DriveResult) -> None:
+    found, torque = ratcheting.summary.ratcheting, ratcheting.program["torque_Nm"]
     # behind the peak the teeth jump: a state there may have no equilibrium
     assert found.ended in ("torque fell", "no equilibrium found")
     assert found.gave_way == AT_TEETH and found.is_peak
     # the record behind the peak is the state in which the torque has fallen
     assert found.peak_torque_Nm >= torque.max() > 0.0 and torque[-1] < 0.9 * found.peak_torque_Nm
     assert np.all(torque[:-1] >= 0.9 * np.maximum.accumulate(torque)[:-1])
-    assert found.peak_step == found.last_step == result.program["step"][-1]
+    assert found.peak_step == found.last_step == ratcheting.program["step"][-1]
     assert 0.0 < found.peak_rotation_pitches < 0.2
 
 
 def test_gears_yield_where_their_stress_reaches_the_strength(
-    ratcheting: list[DriveResult],
+    ratcheting: DriveResult,
 ) -> None:
-    result = ratcheting[1]
-    stress = np.maximum(result.history["fs_vm"], result.history["rg_vm"])
-    torque = abs(result.history["output_torque_Nmm"]) / 1000.0
+    stress = np.maximum(ratcheting.history["fs_vm"], ratcheting.history["rg_vm"])
+    torque = abs(ratcheting.history["output_torque_Nmm"]) / 1000.0
     above = int(np.argmax(stress >= YIELD_STRENGTH))
-    found = result.summary.ratcheting.yield_torque_Nm
-    assert result.history["step"][above] > 3
-    assert torque[above - 1] <= found <= torque[above] < result.summary.ratcheting.peak_torque_Nm
+    found = ratcheting.summary.ratcheting.yield_torque_Nm
+    assert ratcheting.history["step"][above] > 3
+    assert torque[above - 1] <= found <= torque[above] < ratcheting.summary.ratcheting.peak_torque_Nm
 
 
-def test_the_peak_does_not_depend_on_the_records(ratcheting: list[DriveResult]) -> None:
+def test_the_peak_does_not_depend_on_the_records(ratcheting: DriveResult) -> None:
     """Half a pitch leads behind the peak, where no flanks touch."""
-    rough, fine = (result.summary.ratcheting for result in ratcheting)
+    rough, fine = jumped_over(0.5).summary.ratcheting, ratcheting.summary.ratcheting
     assert rough.is_peak and rough.ended == "torque fell" and rough.states > 10
     assert rough.peak_torque_Nm == pytest.approx(
         fine.peak_torque_Nm, abs=max(rough.peak_error_Nm, fine.peak_error_Nm)

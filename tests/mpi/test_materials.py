@@ -68,8 +68,8 @@ def test_the_body_decides_and_not_the_section(model: tuple[str, ...]) -> None:
         *model,
         "output.root_stress=true",
         "losses.flank_friction=0.05",
-        "steps.samples=4",
-        "steps.rotation=18",
+        "steps.samples=2",
+        "steps.rotation=9",
     )
     soft_ring = run(*more, *given(drive=STEEL, ring_gear=SOFT))
     steel_spline = run(*more, *given(drive=SOFT, flexible_spline=STEEL))

@@ -23,7 +23,8 @@ SHORT = (*PLANE, "steps.rotation=2.0", "steps.increment=2.0", "output.figures=fa
 
 
 def pair(out: Path, **options: bool) -> None:
-    design = swgpar.load_design(DRIVERS / "gear_pair.toml", [*SMALL["gear_pair"]])
+    overrides = [*SMALL["gear_pair"], "output.figures=false"]
+    design = swgpar.load_design(DRIVERS / "gear_pair.toml", overrides)
     swgpar.run(design, out=out, **options)
 
 
