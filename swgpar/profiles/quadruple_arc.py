@@ -9,6 +9,7 @@ With s = +1 for external and -1 for internal teeth, normals n and alpha* of `Pit
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -18,13 +19,17 @@ from swgpar.profiles.flank import ToothProfile
 from swgpar.profiles.pitch_point import PitchPointFrame, PlacedSegment
 
 
-def closing_angle(radius: Callable[[float], float], target: float, refusal: str) -> float:
+Radius = Callable[[Any], Any]
+"""A radius (mm) at one angle or at many (rad), of the same shape."""
+
+
+def closing_angle(radius: Radius, target: float, refusal: str) -> float:
     """Smallest angle in (0, pi/2) at which `radius` (mm) is `target`; else InputError(`refusal`).
 
     Long arcs reach their circle twice: `radius` has one extremum in between.
     """
     angles = np.linspace(0.0, 0.5 * np.pi, 91)
-    side = np.sign([radius(angle) - target for angle in angles])
+    side = np.sign(radius(angles) - target)
     crossed = np.flatnonzero(side[1:] != side[:-1])
     if len(crossed) == 0:
         raise InputError(refusal)
@@ -47,11 +52,11 @@ def root_arcs(
     """
     o_d = bottom + r_dedendum * frame.normal(beta)
 
-    def root_center(angle: float) -> np.ndarray:
-        return o_d - (r_dedendum - r_root) * frame.normal(beta + angle)
+    def root_center(angle: Any) -> np.ndarray:
+        return (o_d - (r_dedendum - r_root) * frame.normal(beta + angle).T).T
 
     a_d = closing_angle(
-        lambda angle: float(np.hypot(*root_center(angle))) - frame.sign * r_root,
+        lambda angle: np.hypot(*root_center(angle)) - frame.sign * r_root,
         frame.r_root_circle,
         f"{name}.r_root = {r_root:g} with r_dedendum = {r_dedendum:g} does not meet the dedendum "
         f"circle",
@@ -79,8 +84,8 @@ def quadruple_arc(
     top, bottom = frame.straight(c_l, straight_l)
     o_a = top - r_addendum * n(star)
 
-    def tip_center(angle: float) -> np.ndarray:
-        return o_a + (r_addendum - r_tip) * n(star + angle)
+    def tip_center(angle: Any) -> np.ndarray:
+        return (o_a + (r_addendum - r_tip) * n(star + angle).T).T
 
     ends = ("tip", "addendum", r_tip, r_addendum), ("root", "dedendum", r_root, r_dedendum)
     for end, side, last, first in ends:
@@ -91,7 +96,7 @@ def quadruple_arc(
                 'type = "trapezoid", a straight flank with one arc at either end'
             )
     a_a = closing_angle(
-        lambda t: float(np.hypot(*tip_center(t))) + s * r_tip,
+        lambda t: np.hypot(*tip_center(t)) + s * r_tip,
         frame.r_tip_circle,
         f"{name}.r_tip = {r_tip:g} with r_addendum = {r_addendum:g} does not meet the addendum "
         f"circle",

@@ -71,7 +71,7 @@ def cam_curve(design: swgpar.DriveDesign) -> Curve:
 class OwnMotion:
     """A tooth on the offset of a cam, by series of points around it."""
 
-    def __init__(self, design: swgpar.DriveDesign, count: int = 4096) -> None:
+    def __init__(self, design: swgpar.DriveDesign, count: int = 512) -> None:
         t = 2.0 * np.pi * np.arange(count) / count
         order = np.fft.fftfreq(count, 1.0 / count)
 
@@ -86,11 +86,11 @@ class OwnMotion:
         swing = np.divide(length, 1j * order, out=np.zeros_like(length), where=order != 0.0)
         around = 2.0 * np.pi * speed.mean()
         wave = np.fft.ifft(swing).real
-        self.turned = (2.0 * np.pi / around) * (speed.mean() * t + wave - wave[0])
+        turned = (2.0 * np.pi / around) * (speed.mean() * t + wave - wave[0])
         self.coefficients = np.fft.fft(np.stack([line, tangent]) * np.exp(-1j * t)) / count
-        self.order, self.t, self.radius = order, t, design.inner_radius + half
+        self.order, self.radius = order, design.inner_radius + half
+        self.wave = np.fft.fft(turned - t) / count
         self.slip = design.drive.teeth_fs / design.drive.teeth_rg
-        self.rate = 2.0 * np.pi * speed / around
 
     def moved(self, psi: float, points: np.ndarray) -> np.ndarray:
         """Points of the tooth at the material angle psi, in the frame of its slot."""
@@ -102,11 +102,10 @@ class OwnMotion:
 
     def parameter(self, psi: float) -> float:
         """Of the curve at a material angle."""
-        series = np.fft.fft(self.turned - self.t) / len(self.t)
         t = psi
         for _ in range(30):
-            wave = (series @ np.exp(1j * self.order * t)).real
-            slope = 1.0 + (1j * self.order * series @ np.exp(1j * self.order * t)).real
+            terms = self.wave * np.exp(1j * self.order * t)
+            wave, slope = terms.sum().real, 1.0 + (1j * self.order * terms).sum().real
             step = (t + wave - psi) / slope
             t -= step
             if abs(step) < 1e-15:
