@@ -1,8 +1,8 @@
-"""The way of the design, of the recipe or of one number through the package, from the file to the
+"""The ways of the design, of the recipe and of numbers through the package, from the file to the
 report.
 
     PYTHONPATH=TREE python scripts/number_path.py design
-    PYTHONPATH=TREE python scripts/number_path.py torque --json
+    PYTHONPATH=TREE python scripts/number_path.py torque stress --json
 
 TREE is the checkout that is measured: the present one or another. The script runs `swgpar run` and
 `swgpar report` on one rank and watches every function of the package.
@@ -13,7 +13,8 @@ result.
 - design, recipe: an object of `DriveDesign` or `MeshRecipe`. Its own methods do not count: it is
 asked, not handed on.
 - torque: the value of `load.torque` in N·m, N·mm, or N·mm of half of the drive.
-- stress: the largest `fs_s1` of the history. A first run gives its value.
+- stress: the largest `fs_s1` of the history. A first run, in which all others are followed, gives
+its value.
 
 A number is also held by a text, a list, a small array or a frozen dataclass that has it. Every
 function counts once, at its first entry that holds it. Nested functions without a name belong to
@@ -67,6 +68,9 @@ LOOKS = 200
 
 Holds = Callable[[Any], bool]
 """Whether a value is, or has, what is followed."""
+
+Profiler = Callable[[FrameType, str, Any], None]
+"""What Python calls at the beginning and at the end of every function (`sys.setprofile`)."""
 
 
 def of_class(name: str) -> Holds:
@@ -157,6 +161,17 @@ class Watch:
         return [(module, code) for code, (_, module) in ordered]
 
 
+def together(watches: Sequence[Watch]) -> Profiler:
+    """All watches in one run."""
+
+    def each(frame: FrameType, event: str, result: Any) -> None:
+        if event in ("call", "return"):
+            for watch in watches:
+                watch(frame, event, result)
+
+    return each
+
+
 def module_levels(graph: Graph) -> dict[str, int]:
     """Level of every module; those that import each other have the same one."""
     group = {name: name for name in graph} | {
@@ -216,7 +231,7 @@ def find_way(watch: Watch, level: dict[str, int]) -> Way:
     return Way(stays)
 
 
-def run(arguments: list[str], watch: Watch | None = None) -> None:
+def run(arguments: list[str], watch: Profiler | None = None) -> None:
     """Execute a command of the package, watched or not; what it prints is dropped."""
     from swgpar import cli
 
@@ -238,50 +253,62 @@ def largest_stress(history: Path) -> float:
         return max(float(row[STRESS]) for row in csv.DictReader(file))
 
 
-def measure(thing: str, design: str, mesh: str, settings: Sequence[str]) -> Way:
-    """The way of a thing in a run of a design and in the report of its results."""
+def measure(
+    things: Sequence[str], design: str, mesh: str, settings: Sequence[str]
+) -> dict[str, Way]:
+    """The ways of things in a run of a design and in the report of its results."""
+    watches = {
+        name: Watch(PACKAGE, of_class(CLASSES[name]), asked=True)
+        for name in things
+        if name in CLASSES
+    }
+    if "torque" in things:
+        values = [float(TORQUE) * unit for unit in TORQUE_UNITS]
+        watches["torque"] = Watch(PACKAGE, Number(values, [TORQUE]))
     with tempfile.TemporaryDirectory() as folder:
         out = str(Path(folder) / "out")
         command = ["run", design, "--mesh", mesh, "--out", out, "--overwrite"]
         command += ["--set", f"load.torque={TORQUE}", *settings]
-        if thing in CLASSES:
-            watch = Watch(PACKAGE, of_class(CLASSES[thing]), asked=True)
-        elif thing == "torque":
-            watch = Watch(
-                PACKAGE, Number([float(TORQUE) * unit for unit in TORQUE_UNITS], [TORQUE])
-            )
-        else:
-            run(command)
+        report = ["report", out]
+        first = together(list(watches.values())) if watches else None
+        run(command, first)
+        if first:
+            run(report, first)
+        if "stress" in things:
             value = largest_stress(Path(out) / "history.csv")
-            watch = Watch(PACKAGE, Number([value], [repr(value), f"{value:.4g}"]))
-        run(command, watch)
-        run(["report", out], watch)
+            watches["stress"] = Watch(PACKAGE, Number([value], [repr(value), f"{value:.4g}"]))
+            run(command, watches["stress"])
+            run(report, watches["stress"])
     package = Path(sys.modules[PACKAGE].__file__ or "").parent
-    return find_way(watch, module_levels(file_graph(package)))
+    level = module_levels(file_graph(package))
+    return {name: find_way(watches[name], level) for name in things}
 
 
 def main() -> None:
     options = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    options.add_argument("thing", choices=["design", "torque", "recipe", "stress"])
+    options.add_argument("things", nargs="+", choices=["design", "torque", "recipe", "stress"])
     options.add_argument("--design", default="drivers/plane_half_turn.toml")
     options.add_argument("--mesh", default="plane_coarse")
     options.add_argument("--set", nargs="*", default=[], help="keys of the design file")
     options.add_argument("--json", action="store_true", help="print JSON")
     chosen = options.parse_args()
-    way = measure(chosen.thing, chosen.design, chosen.mesh, chosen.set)
+    ways = measure(chosen.things, chosen.design, chosen.mesh, chosen.set)
     if chosen.json:
-        print(
-            json.dumps(
-                {"counts": way.counts(), "stays": [asdict(stay) for stay in way.stays]}, indent=1
-            )
-        )
+        content = {
+            name: {"counts": way.counts(), "stays": [asdict(stay) for stay in way.stays]}
+            for name, way in ways.items()
+        }
+        print(json.dumps(content, indent=1))
         return
-    for k, stay in enumerate(way.stays, start=1):
-        mark = "climb" if stay.climb else ""
-        print(f"{k:3d}  level {stay.level:2d} {mark:6s}{stay.module}: {', '.join(stay.functions)}")
-    print(", ".join(f"{count} {name}" for name, count in way.counts().items()))
+    for name, way in ways.items():
+        print(f"{name}:")
+        for k, stay in enumerate(way.stays, start=1):
+            mark = "climb" if stay.climb else ""
+            functions = ", ".join(stay.functions)
+            print(f"{k:3d}  level {stay.level:2d} {mark:6s}{stay.module}: {functions}")
+        print(", ".join(f"{count} {count_of}" for count_of, count in way.counts().items()))
 
 
 if __name__ == "__main__":

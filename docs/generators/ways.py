@@ -30,12 +30,12 @@ MOST = {"design": {"modules": 25, "climbs": 8}}
 """Largest counts of a way: a module that needs one part of the design takes that part."""
 
 
-def measured(thing: str) -> dict[str, Any]:
+def measured() -> dict[str, dict[str, Any]]:
     """What `scripts/number_path.py` finds in a short run."""
     command = [
         sys.executable,
         str(ROOT / "scripts" / "number_path.py"),
-        thing,
+        *THINGS,
         "--json",
         "--set",
         "steps.rotation=5",
@@ -82,7 +82,7 @@ def stays_table(way: dict[str, Any]) -> str:
 
 def main(folder: Path) -> None:
     """Write both tables."""
-    ways = {name: measured(name) for name in THINGS}
+    ways = measured()
     require_short(ways)
     (folder / "ways.md").write_text(counts_table(ways), encoding="utf-8")
     (folder / "way_of_the_torque.md").write_text(stays_table(ways["torque"]), encoding="utf-8")

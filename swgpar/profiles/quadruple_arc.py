@@ -18,7 +18,6 @@ from swgpar.geometry.bracketed_root import root_between
 from swgpar.profiles.flank import ToothProfile
 from swgpar.profiles.pitch_point import PitchPointFrame, PlacedSegment
 
-
 Radius = Callable[[Any], Any]
 """A radius (mm) at one angle or at many (rad), of the same shape."""
 
