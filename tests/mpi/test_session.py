@@ -12,6 +12,7 @@ from support.stepping import small
 from swgpar.analysis import coarse_start, model_sources
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.errors import ConvergenceError
+from swgpar.largest_stress.window_recipes import LEVELS
 from swgpar.load.load_states import LoadState
 from swgpar.petsc import PETSc
 from swgpar.solve import bordered_system
@@ -51,7 +52,10 @@ def values(result: Result) -> dict[str, float]:
 
 
 @pytest.mark.parallel([1])
-def test_runs_of_a_session_find_what_each_finds_alone(built: list[None]) -> None:
+def test_runs_of_a_session_find_what_each_finds_alone(
+    built: list[None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(LEVELS, "plane", 3)
     with swgpar.Session() as session:
         for change in CHANGES:
             design = small("plane", *ALONE, change)
