@@ -30,6 +30,8 @@ from swgpar.solve.factor_reuse import MAX_ITERATIONS
 PHYSICAL = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm", "output_angle_deg")
 STATE = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
 PLAIN = ("solver.far_teeth=modelled", "solver.keep_factor=false")
+ONE_INCREMENT = "steps.rotation=1.5"
+"""Where nothing follows from the state before."""
 
 
 def rotated(
@@ -132,9 +134,9 @@ def test_search_over_candidate_teeth_only() -> None:
 def test_a_kept_factor_with_friction_and_in_the_other_layout(override: str, rel: float) -> None:
     """Friction's tractions live at segments that Newton's iterates fix, here other ones: 8e-6 of
     the ring's stress."""
-    stepper, row = rotated("solver.far_teeth=modelled", override, "steps.rotation=1.5")
+    stepper, row = rotated("solver.far_teeth=modelled", override, ONE_INCREMENT)
     assert np.median(stepper.solver.system.reused.iterations) < 20
-    _, alone = rotated(*PLAIN, override, "steps.rotation=1.5")
+    _, alone = rotated(*PLAIN, override, ONE_INCREMENT)
     assert_same(row, alone, rel)
 
 
@@ -209,8 +211,8 @@ def test_condensed_teeth_change_little(overrides: tuple[str, ...]) -> None:
 @pytest.mark.parallel([2, 3])
 def test_condensed_teeth_on_any_number_of_ranks() -> None:
     """The results, and what is read of sectors of any rank, images too."""
-    stepper, row = rotated()
-    _, alone = rotated(comm=MPI.COMM_SELF)
+    stepper, row = rotated(ONE_INCREMENT)
+    _, alone = rotated(ONE_INCREMENT, comm=MPI.COMM_SELF)
     assert_same(row, alone, 1e-7)
     model = stepper.model
     u = model.problem.displacement()
@@ -285,10 +287,10 @@ def test_what_is_read_of_condensed_sectors_is_complete() -> None:
 
 @pytest.mark.parallel(2)
 def test_condensed_sectors_with_all_that_applies() -> None:
-    refined = "plane_coarse"
-    _, row = rotated(*CONDENSED, recipe=refined)
+    refined, keys = "plane_coarse", (*CONDENSED, ONE_INCREMENT)
+    _, row = rotated(*keys, recipe=refined)
     for further in (("steps.start_levels=1", "steps.pins=false"), ("solver.symmetry=false",)):
-        _, other = rotated(*CONDENSED, *further, recipe=refined)
+        _, other = rotated(*keys, *further, recipe=refined)
         assert_same(other, row, 1e-6)
 
 
@@ -312,8 +314,8 @@ def test_a_start_on_a_coarser_mesh_takes_over_what_is_inside() -> None:
 
 @pytest.mark.parallel([2, 3])
 def test_condensed_sectors_on_any_number_of_ranks() -> None:
-    _, row = rotated(*CONDENSED)
-    _, alone = rotated(*CONDENSED, comm=MPI.COMM_SELF)
+    _, row = rotated(*CONDENSED, ONE_INCREMENT)
+    _, alone = rotated(*CONDENSED, ONE_INCREMENT, comm=MPI.COMM_SELF)
     assert_same(row, alone, 1e-7)  # the input torque is what is left of moments 1e3 times as large
 
 

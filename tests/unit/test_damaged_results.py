@@ -39,7 +39,8 @@ def loop(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def train(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("train") / "run"
-    swgpar.run(swgpar.load_design(DRIVERS / "gear_pair.toml", [*SMALL["gear_pair"]]), out=out)
+    overrides = [*SMALL["gear_pair"], "output.figures=false"]
+    swgpar.run(swgpar.load_design(DRIVERS / "gear_pair.toml", overrides), out=out)
     return out
 
 

@@ -20,7 +20,7 @@ from support.bad_inputs import (
 from support.bad_sections import bad_sections
 from support.right_files import newer_sections, right_files
 
-COUNT = 400
+COUNT = 250
 
 
 @pytest.fixture(scope="module")
