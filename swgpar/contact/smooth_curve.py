@@ -19,6 +19,10 @@ STEPS, CLOSE = 6, 1e-8
 """Most Newton steps to a point of the curve, and the change of lambda after which no other one
 follows: pieces are nearly straight, and the iteration is quadratic."""
 
+REACH = 1.0
+"""Lengths of a piece by which its cubic continues it; farther out it is straight. Surfaces that
+slide so far are those of an iteration that has not settled, and a cubic has no bounds there."""
+
 
 def curve_nodes(
     grid: np.ndarray, sector: np.ndarray, column: np.ndarray
@@ -62,13 +66,17 @@ def shape_functions(
 
     polynomials : (..., 4, 4);  place : (...)
     """
-    one, zero = np.ones_like(place), np.zeros_like(place)
+    cubic = np.clip(place, -REACH, 1.0 + REACH)
+    beyond = place - cubic
+    one, zero = np.ones_like(cubic), np.zeros_like(cubic)
     powers = (
-        np.stack([one, place, place**2, place**3], axis=-1),
-        np.stack([zero, one, 2.0 * place, 3.0 * place**2], axis=-1),
-        np.stack([zero, zero, 2.0 * one, 6.0 * place], axis=-1),
+        np.stack([one, cubic, cubic**2, cubic**3], axis=-1),
+        np.stack([zero, one, 2.0 * cubic, 3.0 * cubic**2], axis=-1),
+        np.stack([zero, zero, 2.0 * one, 6.0 * cubic], axis=-1),
     )
     value, rate, second = (np.einsum("...np,...p->...n", polynomials, power) for power in powers)
+    value += beyond[..., None] * rate
+    second[beyond != 0.0] = 0.0
     return value, rate, second
 
 
@@ -112,7 +120,8 @@ class FootPoints:
 def foot_points(
     polynomials: np.ndarray, nodes: np.ndarray, points: np.ndarray, place: np.ndarray
 ) -> FootPoints:
-    """Where the normal of a piece of the curve meets a point; pieces continue beyond their ends.
+    """Where the normal of a piece of the curve meets a point; pieces continue beyond their ends,
+    see `REACH`.
 
     polynomials : (..., 4, 4);  nodes : (..., 4, 2) mm, deformed;  points : (..., 2) mm
     place : (...) lambda, first guess
@@ -121,9 +130,11 @@ def foot_points(
     c0, c1, c2, c3 = (curve[..., power, :] for power in range(4))
     change, step = np.ones(1), 0
     while True:
-        t = place[..., None]
-        away = points - (c0 + t * (c1 + t * (c2 + t * c3)))
-        tangent, bend = c1 + t * (2.0 * c2 + t * (3.0 * c3)), 2.0 * c2 + 6.0 * t * c3
+        t = np.clip(place, -REACH, 1.0 + REACH)[..., None]
+        beyond = place[..., None] - t
+        tangent = c1 + t * (2.0 * c2 + t * (3.0 * c3))
+        bend = np.where(beyond == 0.0, 2.0 * c2 + 6.0 * t * c3, 0.0)
+        away = points - (c0 + t * (c1 + t * (c2 + t * c3)) + beyond * tangent)
         if step == STEPS or np.abs(change).max(initial=0.0) < CLOSE:
             return FootPoints(polynomials, place, away, tangent, bend)
         steepness = np.sum(tangent * tangent - away * bend, axis=-1)

@@ -14,7 +14,7 @@ from support.three_lobes import MODELS
 from swgpar import load_design
 from swgpar.checks.remarks import remarks
 from swgpar.contact.point_contact import ball_spring, point_contact
-from swgpar.contact.smooth_curve import shape_functions, smooth_curve
+from swgpar.contact.smooth_curve import REACH, foot_points, shape_functions, smooth_curve
 from swgpar.design.ball_phases import ball_passings
 from swgpar.errors import InputError
 from swgpar.evaluation.bearing_life import BearingSeries, million_turns
@@ -109,6 +109,25 @@ def test_smooth_curve_lies_on_the_circle() -> None:
     assert np.abs(np.linalg.norm(points, axis=1) - 20.0).max() < 1e-3 * sagitta
     across = np.abs(np.sum(points * tangents, axis=1)) / (20.0 * np.linalg.norm(tangents, axis=1))
     assert across.max() < 0.02 * 0.04
+
+
+def test_smooth_curve_is_straight_far_from_its_piece() -> None:
+    """In an iteration that has not settled surfaces slide by many pieces. A cubic would carry the
+    forces there to the nodes with a lever that grows with the cube of the distance."""
+    angle = np.array([-0.05, 0.0, 0.04, 0.1])
+    nodes = 20.0 * np.column_stack([-np.sin(angle), np.cos(angle)])
+    polynomials = smooth_curve(nodes[None])
+    end = 1.0 + REACH
+    places = np.array([end - 1e-7, end, end + 1e-7, end + 1.0, end + 100.0])
+    value, rate, second = shape_functions(np.repeat(polynomials, 5, axis=0), places)
+    assert value[2] - value[1] == pytest.approx(value[1] - value[0], rel=1e-5)
+    assert value[4] - value[1] == pytest.approx(100.0 * (value[3] - value[1]), rel=1e-12)
+    assert rate[4] == pytest.approx(rate[1], rel=1e-12) and not second[3:].any()
+    for far in (-30.0, 50.0):  # nodes folded by more than the length of a piece
+        folded = nodes + np.array([[0.0, 0.0], [-1.7, 0.3], [0.4, -0.2], [0.0, 0.1]])
+        foot = foot_points(polynomials, folded[None], np.array([[far, 19.0]]), np.array([0.5]))
+        at_foot, _ = foot.shape_functions()
+        assert np.abs(at_foot).max() < 1e4
 
 
 def test_balls_are_inside_of_the_cam() -> None:
