@@ -34,6 +34,7 @@ class BentSpline:
     race.
 
     shape : of the ring
+    missed : material angles (n,) rad and heights (n,) mm by which the shape lies below the balls
     """
 
     def __init__(self, design: DriveDesign) -> None:
@@ -41,7 +42,7 @@ class BentSpline:
         self.inset = PENETRATION * design.drive.module
         self.radius = design.inner_radius + 0.5 * design.flexible_spline.rim
         around = design.inner_radius, self.radius, design.wave_generator.lobes
-        self.lift = np.zeros(1), np.zeros(1)
+        self.missed = np.zeros(1), np.zeros(1)
         self.half = 0.5 * design.wave_generator.width
         self.end = design.cup_sizes.rest_plane if design.has_cup else 0.5 * design.drive.face_width
         self.surface = design.grown_cam_surface()
@@ -50,7 +51,7 @@ class BentSpline:
         else:
             balls = _over_balls(design)
             self.shape = ring_on_points(balls, *around, shifts=not design.has_cup)
-            self.lift = self._lift_onto(balls)
+            self.missed = self._missed_over(balls)
 
     def bore(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Material angles (n,) rad of the bore at mid-width, angles and distances, mm, from the
@@ -60,9 +61,11 @@ class BentSpline:
         x, y, _ = self.section(theta, inside, np.zeros_like(theta)).T
         return theta, np.arctan2(-x, y), np.hypot(x, y)
 
-    def _lift_onto(self, balls: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Material angles (n,) rad over the balls, and by how much (n,) mm the sum of waves lies
-        below them: many balls press it more closely than its shortest wave follows."""
+    def _missed_over(self, balls: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """See `missed`: many balls lie closer to each other than the shape's shortest wave follows.
+
+        balls : (n, 2) mm, points over them
+        """
         theta, place, distance = self.bore()
         around = np.angle(np.exp(1j * (place - theta)))
         at = np.arctan2(-balls[:, 0], balls[:, 1])
@@ -115,7 +118,7 @@ class BentSpline:
 
     def _waves(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Radial and circumferential displacement (n,) mm at mid-width, slope of the first."""
-        outward = np.interp(theta, *self.lift, period=2.0 * np.pi)
+        outward = np.interp(theta, *self.missed, period=2.0 * np.pi)
         around, slope = np.zeros_like(theta), np.zeros_like(theta)
         for order, amplitude in zip(self.shape.orders, self.shape.amplitudes):
             wave = amplitude * np.exp(1j * order * theta)
