@@ -141,17 +141,15 @@ class ConvergenceTest:
         )
 
     def _is_slow(self, state: SolveState) -> bool:
-        """Whether contact spreads slowly under the full stiffness, for the first time in a solve.
+        """Whether contact spreads slowly under the full stiffness, for the first time in a solve up
+        to the load.
 
-        Steps are full ones then, and the active set grows by a face in each. In a rotation with
-        friction the state would depend on the softer contacts.
+        Steps are full ones then, and the active set grows by a face in each.
         """
         if state.phase is not Phase.FULL or state.softened:
             return False
-        if state.load_state.stage > Stage.LOAD and not self.problem.symmetric:
-            return False
         last = state.residuals[-SLOW_ITERATIONS - 1 :]
-        if len(last) <= SLOW_ITERATIONS:
+        if state.load_state.stage > Stage.LOAD or len(last) <= SLOW_ITERATIONS:
             return False
         low, high = SLOW_RESIDUALS
         return min(last) > low and max(last) < high and min(last) > 0.5 * last[0]
