@@ -20,8 +20,9 @@ STEPS, CLOSE = 6, 1e-8
 follows: pieces are nearly straight, and the iteration is quadratic."""
 
 REACH = 1.0
-"""Lengths of a piece by which its cubic continues it; farther out it is straight. Surfaces that
-slide so far are those of an iteration that has not settled, and a cubic has no bounds there."""
+"""Lengths of a piece by which its cubic continues it; farther out it is straight. Surfaces slide so
+far in iterations that have not settled, where a cubic has no bounds; and by one or two lengths more
+on very fine meshes, where the line leaves the circle by hundredths of a micrometre."""
 
 
 def curve_nodes(
