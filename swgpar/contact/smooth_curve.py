@@ -59,6 +59,12 @@ def smooth_curve(nodes: np.ndarray) -> np.ndarray:
     return out
 
 
+def _on_cubic(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The parts of places lambda on the cubic and on the straight line beyond it."""
+    cubic = np.clip(place, -REACH, 1.0 + REACH)
+    return cubic, place - cubic
+
+
 def shape_functions(
     polynomials: np.ndarray, place: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -67,8 +73,7 @@ def shape_functions(
 
     polynomials : (..., 4, 4);  place : (...)
     """
-    cubic = np.clip(place, -REACH, 1.0 + REACH)
-    beyond = place - cubic
+    cubic, beyond = _on_cubic(place)
     one, zero = np.ones_like(cubic), np.zeros_like(cubic)
     powers = (
         np.stack([one, cubic, cubic**2, cubic**3], axis=-1),
@@ -131,8 +136,7 @@ def foot_points(
     c0, c1, c2, c3 = (curve[..., power, :] for power in range(4))
     change, step = np.ones(1), 0
     while True:
-        t = np.clip(place, -REACH, 1.0 + REACH)[..., None]
-        beyond = place[..., None] - t
+        t, beyond = _on_cubic(place[..., None])
         tangent = c1 + t * (2.0 * c2 + t * (3.0 * c3))
         bend = np.where(beyond == 0.0, 2.0 * c2 + 6.0 * t * c3, 0.0)
         away = points - (c0 + t * (c1 + t * (c2 + t * c3)) + beyond * tangent)

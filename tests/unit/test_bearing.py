@@ -123,9 +123,10 @@ def test_smooth_curve_is_straight_far_from_its_piece() -> None:
     assert value[2] - value[1] == pytest.approx(value[1] - value[0], rel=1e-5)
     assert value[4] - value[1] == pytest.approx(100.0 * (value[3] - value[1]), rel=1e-12)
     assert rate[4] == pytest.approx(rate[1], rel=1e-12) and not second[3:].any()
-    for far in (-30.0, 50.0):  # nodes folded by more than the length of a piece
-        folded = nodes + np.array([[0.0, 0.0], [-1.7, 0.3], [0.4, -0.2], [0.0, 0.1]])
-        foot = foot_points(polynomials, folded[None], np.array([[far, 19.0]]), np.array([0.5]))
+    moved = [[-0.5, 0.3], [0.4, -0.9], [0.1, -0.4], [-0.3, 0.8]], [-2.9, 20.1]
+    also = [[0.2, 0.3], [-0.5, -0.5], [-0.6, 0.3], [1.2, 0.1]], [1.4, 21.0]
+    for change, point in (moved, also):  # folded nodes: cubics have 2e9 and 5e6
+        foot = foot_points(polynomials, (nodes + change)[None], np.array([point]), np.array([0.5]))
         at_foot, _ = foot.shape_functions()
         assert np.abs(at_foot).max() < 1e4
 
