@@ -89,6 +89,7 @@ class NodeMeans(ABC):
     total : sum of the weights of all ranks;  weight : (n,) over that sum
     center : (3,) mm;  arm : (n, 3) mm, places from there
     movable : (5,) bool, displacements and tilts that a bearing of the body may leave free
+    rotation_norm : 1/mm, norm of the undeformed gradient of the rotation over all nodes
     """
 
     active: np.ndarray
@@ -114,6 +115,8 @@ class NodeMeans(ABC):
         self.center, self.arm = center, self.undeformed - center
         self.radius2 = float(self.sum(self.weight * (self.arm[:, 0] ** 2 + self.arm[:, 1] ** 2)))
         self.solid = partition.dims == 3
+        squares = self.weight**2 * (self.arm[:, 0] ** 2 + self.arm[:, 1] ** 2)
+        self.rotation_norm = float(np.sqrt(self.sum(squares)) / self.radius2)
 
     def sum(self, value: np.ndarray) -> np.ndarray:
         """Sum over all nodes of the surface, on all ranks."""

@@ -180,6 +180,15 @@ class Supports:
         """Rotation (rad) of the output at displacement u (n_local, 3) mm; collective."""
         return float(self.output.evaluate(u).value[ROTATION])
 
+    def torque_norm(self, state: LoadState) -> float:
+        """Norm (N) over all nodes of the forces by which the torque acts on the output; inf where
+        none does."""
+        torque = state.torque if state.control == "torque" else 0.0
+        if torque == 0.0:
+            return np.inf
+        output = self.gear_couplings[self.output_gear]
+        return self.share * abs(torque) * output.rotation_norm
+
     def add_forces(
         self, u: np.ndarray, state: LoadState, multiplier: np.ndarray, residual: np.ndarray
     ) -> np.ndarray:

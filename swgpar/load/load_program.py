@@ -176,12 +176,13 @@ class StiffnessProgram:
         the position before ended
 
         Where the mirror plane is that of the wave generator too, one side of the loop is the image
-        of the other.
+        of the other. The largest torque comes first: it closes the backlash, which a small one does
+        not do against the torque that balls hold the spline with.
         """
         way = BRANCHES[:2] if torque >= 0.0 else BRANCHES[2:]
         halfway = self.uses_mirror and 2 * k == len(self.angles)
         if halfway or (self.starts_mirrored and k == 0):
-            return way[:1] if k else (POSITIVE_LOADING,)
+            return way[:1]
         return way
 
 

@@ -191,7 +191,9 @@ class NewtonSolver:
     ) -> int | None:
         """Convergence test of SNES: its reason, or None to go on."""
         state, norm = self.state, norms[2]
-        state.residuals.append(norm / self.convergence_test.reference(self.last_residual))
+        state.residuals.append(
+            norm / self.convergence_test.reference(state.load_state, self.last_residual)
+        )
         watch.doing(state.words(self.problem.x.getSize() // 3, its))
         if self.monitor is not None:
             self.monitor(state.load_state, its, state.residual)

@@ -155,11 +155,24 @@ def test_residuals_that_fall_get_more_iterations() -> None:
 CREEP = [0.4 * 0.95**k for k in range(8)]
 
 
+def convergence_test(
+    *, symmetric: bool = True, round_off: float = 0.0, torque_norm: float = np.inf
+) -> ConvergenceTest:
+    """Of a problem with or without friction, and with a norm (N) of the torque's forces."""
+    problem = Mock(
+        round_off=round_off, force_floor=1.0, active_sets=lambda state: [], symmetric=symmetric
+    )
+    problem.partition.comm = WORLD
+    problem.supports.torque_norm = lambda state: torque_norm
+    return ConvergenceTest(problem, NewtonSettings(1e-9, 25, 0, 1.0))
+
+
 @pytest.mark.parametrize(
     ("residuals", "stage", "softened", "slow"),
     [
         (CREEP, Stage.LOAD, False, True),
-        (CREEP, Stage.ROTATE, False, False),  # a state nearby is known
+        (CREEP, Stage.ROTATE, False, True),
+        (CREEP, Stage.PROGRAM, False, False),  # teeth may pass
         (CREEP, Stage.LOAD, True, False),  # once in a solve
         (CREEP[:5], Stage.LOAD, False, False),
         ([0.4 * 0.8**k for k in range(8)], Stage.LOAD, False, False),  # halves within five
@@ -171,11 +184,20 @@ def test_contact_that_spreads_slowly(
     residuals: list[float], stage: Stage, softened: bool, slow: bool
 ) -> None:
     state = SolveState(Mock(stage=stage), [], 200, residuals=residuals, softened=softened)
-    problem = Mock(round_off=0.0, force_floor=1.0, active_sets=lambda state: [])
-    problem.partition.comm = WORLD
-    test = ConvergenceTest(problem, NewtonSettings(1e-9, 25, 0, 1.0))
+    test = convergence_test()
     decision = test.decide(
         state, len(residuals), 1.0, ResidualInfo(1.0, False), descending=True, bounded=False
+    )
+    assert (decision.verdict is NewtonVerdict.SLOW) == slow
+
+
+@pytest.mark.parametrize(("stage", "slow"), [(Stage.LOAD, True), (Stage.ROTATE, False)])
+def test_contact_with_friction_that_spreads_slowly(stage: Stage, slow: bool) -> None:
+    """In a rotation the state depends on the contacts on the way."""
+    test = convergence_test(symmetric=False)
+    state = SolveState(Mock(stage=stage), [], 200, residuals=CREEP)
+    decision = test.decide(
+        state, len(CREEP), 1.0, ResidualInfo(1.0, False), descending=True, bounded=False
     )
     assert (decision.verdict is NewtonVerdict.SLOW) == slow
     assert slow or decision.verdict is NewtonVerdict.GO_ON
@@ -183,14 +205,30 @@ def test_contact_that_spreads_slowly(
 
 def test_the_round_off_of_a_distorted_state_is_no_equilibrium() -> None:
     """Its tangent has a round-off above any force."""
-    problem = Mock(round_off=1e6, force_floor=1.0, active_sets=lambda state: [])
-    problem.partition.comm = WORLD
-    test = ConvergenceTest(problem, NewtonSettings(1e-9, 25, 0, 1.0))
+    test = convergence_test(round_off=1e6)
     for residual, verdict in ((700.0, NewtonVerdict.GO_ON), (1e-6, NewtonVerdict.CONVERGED)):
         state = SolveState(Mock(stage=Stage.LOAD), [], 200, residuals=[residual])
         last = ResidualInfo(1.0, False)
         decision = test.decide(state, 0, residual, last, descending=True, bounded=False)
         assert decision.verdict is verdict
+
+
+@pytest.mark.parametrize(
+    ("torque_norm", "verdict"), [(1e-6, NewtonVerdict.GO_ON), (1e-3, NewtonVerdict.CONVERGED)]
+)
+def test_a_drive_that_floats_under_a_small_torque_is_not_loaded(
+    torque_norm: float, verdict: NewtonVerdict
+) -> None:
+    """Its residual is that of the torque, and below the tolerance of the contact forces."""
+    test, state = (
+        convergence_test(torque_norm=torque_norm),
+        SolveState(Mock(stage=Stage.LOAD), [], 9),
+    )
+    last, residual = ResidualInfo(1e3, False), 1e-6
+    state.residuals.append(residual / test.reference(state.load_state, last))
+    decision = test.decide(state, 1, residual, last, descending=True, bounded=False)
+    assert decision.verdict is verdict
+    assert decision.goal == pytest.approx(min(1e-2 * torque_norm, 1e-6))
 
 
 def test_sets_that_return() -> None:
