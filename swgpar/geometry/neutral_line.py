@@ -10,24 +10,14 @@ line is the cam's exact offset, elsewhere it is an elastica.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, cached_property, lru_cache
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from swgpar.geometry.arrays import Complex, Floats, as_complex, as_points
+from swgpar.geometry.bent_ring import HARMONICS, bent_ring, waves_around
 from swgpar.geometry.cams import Cam, WaveGenerator, make_cam, taut_length
-
-HARMONICS, POINTS = 16, 480
-"""Harmonics of the shape of first order, and points around one lobe of the ring that stay outside
-of the cam."""
-
-PENALTY = 3e3 / 9.0
-"""Stiffness of the cam at a point, over that of the first harmonic: 9 with two lobes."""
-
-ROUNDS, MAX_CHANGES = 4, 50
-"""Rounds in which the points find their places on the cam as they move around; changes of the
-points that touch."""
 
 LINE_HARMONICS, LINE_POINTS = 32, 2048
 """The same of the exact line."""
@@ -36,8 +26,9 @@ LINE_PENALTY = 1e5
 """Stiffness of the cam at a point of the exact line, over that of the first harmonic; multipliers
 make the contact exact."""
 
-LINE_ROUNDS, LINE_CHANGE = 12, 1e-8
-"""Most steps of Newton's method, and the change of the tilt, rad, at which it ends."""
+LINE_ROUNDS, LINE_CHANGE, MAX_CHANGES = 12, 1e-8, 50
+"""Most steps of Newton's method, the change of the tilt, rad, at which it ends, and most changes
+of the points that touch in a step."""
 
 ROUND_OFF = 1e-14
 """Amplitude of the tilt, rad, below which the last harmonics are left out."""
@@ -48,50 +39,6 @@ SYMMETRY = 1e-9
 SERIES_POINTS = 1024
 """Points around one lobe for the Fourier series of the curve, whose terms fall to round-off long
 before."""
-
-
-@cache
-def _waves(points: int, harmonics: int) -> tuple[Floats, Floats]:
-    """Cosines and sines (points, harmonics) of the harmonics of the lobes at points around one."""
-    angle = np.outer(2.0 * np.pi / points * np.arange(points), np.arange(1, harmonics + 1))
-    return np.cos(angle), np.sin(angle)
-
-
-def bent_ring(cam: Cam, inner_radius: float, radius: float, lobes: int = 2) -> np.ndarray:
-    """Complex amplitudes c_n (HARMONICS + 1,) mm of the radial displacement Re(c_n exp(i lobes n
-    theta)) on the cam.
-
-    The energy of a harmonic k = lobes n is that of the change of curvature, (k² - 1)² a_n². The
-    ring shrinks by what its waves need.
-
-    inner_radius, radius : mm, of the undeformed ring's inner surface, which touches the cam, and of
-    its neutral line
-    """
-    theta = np.linspace(0.0, 2.0 * np.pi / lobes, POINTS, endpoint=False)
-    order = float(lobes) * np.arange(1, HARMONICS + 1)
-    outline = cam.outline(7200)
-    polar = np.arctan2(-outline[:, 0], outline[:, 1])
-    around = np.argsort(polar)
-    polar, distance = polar[around], np.hypot(*outline[around].T)
-    cosines, sines = _waves(POINTS, HARMONICS)
-    waves, energy = np.hstack([cosines, -sines]), np.tile((order**2 - 1.0) ** 2, 2)
-    penalty = PENALTY * energy[0]
-    amplitudes, shrink = np.zeros(2 * HARMONICS), 0.0
-    for _ in range(ROUNDS):
-        place = theta - np.hstack([sines, cosines]) @ (amplitudes / np.tile(order, 2)) / radius
-        needed = np.interp(place, polar, distance, period=2.0 * np.pi) - inner_radius - shrink
-        touches = np.zeros(POINTS, dtype=bool)
-        for _ in range(MAX_CHANGES):
-            inside = waves @ amplitudes < needed
-            if np.array_equal(inside, touches):
-                break
-            touches = inside
-            pressed = penalty * waves[touches]
-            amplitudes = np.linalg.solve(
-                np.diag(energy) + pressed.T @ waves[touches], pressed.T @ needed[touches]
-            )
-        shrink = -float((np.sqrt(energy) * amplitudes**2).sum()) / (4.0 * radius)
-    return np.append(shrink, amplitudes[:HARMONICS] + 1j * amplitudes[HARMONICS:])
 
 
 @dataclass(frozen=True)
@@ -116,9 +63,9 @@ class _RingOnCam:
         the cam presses on. On a cam whose lobes are symmetric, half a lobe is looked at.
         """
         order = float(self.lobes) * np.arange(1, LINE_HARMONICS + 1)
-        cosines, sines = _waves(LINE_POINTS, LINE_HARMONICS)
+        cosines, sines = waves_around(LINE_POINTS, LINE_HARMONICS)
         waves, energy, weight = sines, order**2, np.ones(LINE_POINTS)
-        start = bent_ring(self.cam, self.inner_radius, self.radius, self.lobes)[1:]
+        start = bent_ring(self.cam, self.inner_radius, self.radius, self.lobes).amplitudes[1:]
         first = np.zeros(LINE_HARMONICS, dtype=complex)
         # v = -int w, L = (v - w') / r of the radial displacement w: both of the imaginary part
         first[:HARMONICS] = (order - 1.0 / order)[:HARMONICS] * start / self.radius

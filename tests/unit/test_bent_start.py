@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 
 import swgpar
+from support.bearing import BEARING
 from support.drive_groups import PLANE, cams, table_of
 from support.paths import RECIPE, REFERENCE
 from swgpar import load_design
-from swgpar.analysis.bent_spline import BentSpline
+from swgpar.analysis.bent_spline import BentSpline, bent_bodies
 from swgpar.checks.design_file import make_drive
-from swgpar.geometry.neutral_line import bent_ring
+from swgpar.fem.body import FLEXIBLE_SPLINE, OUTER_RACE
+from swgpar.geometry.bent_ring import bent_ring, ring_on_points
 
 CAMS = {name: case for name, case in cams().items() if "wave_generator" in case}
 THETA = np.linspace(0.0, 2.0 * np.pi, 3601)
@@ -31,7 +33,7 @@ def test_the_first_harmonic_on_an_elliptical_cam_is_half_of_the_deflection() -> 
     design = load_design(PLANE)
     shape = bent_ring(
         design.cam(), design.inner_radius, design.inner_radius + 0.5 * design.flexible_spline.rim
-    )
+    ).amplitudes
     assert shape[1] == pytest.approx(0.5 * design.deflection, rel=1e-3)
     assert np.abs(shape[2:]).max() < 0.005 * abs(shape[1])
     # a ring that bends without stretching shrinks by 3 a² / (4 r)
@@ -55,6 +57,38 @@ def test_the_middle_line_keeps_its_length(name: str) -> None:
     line = moved(spline, ring(spline.radius))
     length = np.linalg.norm(np.diff(line, axis=0), axis=1).sum()
     assert length == pytest.approx(2.0 * np.pi * spline.radius, rel=3e-4)
+
+
+def test_many_points_bend_a_ring_like_the_cam_that_they_lie_on() -> None:
+    design = load_design(PLANE)
+    radius = design.inner_radius + 0.5 * design.flexible_spline.rim
+    points = design.cam().outline(960)
+    many = ring_on_points(points, design.inner_radius, radius, 2, shifts=True)
+    cam = bent_ring(design.cam(), design.inner_radius, radius, 2)
+    assert np.abs(many.amplitudes - cam.amplitudes).max() < 2e-3 * abs(cam.amplitudes[1])
+
+
+@pytest.mark.parametrize("balls", [20, 21])
+def test_spline_and_race_lie_on_the_balls_and_between_them_inside_of_the_cam(balls: int) -> None:
+    design = load_design(PLANE, [*BEARING, f"wave_generator.bearing.balls={balls}"])
+    bodies, bearing = bent_bodies(design), design.bearing
+    race = design.inner_radius - bearing.race_thickness
+    inside = ring(race) + bodies[OUTER_RACE].displacement(ring(race))
+    centre, *_ = design.grown_ball_lines()(2.0 * np.pi / balls * np.arange(balls))
+    distance = np.hypot(*(inside[:, None, :2] - centre).T)
+    approach = 0.5 * bearing.ball_diameter - distance.min(axis=1)
+    assert 0.5e-3 < approach.max() / bearing.ball_diameter < 2e-3
+    bore = moved(bodies[FLEXIBLE_SPLINE], ring(design.inner_radius))
+    gap, *_ = design.grown_cam_surface().evaluate(bore)
+    assert gap.min() < -0.005 * design.deflection
+
+
+def test_a_bearing_takes_the_torque_in_one_increment() -> None:
+    """Race and spline bent over the cam would press on balls that do not carry."""
+    few = [*BEARING, "wave_generator.bearing.balls=14", "load.torque=0.3"]
+    run = ["steps.rotation=0", "output.root_stress=false", "output.contact_errors=false"]
+    at_once = swgpar.run(load_design(PLANE, [*few, *run]), RECIPE)
+    assert len(at_once.history["step"]) == 1
 
 
 def test_the_cup_is_at_rest_at_its_closed_end_and_its_wall_does_not_shear() -> None:
