@@ -47,7 +47,7 @@ def spring(torque: float, way: float) -> float:
 def stiffness_loop() -> Figure:
     """The loop that the program runs through, evaluated by it."""
     section = Stiffness(torque=TOP, points=12)
-    program = StiffnessProgram(section, TOP, TOP, 0.0, (0.0,), False, False)
+    program = StiffnessProgram(section, TOP, TOP, 0.0, (0.0,), False, False, 1.0)
     points = program.points()
     torques = np.array([point.value for point in points])
     ways = np.sign(np.diff(torques, prepend=0.0))
@@ -58,6 +58,7 @@ def stiffness_loop() -> Figure:
             "wg_angle_deg": 0.0,
             "torque_Nm": point.value,
             "rotation_arcmin": turn,
+            "wg_torque_Nmm": 0.0,
         }
         for point, turn in zip(points, turns, strict=True)
     ]
@@ -83,6 +84,7 @@ def stiffness_loop() -> Figure:
     for k, name in enumerate(("K1", "K2", "K3")):
         middle = 0.5 * (line[k] + line[k + 1]), 0.5 * (ends[k] + ends[k + 1])
         leader(ax, (middle[0] - 1.1, middle[1] + 0.9), name, middle, fontsize=10)
+    assert found.hysteresis is not None
     half = 0.5 * found.hysteresis
     dimension(ax, (-half, -0.35 * TOP), (half, -0.35 * TOP), "", at=(0.0, -0.35 * TOP))
     label(ax, (half + 0.1, -0.35 * TOP), "hysteresis: width at zero torque", ha="left")

@@ -73,8 +73,9 @@ def stiffness_error(
     except (ConvergenceError, InputError) as error:
         logger.info("the error of the stiffness by the mesh is not known: %s", error)
         return None
-    elastic = {"lost_motion": fine.lost_motion - fine.backlash}
-    elastic |= {name: getattr(fine, name) for name in CHORDS}
+    elastic = {name: getattr(fine, name) or 0.0 for name in CHORDS}
+    if fine.lost_motion is not None and fine.backlash is not None:
+        elastic["lost_motion"] = fine.lost_motion - fine.backlash
     return {
         name: max(
             sum(change[name] for change in changes),

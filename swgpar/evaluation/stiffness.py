@@ -57,6 +57,13 @@ CHORDS = {
 }
 LOST_MOTION = AnswerKind("stiffness.lost_motion", "lost motion", "arc minutes")
 HYSTERESIS = AnswerKind("stiffness.hysteresis", "width of the loop at zero torque", "arc minutes")
+BACKLASH = AnswerKind(
+    "stiffness.backlash", "rotation without torque between the flanks", "arc minutes"
+)
+
+PASSES_BACKLASH = 3.0
+"""Compliance between two torques, over the least of a branch, above which the output passes a
+backlash there: teeth that meet one by one make a drive up to twice as soft."""
 
 
 @evaluation
@@ -68,16 +75,17 @@ class StiffnessValues:
     top; None over a torque that is no load
     lost_motion : between the middles of both branches at plus and minus a share of the rated torque
     backlash : where the torque changes its sign
+
+    All that needs a torque against which the wave generator holds the spline is None: the load does
+    not decide there on which flanks the teeth rest.
     """
 
     K1: float | None = part_answers(CHORDS["K1"])
     K2: float | None = part_answers(CHORDS["K2"])
     K3: float | None = part_answers(CHORDS["K3"])
-    lost_motion: float = part_answers(LOST_MOTION)
-    hysteresis: float = part_answers(HYSTERESIS)
-    backlash: float = answer(
-        "stiffness.backlash", "rotation without torque between the flanks", "arc minutes"
-    )
+    lost_motion: float | None = part_answers(LOST_MOTION)
+    hysteresis: float | None = part_answers(HYSTERESIS)
+    backlash: float | None = part_answers(BACKLASH)
     loop_work: float = answer("stiffness.loop_work", "area of the loop", "N·mm")
 
 
@@ -123,8 +131,14 @@ class TorsionalStiffness(StiffnessValues, AnswerGroup):
             yield one
 
     def reasons(self) -> Mapping[str, str]:
-        reason = "the torque between the break points is too small beside the spline's bending"
-        return {kind.name: reason for name, kind in CHORDS.items() if getattr(self, name) is None}
+        reason = "its torques are too small beside those by which the bent spline is held"
+        lacks = {kind: getattr(self, name) is None for name, kind in CHORDS.items()}
+        lacks |= {
+            LOST_MOTION: self.lost_motion is None,
+            HYSTERESIS: self.hysteresis is None,
+            BACKLASH: self.backlash is None,
+        }
+        return {kind.name: reason for kind, lacking in lacks.items() if lacking}
 
     def remarks(self) -> Iterator[str]:
         yield (
@@ -146,6 +160,8 @@ class Branch:
         self.rotation = (
             sign * ARC_MINUTE * np.array([row["rotation_arcmin"] for row in rows])[order]
         )
+        moment = 1e-3 * np.array([row["wg_torque_Nmm"] for row in rows])
+        self.wave_generator_torque = sign * moment[order]
 
     def at(self, torque: float) -> float:
         """Rotation (rad) at a torque of the program (N·m); without torque on the line through the
@@ -154,6 +170,17 @@ class Branch:
             (a, b), (u, v) = self.torque[:2], self.rotation[:2]
             return float(u - a * (v - u) / (b - a))
         return float(np.interp(torque, self.torque, self.rotation))
+
+    def held_up_to(self, direction: float) -> float:
+        """Torque (N·m) up to which the wave generator holds the spline, so that teeth rest on the
+        flanks of the other side, across a backlash; 0 where it does not.
+
+        direction : see `StiffnessProgram`
+        """
+        on_teeth = self.torque + direction * self.wave_generator_torque
+        moved = np.abs(np.diff(self.rotation) / np.diff(self.torque))
+        passes = (on_teeth[:-1] <= 0.0) & (moved > PASSES_BACKLASH * moved.min())
+        return float(self.torque[:-1][passes].max(initial=0.0))
 
 
 class Loop:
@@ -201,27 +228,35 @@ class Loop:
 def at_position(program: StiffnessProgram, rows: Sequence[PointRow]) -> StiffnessValues:
     """The stiffness from the rows of the loop at one angle of the wave generator, in the order of
     the program."""
-    loop = Loop(rows)
+    loop, held = Loop(rows), 0.0
     unloading, loading = loop.unloading, loop.loading
+    if program.direction is not None:
+        held = max(one.held_up_to(program.direction) for one in (*unloading, *loading))
 
     def middle(side: int, torque: float) -> float:
         return 0.5 * (unloading[side].at(torque) + loading[side].at(torque))
 
+    def carried(torque: float) -> bool:
+        return torque > held or held == 0.0
+
     top, share = program.torque, program.lost_motion_torque
     ends = [0.0, *(b * top for b in program.section.break_points), top]
     line = [0.5 * (middle(0, torque) + middle(1, torque)) for torque in ends]
-    steps = np.diff(ends), np.diff(line)
     chords = {
-        name: float(torque / rotation) if torque > program.negligible and rotation else None
-        for name, torque, rotation in zip(CHORDS, *steps, strict=True)
+        name: float(torque / rotation)
+        if carried(start) and torque > program.negligible and rotation
+        else None
+        for name, start, torque, rotation in zip(
+            CHORDS, ends, np.diff(ends), np.diff(line), strict=False
+        )
     }
+    width = unloading[0].at(0.0) + unloading[1].at(0.0)
+    backlash = 0.5 * sum(a.at(0.0) + b.at(0.0) for a, b in zip(loading, unloading[::-1]))
     return StiffnessValues(
         **chords,
-        lost_motion=(middle(0, share) + middle(1, share)) / ARC_MINUTE,
-        hysteresis=(unloading[0].at(0.0) + unloading[1].at(0.0)) / ARC_MINUTE,
-        backlash=0.5
-        * sum(a.at(0.0) + b.at(0.0) for a, b in zip(loading, unloading[::-1]))
-        / ARC_MINUTE,
+        lost_motion=(middle(0, share) + middle(1, share)) / ARC_MINUTE if carried(share) else None,
+        hysteresis=None if held else width / ARC_MINUTE,
+        backlash=None if held else backlash / ARC_MINUTE,
         loop_work=loop.work,
     )
 

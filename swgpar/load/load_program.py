@@ -120,6 +120,8 @@ class StiffnessProgram:
     it: without friction
     starts_mirrored : whether at the first angle one side of the loop is the image of the other one:
     without friction, with a bearing too
+    direction : of a positive torque about z, 1 or -1, where nothing but teeth holds the flexible
+    spline against it; None with friction, and where the spline stands
     """
 
     section: Stiffness
@@ -129,6 +131,7 @@ class StiffnessProgram:
     angles: tuple[float, ...]
     uses_mirror: bool
     starts_mirrored: bool
+    direction: float | None
 
     @property
     def lost_motion_torque(self) -> float:
@@ -158,6 +161,8 @@ class StiffnessProgram:
             points.extend(ProgramPoint(stage, angle, "torque", value) for value in values)
 
         for k in dict.fromkeys(map(self.computed, range(len(angles)))):
+            if k == 1 and self.starts_mirrored:
+                add(TRAVEL, angles[0], down[:1])
             if self.section.loop:
                 if k:
                     add(TRAVEL, points[-1].angle, torques[:1])

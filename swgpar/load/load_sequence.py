@@ -50,7 +50,9 @@ def stiffness_program(design: DriveDesign) -> StiffnessProgram:
     """The program of a design with [stiffness]."""
     section = design.stiffness
     torque = section.torque or design.load.torque
-    period = float(np.degrees(design.kinematics.period_angle))
+    kinematics = design.kinematics
+    period = float(np.degrees(kinematics.period_angle))
+    by_teeth = kinematics.standing_gear != "flexible_spline" and design.contact.friction == 0.0
     return StiffnessProgram(
         section,
         torque,
@@ -59,6 +61,7 @@ def stiffness_program(design: DriveDesign) -> StiffnessProgram:
         tuple(period * k / section.positions for k in range(section.positions)),
         uses_mirror=not section.loop and design.is_mirror_symmetric,
         starts_mirrored=not section.loop and design.starts_mirror_symmetric,
+        direction=kinematics.torque_direction if by_teeth else None,
     )
 
 

@@ -60,6 +60,8 @@ def _mark_chords(axes: Axes, stiffness: TorsionalStiffness) -> None:
         axes.axhline(share * stiffness.torque_Nm, color="0.4", ls=":", lw=0.8)
     chords = {name: value_text(getattr(stiffness, name)) for name in ("K1", "K2", "K3")}
     words = "\n".join(f"{name} = {chord} N·m/rad" for name, chord in chords.items())
-    words += f"\nlost motion {stiffness.lost_motion:.3g}′"
-    words += f", hysteresis {abs(stiffness.hysteresis):.2g}′"
+    if stiffness.lost_motion is not None:
+        words += f"\nlost motion {stiffness.lost_motion:.3g}′"
+    if stiffness.hysteresis is not None:
+        words += f", hysteresis {abs(stiffness.hysteresis):.2g}′"
     axes.text(0.02, 0.98, words, transform=axes.transAxes, va="top", fontsize=9)

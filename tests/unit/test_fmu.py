@@ -67,6 +67,7 @@ class StiffnessRun:
             "wg_angle_deg": angle,
             "torque_Nm": torque,
             "rotation_arcmin": rotation,
+            "wg_torque_Nmm": np.zeros_like(rotation),
         }
         rows = [dict(zip(self.program, values)) for values in zip(*self.program.values())]
         stiffness = torsional_stiffness(stiffness_program(self.design), rows, None)

@@ -34,6 +34,7 @@ from swgpar.evaluation.ratcheting import (
 )
 from swgpar.evaluation.stiffness import (
     ARC_MINUTE,
+    NAMES,
     StiffnessValues,
     by_position,
     torsional_stiffness,
@@ -178,7 +179,7 @@ def test_shortcuts_of_programs() -> None:
     points = program_points(found)
     period, half = 360.0 / 42.0, len(stiffness_program(found).torques)
     counts = [sum(p.angle == pytest.approx(period * k / 6.0) for p in points) for k in range(6)]
-    assert counts == [half, 2 * half, 2 * half, half, 0, 0]
+    assert counts == [half + 1, 2 * half, 2 * half, half, 0, 0]
     # the wave generator turns under the torque in which the position before has ended
     for a, b in itertools.pairwise(points):
         assert a.angle == b.angle or a.value == b.value
@@ -213,7 +214,7 @@ def rows_of(design: Any) -> list[dict[str, Any]]:
         )
         if point.stage != TRAVEL:
             row = {"stage": point.stage, "wg_angle_deg": point.angle, "torque_Nm": point.value}
-            rows.append({**row, "rotation_arcmin": float(turned)})
+            rows.append({**row, "rotation_arcmin": float(turned), "wg_torque_Nmm": 0.0})
     return rows
 
 
@@ -240,6 +241,36 @@ def test_stiffness_of_a_given_loop(points: int) -> None:
         0.0, abs=1e-6
     )
     assert summary.mesh_error is None and len(summary.positions) == 2
+
+
+@pytest.mark.parametrize(
+    ("held", "lacking"),
+    [
+        (0.02, {"K1", "backlash", "hysteresis"}),
+        (0.5, {"K1", "backlash", "hysteresis", "lost_motion"}),
+        (4.0, {"K1", "K2", "backlash", "hysteresis", "lost_motion"}),
+    ],
+)
+def test_what_needs_torques_against_which_the_output_is_held_is_not_stated(
+    held: float, lacking: set[str]
+) -> None:
+    """Under smaller torques the teeth rest on the flanks of the other side."""
+    values = {"stiffness.torque": TORQUE, "stiffness.positions": 1, "stiffness.loop": True}
+    design = small("plane").with_values(values)
+    rows = [
+        {
+            **row,
+            "wg_torque_Nmm": -1001.0 * row["torque_Nm"],
+            "rotation_arcmin": row["rotation_arcmin"] - 4.0 * BACKLASH,
+        }
+        if 0.0 < row["torque_Nm"] < held
+        else row
+        for row in rows_of(design)
+    ]
+    summary = torsional_stiffness(stiffness_program(design), rows, None)
+    assert {name for name in NAMES if getattr(summary, name) is None} == lacking
+    reasons = {one.name: one.remark for one in summary.answers() if one.value is None}
+    assert set(reasons) == {f"stiffness.{name}" for name in lacking} and all(reasons.values())
 
 
 def test_the_coarser_mesh_for_the_stiffness_of_a_cup_keeps_most_of_its_wall(
