@@ -113,10 +113,10 @@ class NodeMeans(ABC):
         center = np.zeros(3) if fixed_axis else self.sum(self.weight[:, None] * self.undeformed)
         center[2] = self.sum(self.weight * self.undeformed[:, 2])
         self.center, self.arm = center, self.undeformed - center
-        self.radius2 = float(self.sum(self.weight * (self.arm[:, 0] ** 2 + self.arm[:, 1] ** 2)))
+        squares = self.arm[:, 0] ** 2 + self.arm[:, 1] ** 2
+        self.radius2 = float(self.sum(self.weight * squares))
+        self.rotation_norm = float(np.sqrt(self.sum(self.weight**2 * squares)) / self.radius2)
         self.solid = partition.dims == 3
-        squares = self.weight**2 * (self.arm[:, 0] ** 2 + self.arm[:, 1] ** 2)
-        self.rotation_norm = float(np.sqrt(self.sum(squares)) / self.radius2)
 
     def sum(self, value: np.ndarray) -> np.ndarray:
         """Sum over all nodes of the surface, on all ranks."""

@@ -57,9 +57,6 @@ CHORDS = {
 }
 LOST_MOTION = AnswerKind("stiffness.lost_motion", "lost motion", "arc minutes")
 HYSTERESIS = AnswerKind("stiffness.hysteresis", "width of the loop at zero torque", "arc minutes")
-BACKLASH = AnswerKind(
-    "stiffness.backlash", "rotation without torque between the flanks", "arc minutes"
-)
 
 PASSES_BACKLASH = 3.0
 """Compliance between two torques, over the least of a branch, above which the output passes a
@@ -85,7 +82,9 @@ class StiffnessValues:
     K3: float | None = part_answers(CHORDS["K3"])
     lost_motion: float | None = part_answers(LOST_MOTION)
     hysteresis: float | None = part_answers(HYSTERESIS)
-    backlash: float | None = part_answers(BACKLASH)
+    backlash: float | None = answer(
+        "stiffness.backlash", "rotation without torque between the flanks", "arc minutes"
+    )
     loop_work: float = answer("stiffness.loop_work", "area of the loop", "N·mm")
 
 
@@ -132,13 +131,8 @@ class TorsionalStiffness(StiffnessValues, AnswerGroup):
 
     def reasons(self) -> Mapping[str, str]:
         reason = "its torques are too small beside those by which the bent spline is held"
-        lacks = {kind: getattr(self, name) is None for name, kind in CHORDS.items()}
-        lacks |= {
-            LOST_MOTION: self.lost_motion is None,
-            HYSTERESIS: self.hysteresis is None,
-            BACKLASH: self.backlash is None,
-        }
-        return {kind.name: reason for kind, lacking in lacks.items() if lacking}
+        names = [*CHORDS, "lost_motion", "hysteresis", "backlash"]
+        return {f"stiffness.{name}": reason for name in names if getattr(self, name) is None}
 
     def remarks(self) -> Iterator[str]:
         yield (
@@ -242,13 +236,12 @@ def at_position(program: StiffnessProgram, rows: Sequence[PointRow]) -> Stiffnes
     top, share = program.torque, program.lost_motion_torque
     ends = [0.0, *(b * top for b in program.section.break_points), top]
     line = [0.5 * (middle(0, torque) + middle(1, torque)) for torque in ends]
+    steps = ends[:-1], np.diff(ends), np.diff(line)
     chords = {
         name: float(torque / rotation)
         if carried(start) and torque > program.negligible and rotation
         else None
-        for name, start, torque, rotation in zip(
-            CHORDS, ends, np.diff(ends), np.diff(line), strict=False
-        )
+        for name, start, torque, rotation in zip(CHORDS, *steps, strict=True)
     }
     width = unloading[0].at(0.0) + unloading[1].at(0.0)
     backlash = 0.5 * sum(a.at(0.0) + b.at(0.0) for a, b in zip(loading, unloading[::-1]))

@@ -161,7 +161,7 @@ class StiffnessProgram:
             points.extend(ProgramPoint(stage, angle, "torque", value) for value in values)
 
         for k in dict.fromkeys(map(self.computed, range(len(angles)))):
-            if k == 1 and self.starts_mirrored:
+            if k == 1 and self.starts_mirrored:  # it turns under the torque that begins there
                 add(TRAVEL, angles[0], down[:1])
             if self.section.loop:
                 if k:

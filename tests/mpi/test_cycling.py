@@ -220,10 +220,8 @@ def test_a_drive_that_floats_under_a_small_torque_is_not_loaded(
     torque_norm: float, verdict: NewtonVerdict
 ) -> None:
     """Its residual is that of the torque, and below the tolerance of the contact forces."""
-    test, state = (
-        convergence_test(torque_norm=torque_norm),
-        SolveState(Mock(stage=Stage.LOAD), [], 9),
-    )
+    test = convergence_test(torque_norm=torque_norm)
+    state = SolveState(Mock(stage=Stage.LOAD), [], 9)
     last, residual = ResidualInfo(1e3, False), 1e-6
     state.residuals.append(residual / test.reference(state.load_state, last))
     decision = test.decide(state, 1, residual, last, descending=True, bounded=False)
