@@ -10,10 +10,14 @@ Names are imported when they are used: PETSc starts with the first one that need
 
 from __future__ import annotations
 
+import os
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from swgpar.solve.blas_kernels import choose_blas_kernels
 from swgpar.version import __version__
+
+choose_blas_kernels(os.environ)  # before PETSc loads OpenBLAS
 
 if TYPE_CHECKING:
     from swgpar.api import (
