@@ -126,10 +126,11 @@ def _check_pancake(design: DriveDesign) -> None:
         (design.housing, "ring_gear.housing", "without it"),
         (design.bearing, "wave_generator.bearing", "a cam without a bearing"),
         (design.deviations, "deviations", "without them"),
-        (design.has_program, "a load program, stiffness or ratcheting", "load.torque"),
-        (friction, f"contact.friction = {friction:g}", "0"),
+        (bool(design.load.program), "load.program", "load.torque"),
+        (design.ratcheting, "ratcheting", "without it"),
+        # the spline, which contacts alone hold, finds no equilibrium in its backlash
+        (design.stiffness and friction, "stiffness", f"contact.friction = 0, not {friction:g}"),
         (design.fatigue, "fatigue", "without it"),
-        (design.losses, "losses", "without them"),
         (resolved, "output.root_stress = true", "false"),
         (design.solver.condensed_sectors, "solver.condensed_sectors = true", "false"),
         (

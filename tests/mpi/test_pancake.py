@@ -3,12 +3,15 @@ is the output."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
-from support.paths import DATA
+import swgpar
+from support.paths import DATA, RECIPE
 from support.stepping import WORLD, Row, load_stepper, rotate, row
 from swgpar import load_design
 from swgpar.analysis.bent_start import bend
@@ -17,9 +20,13 @@ from swgpar.constraints.distributing_coupling import ROTATION
 from swgpar.design.drive_design import DriveDesign
 from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.load.load_sequence import load_sequence
+from swgpar.presentation.drive_result import DriveResult
 
 TORQUE = 1000.0
 """Torque of the output, N mm."""
+
+FRICTION = 0.05
+"""Coefficient of friction."""
 
 LAYOUTS = {"ring_fixed": (-20.0, 42), "spline_fixed": (21.0, 40)}
 """Ratio, and teeth of the fixed ring gear."""
@@ -120,6 +127,52 @@ def test_energy() -> None:
     # the coarse mesh has a ripple of a third of the mean, of which eight samples leave 0.3 %
     assert np.ptp(torque) > 0.1 * np.mean(torque)
     assert np.mean(torque) == pytest.approx(TORQUE / 20.0, rel=0.01)
+
+
+def run(keys: dict[str, Any]) -> DriveResult:
+    return swgpar.run(load_design(DATA / "pancake.toml", keys), mesh=RECIPE)
+
+
+def mean_input(result: DriveResult) -> float:
+    """Mean input torque of a period, N mm."""
+    value = result.summary["mean.wg_torque_Nmm"].value
+    assert isinstance(value, float)
+    return value
+
+
+@pytest.mark.parallel(1)
+def test_stiffness_is_that_of_separate_loads() -> None:
+    """K2, between the break points, beside the rotations under two torques of `load.torque`."""
+    shares, torque = (0.4, 0.8), 1e-3 * TORQUE
+    result = run(
+        {
+            "stiffness.torque": torque,
+            "stiffness.positions": 1,
+            "stiffness.break_points": list(shares),
+            "stiffness.mesh_error": False,
+        }
+    )
+    angles = [
+        run({"load.torque": share * torque, "steps.rotation": 0.0}).history["output_angle_deg"]
+        for share in shares
+    ]
+    turned = abs(np.radians(angles[1][-1] - angles[0][-1]))
+    expected = (shares[1] - shares[0]) * torque / turned
+    assert result.summary["stiffness.K2"].value == pytest.approx(expected, rel=1e-3)
+
+
+@pytest.mark.parallel(1)
+def test_losses_are_what_friction_takes() -> None:
+    """The mean input torque with friction between the flanks is that without friction and the work
+    of the pairs of flanks in both ring gears."""
+    ideal = run({"losses.flank_friction": FRICTION, "steps.samples": 4, "steps.rotation": 9.0})
+    # two periods: the state settles in the first one
+    real = run({"contact.friction": FRICTION, "steps.samples": 4, "steps.rotation": 18.0})
+    added = mean_input(real) - mean_input(ideal)
+    assert added > 0.0
+    # forces and paths of the losses are those without friction: mu times the slope of the flanks
+    lost = ideal.summary["losses.flank_friction"].value
+    assert lost == pytest.approx(added, rel=2.0 * FRICTION)
 
 
 @pytest.mark.parallel(1)

@@ -163,9 +163,18 @@ PANCAKE = [
         "the other profiles",
     ),
     (("wave_generator.face_width=5",), "wave_generator.face_width = 5", "only 6 mm"),
-    (("contact.friction=0.1",), "contact.friction = 0.1", "allowed 0"),
     (("solver.condensed_sectors=true",), "solver.condensed_sectors = true", "allowed false"),
-    (("ratcheting.limit=1",), "a load program, stiffness or ratcheting", "allowed load.torque"),
+    (("ratcheting.limit=1",), "ratcheting is not available", "allowed without it"),
+    (
+        ("stiffness.torque=1", "contact.friction=0.1"),
+        "stiffness is not available",
+        "allowed contact.friction = 0, not 0.1",
+    ),
+    (
+        ("load.program=[{name='a', torque=1.0}]",),
+        "load.program is not available",
+        "allowed load.torque",
+    ),
     (
         ("wave_generator.bearing={balls=20,ball_diameter=2.0,race_thickness=0.5}",),
         "wave_generator.bearing",
@@ -180,7 +189,6 @@ PANCAKE = [
     (("ring_gear.housing.thickness=2",), "ring_gear.housing", "allowed without it"),
     (("drive.model=plane",), "dynamic_spline is given", 'not "plane"'),
     (("fatigue.surface_factor=0.9",), "fatigue is not available", "allowed without it"),
-    (("losses.loss_factor=1e-4",), "losses is not available", "allowed without them"),
     (
         ("deviations.ring_gear.eccentricity=0.01",),
         "deviations is not available",

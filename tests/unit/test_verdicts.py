@@ -520,14 +520,20 @@ def test_a_load_from_one_side_has_no_period_and_the_sheet_says_it() -> None:
     assert "radial force" in first.left_out
 
 
-def test_a_pancake_drive_keeps_its_period_without_what_it_cannot_have() -> None:
+def test_a_pancake_drive_has_all_runs_but_ratcheting() -> None:
     plan = plan_runs(pancake())
     runs = {run.name: run for run in plan.runs}
-    first = runs["rated torque"]
-    assert first.design is not None and first.design.steps.samples and not first.design.losses
-    assert 'drive.model = "pancake"' in first.left_out
-    for name in ("no load", "stiffness", "ratcheting"):
-        assert runs[name].design is None and 'drive.model = "pancake"' in runs[name].refusal
+    first = runs["rated torque"].design
+    assert first is not None and first.steps.samples and first.losses
+    for name in ("no load", "stiffness"):
+        assert runs[name].design is not None and not runs[name].refusal
+    assert runs["ratcheting"].design is None
+    assert 'drive.model = "pancake"' in runs["ratcheting"].refusal
+
+
+def test_resolution_names_no_option_that_a_pancake_refuses() -> None:
+    assert "--accuracy" in row("resolution", rated()).missing
+    assert "--accuracy" not in row("resolution", pancake()).missing
 
 
 def test_sections_that_exclude_each_other_may_stand_in_one_file() -> None:
