@@ -81,7 +81,11 @@ def test_the_table_has_what_a_run_gives(whole: Path, tmp_path: Path) -> None:
         found = json.loads((tmp_path / name / "summary.json").read_text(encoding="utf-8"))[
             "quantities"
         ]
-        assert {key: float(rows[name][key]) for key in SHOWN} == {key: found[key] for key in SHOWN}
+        # a run of a study names OpenBLAS' kernels before NumPy loads it, this process afterwards:
+        # sums have another order
+        assert {key: float(rows[name][key]) for key in SHOWN} == pytest.approx(
+            {key: found[key] for key in SHOWN}, rel=1e-9
+        )
         assert (float(rows[name]["load.noise"]), float(rows[name]["mesh.half_backlash"])) == (
             noise,
             20.0,
