@@ -322,9 +322,9 @@ def _computation(design: DriveDesign, accuracy: float) -> Iterator[RatingRow]:
         name = f"clearance of the rigid teeth{where.replace('_', ' ')}"
         yield _row(name, LoadCase.RATED, CLEARANCES[clearance.ring], limit)
     limit = Limit(accuracy, Sense.AT_MOST, "largest error of the stress at the teeth")
-    answer = "the error of the largest tension at the teeth has no estimate"
-    if design.dynamic_spline is None:
-        answer += f" on this mesh; the usual mesh or --accuracy {accuracy:g} gives one"
+    answer = "the error of the largest tension at the teeth has no estimate "
+    if design.without_windows:
+        answer += f"with {design.without_windows}"
     else:
-        answer += ' with drive.model = "pancake"'
+        answer += f"on this mesh; the usual mesh or --accuracy {accuracy:g} gives one"
     yield RatingRow("resolution", LoadCase.LARGEST, resolution, limit, answer, of_computation=True)
