@@ -66,7 +66,8 @@ def draw_deformed(grids: Sequence[pyvista.UnstructuredGrid], factor: float, titl
     colours = {"scalars": "vm", "cmap": COLOURS, "clim": (0.0, limit), "show_scalar_bar": False}
     for grid in deformed(grids, factor):
         surface = grid.extract_surface(algorithm="dataset_surface")
-        plotter.add_mesh(surface, smooth_shading=False, **colours)
+        # faces that look away are hidden by others: without them drawing takes half as long
+        plotter.add_mesh(surface, smooth_shading=False, culling="back", **colours)
     plotter.camera_position = [(60.0, 60.0, -170.0), (0.0, 0.0, 10.0), (0.0, 1.0, 0.0)]
     plotter.reset_camera()
     plotter.camera.zoom(1.3)

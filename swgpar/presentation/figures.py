@@ -63,6 +63,7 @@ class DriveFigures(FigureSet):
     """
 
     exact_size = ("deformed_drive", "loaded_teeth", "cup_section", "safety")
+    pictures = ("deformed_drive", "safety")
 
     def __init__(self, result: DriveData, comm: MPI.Comm, *, gathered: bool) -> None:
         super().__init__(comm, gathered=gathered)

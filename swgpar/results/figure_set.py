@@ -148,7 +148,7 @@ def from_zero(axes: Axes) -> None:
 
 
 PICTURE = 6
-"""Figures over axes that take as long as a picture of the drive."""
+"""Figures over axes that take as long as a picture of the whole drive."""
 
 
 class FigureSet(ABC):
@@ -204,13 +204,15 @@ class FigureSet(ABC):
     def _writers(self) -> dict[str, int]:
         """The rank that draws each figure, so that all take about as long."""
         load, writer = [0] * self._comm.size, {}
-        for name in sorted(self.drawings, key=lambda name: name not in self.exact_size):
+        for name in sorted(self.drawings, key=lambda name: name not in self.pictures):
             writer[name] = load.index(min(load))
-            load[writer[name]] += PICTURE if name in self.exact_size else 1
+            load[writer[name]] += PICTURE if name in self.pictures else 1
         return writer
 
     exact_size: tuple[str, ...] = ()
     """Figures that show a picture and are written pixel by pixel."""
+    pictures: tuple[str, ...] = ()
+    """Figures that take as long as `PICTURE` others."""
 
 
 def _write(figure: Figure, path: Path, dots_per_inch: float) -> None:
