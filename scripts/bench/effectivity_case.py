@@ -8,8 +8,8 @@ the value, the error that the run states, why there is none, and the place; what
 itself; elements, seconds and memory. The log of the run goes to standard error.
 
 A reference has one window more than the usual run, with smaller elements than the last usual one.
-In the wall of a cup its rings are finer by 1.5, and there is one more slice. That of a cup drive
-under load starts from the state of the usual run, so that this is computed first.
+In the wall of a cup its rings are finer by 1.5, and there is one more slice. That of a drive in
+space under load starts from the state of the usual run, so that this is computed first.
 """
 
 from __future__ import annotations
@@ -160,12 +160,12 @@ def solve(case: dict[str, Any]) -> dict[str, dict[str, Any]]:
     if case["times"] == 1.0:
         return {"usual": run(design, replaced(recipe, case["counts"]))}
     done = {}
-    if model == "cup" and part == "loaded":
+    if model != "plane" and part == "loaded":
         models: list[DriveModel] = []
         keep_models(models)
         done["usual"] = run(design, recipe)
         start_from(models[0])
-    with_finer_windows(model)
+    with_finer_windows(recipe.model)
     finer = replaced(reference_recipe(recipe, case["times"]), case["counts"])
     if part != "loaded":
         design = design.with_values(WITHOUT_WINDOWS)

@@ -27,7 +27,6 @@ def not_refinable(design: DriveDesign) -> tuple[str, str] | None:
     for given, what, allowed in (
         (design.has_program, "a load program", "a mesh recipe"),
         (design.is_loaded_sideways, SIDEWAYS, "without them"),
-        (design.dynamic_spline is not None, 'drive.model = "pancake"', '"cup"'),
     ):
         if given:
             return what, allowed

@@ -94,7 +94,7 @@ class Refinement:
         levels: int | None = None,
     ) -> None:
         self.drive, self.design, self.largest, self.kept = drive, drive.design, largest, kept
-        self.loaded, self.kind = load_sequence(self.design).loaded, self.design.drive.model
+        self.loaded, self.kind = load_sequence(self.design).loaded, recipe.model
         self.levels = levels or LEVELS[self.kind]
         coarser = coarser_recipe(recipe)
         if coarser is None:
@@ -223,7 +223,7 @@ def choose_mesh(
     Ends with the best mesh where the accuracy is out of reach, and says so. Raises ConvergenceError
     or InputError like a run on one of the first two meshes.
     """
-    kind = drive.design.drive.model
+    kind = recipe.model
     largest = LARGEST[kind] if largest is None else largest
     levels = FEWEST_LEVELS[kind] if accuracy >= ROUGH else None
     present = Refinement(drive, recipe, largest, kept, levels)

@@ -22,7 +22,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.drive_data import DriveData
 from swgpar.errors import ConvergenceError, SwgparError, TimeLimitError
 from swgpar.evaluation.period import require_samples
-from swgpar.load.load_sequence import LoadSequence, load_sequence
+from swgpar.load.load_sequence import load_sequence
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
 from swgpar.results.atomic import on_all
@@ -105,8 +105,7 @@ def run_drive(
         inputs=[*design.files, Path(recipe_name)],
     )
     open_log(folder, comm)
-    without_windows = design.without_windows if design.output.root_stress else ""
-    _log_remarks(said, sequence, left_out, without_windows)
+    _log_remarks(said, left_out)
     with reported_memory(needs), limited(design.solver.time_limit):
         kept = StartStates(folder)
         if not options.restart:
@@ -146,20 +145,12 @@ def run_drive(
     return result
 
 
-def _log_remarks(
-    remarks: Sequence[str], sequence: LoadSequence, left_out: Sequence[str], without_windows: str
-) -> None:
+def _log_remarks(remarks: Sequence[str], left_out: Sequence[str]) -> None:
     """Say what the run leaves out, and what of the design may not be meant.
 
     remarks : about the design
-    without_windows : what keeps windows from resolving a stress that is asked for
     """
     for remark in remarks:
         logger.warning("%s", remark)
     if left_out:
         logger.info("left out: %s; --plain computes all of it", ", ".join(left_out))
-    if without_windows and not sequence.points:
-        logger.info(
-            "the stress at the teeth is not resolved by windows: not available with %s",
-            without_windows,
-        )

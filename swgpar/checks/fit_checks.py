@@ -113,7 +113,6 @@ def _check_pancake(design: DriveDesign) -> None:
         require(second.face_width < rest, "dynamic_spline.face_width", second.face_width, allowed)
     allowed = f"only {width:g} mm (drive.face_width) with {PANCAKE}"
     require(cam == width, "wave_generator.face_width", cam, allowed)
-    resolved = design.output.root_stress and "root_stress" in design.output.model_fields_set
     fixed, friction = design.kinematics.wave_generator_is_fixed, design.contact.friction
     for given, what, allowed in (
         (design.cup, "cup", 'only with drive.model = "cup"'),
@@ -130,8 +129,6 @@ def _check_pancake(design: DriveDesign) -> None:
         (design.ratcheting, "ratcheting", "without it"),
         # the spline, which contacts alone hold, finds no equilibrium in its backlash
         (design.stiffness and friction, "stiffness", f"contact.friction = 0, not {friction:g}"),
-        (design.fatigue, "fatigue", "without it"),
-        (resolved, "output.root_stress = true", "false"),
         (design.solver.condensed_sectors, "solver.condensed_sectors = true", "false"),
         (
             second.profile.type == "s_shaped",

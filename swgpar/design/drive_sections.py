@@ -199,19 +199,14 @@ class DriveSections(Design):
         return self.steps.pins and self.bearing is None
 
     @property
-    def without_windows(self) -> str:
-        """What keeps windows from resolving the stress at the teeth; empty without."""
-        return "" if self.dynamic_spline is None else "two ring gears"
-
-    @property
     def resolves_root_stress(self) -> bool:
         """Whether windows resolve the stress at the teeth."""
-        return self.output.root_stress and not self.has_program and not self.without_windows
+        return self.output.root_stress and not self.has_program
 
     @property
     def compares_meshes(self) -> bool:
         """Whether the drive is loaded on coarser meshes for errors by the mesh."""
-        compares = self.output.contact_errors and not self.has_program and not self.without_windows
+        compares = self.output.contact_errors and not self.has_program
         return self.resolves_root_stress or compares
 
     @property

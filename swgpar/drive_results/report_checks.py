@@ -178,8 +178,7 @@ def _meshed(stresses: LargestStresses) -> Check:
 
 
 def _strains(strains: LargestStrains) -> Check:
-    known = {BODIES["fs"]: strains.fs, BODIES["rg"]: strains.rg}
-    found = {body: strain for body, strain in known.items() if strain is not None}
+    found = {BODIES[body]: strain for body, strain in strains.of_bodies.items()}
     if not found:
         return Check("strains", None, "there is no increment under load")
     text = ", ".join(f"{body} {strain:.2g} %" for body, strain in found.items())

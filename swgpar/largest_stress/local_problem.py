@@ -21,7 +21,7 @@ from swgpar.constraints.boundary_conditions import DeadLoad, PrescribedDisplacem
 from swgpar.constraints.distributing_coupling import node_weights
 from swgpar.constraints.supports import Supports
 from swgpar.errors import ConvergenceError
-from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR, STRESS_PREFIXES
+from swgpar.fem.body import FLEXIBLE_SPLINE, STRESS_PREFIXES
 from swgpar.fem.stress import principal_at_nodes
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.rotation import rotated
@@ -102,7 +102,7 @@ def window_sector(
     """The sector of a window of a gear. Of a flexible spline it is the toothed part and the
     beginning of the cup's wall, which ends in the set ``cut``."""
     mesh = build_sector(geometry, recipe, gear)
-    if mesh.plane or gear != FLEXIBLE_SPLINE:
+    if gear != FLEXIBLE_SPLINE or geometry.cup is None:
         return mesh
     end = 0.5 * geometry.face_width + CUP_LENGTH * geometry.wall_decay
     return trimmed(mesh, mesh.coords[mesh.hexes, 2].min(axis=1) < end)
@@ -119,7 +119,7 @@ def shared_mesh(model: DriveModel, recipe: MeshRecipe, gear: str, count: int) ->
 
 def sectors_of(gear: str) -> int:
     """Tooth sectors of a window of a gear."""
-    return RING_SECTORS if gear == RING_GEAR else SECTORS
+    return SECTORS if gear == FLEXIBLE_SPLINE else RING_SECTORS
 
 
 class LocalProblem:
@@ -182,7 +182,7 @@ class LocalProblem:
             problem,
             replace(
                 model.solver.settings,
-                rtol=RTOL[geometry.model],
+                rtol=RTOL[recipe.model],
                 linear="direct",
                 reuse_factor=True,
             ),
@@ -245,9 +245,9 @@ class LocalProblem:
         mesh, every = self.layout.mesh, np.arange(self.layout.count)
         held: dict[int, np.ndarray] = {}
         parts = [(every[:1], mesh.cw_nodes), (every[-1:], mesh.ccw_nodes)]
-        if self.gear == RING_GEAR:
+        if self.gear != FLEXIBLE_SPLINE:
             parts.append((every, mesh.node_sets["outer"]))
-        elif not mesh.plane:
+        elif "cut" in mesh.node_sets:
             parts += [
                 (every, mesh.node_sets["cut"]),
                 (every, mesh.node_sets["bore"]),

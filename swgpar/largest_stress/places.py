@@ -21,7 +21,8 @@ from swgpar.answers.answer import (
     with_error,
     with_no_limit,
 )
-from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.design.drive_design import DriveDesign
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.load.load_states import LoadState
 from swgpar.meshing.drive_geometry import DriveGeometry
@@ -127,6 +128,13 @@ def region_kind(body: str, stress: str, region: str) -> AnswerKind:
     return replace(one, detail=True)
 
 
+def of_its_bodies(kinds: tuple[AnswerKind, ...], design: DriveDesign) -> tuple[AnswerKind, ...]:
+    """Of these kinds those that a drive of the design has: only a pancake has a dynamic spline."""
+    if design.dynamic_spline is not None:
+        return kinds
+    return tuple(kind for kind in kinds if not kind.name.partition(".")[2].startswith("ds"))
+
+
 @evaluation
 class LargestStresses(AnswerGroup):
     """Largest stresses of all increments under load, by windows where they resolve them, else nodal
@@ -138,7 +146,7 @@ class LargestStresses(AnswerGroup):
     places: Mapping[str, Place] = part_answers(
         *(
             stress_kind(body, stress, ending, words)
-            for body in ("fs", "rg")
+            for body in BODIES
             for stress in STRESSES
             for ending, words in (
                 ("", ""),
@@ -151,9 +159,11 @@ class LargestStresses(AnswerGroup):
     regions: Mapping[str, Place]
 
     TITLE = "largest stresses of all increments under load"
-    OF_REGIONS = tuple(
-        region_kind(body, stress, "") for body in ("fs", "rg") for stress in STRESSES
-    )
+    OF_REGIONS = tuple(region_kind(body, stress, "") for body in BODIES for stress in STRESSES)
+
+    @classmethod
+    def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
+        return of_its_bodies(super().kinds(design), design)
 
     @classmethod
     def of(cls, places: Mapping[str, Place]) -> LargestStresses:
@@ -197,7 +207,7 @@ def find_places(
     *,
     on_edge: bool = False,
 ) -> dict[str, Place]:
-    """Places of the largest s1, |s3| and von Mises stress of both bodies, by column of the history;
+    """Places of the largest s1, |s3| and von Mises stress of all gears, by column of the history;
     collective.
 
     |s3| and von Mises are looked for apart from the contact of flanks as well, with names that end
@@ -206,23 +216,23 @@ def find_places(
     have `OF_REGION`; only values above 0. Names that end with `OFF_CORNERS` are of those apart from
     the contact that have a limit.
 
-    fields : nodal fields of both bodies as `DriveModel.stresses` gives them
+    fields : nodal fields of the gears as `DriveModel.stresses` gives them
     on_edge : whether a contact of flanks lies on the edge of a tooth
     """
     pressed = pressed_nodes(
         model, state
-    )  # those of the spline; any flank of the ring gear may be touched
+    )  # those of the spline; any flank of a ring gear may be touched
     found, geometry = {}, model.geometry
     distance, on_rollers = (
         APART_DISTANCE * geometry.module,
         model.design.wave_generator.type in ("two_roller", "four_roller"),
     )
-    for name in (FLEXIBLE_SPLINE, RING_GEAR):
+    for name in geometry.gears:
         body = model.elements.bodies[name]
         prefix = body.layout.body.stress_prefixes[0]
-        ring = name == RING_GEAR
+        ring = name != FLEXIBLE_SPLINE
         mesh, free = body.layout.mesh, np.zeros(fields[name]["s3"].shape, dtype=bool)
-        # every sector of the ring gear is alike: one stands for all
+        # every sector of a ring gear is alike: one stands for all
         near = near_contact(mesh, working_flanks(mesh)[None] if ring else pressed, distance)
         near |= inside_teeth(geometry, mesh)
         apart = np.broadcast_to(~near, free.shape)
@@ -232,7 +242,7 @@ def find_places(
         for stress in ("s1", "s3", "vm"):
             values = -fields[name][stress] if stress == "s3" else fields[name][stress]
             values = np.where(beyond, -np.inf, values)
-            # s1 below a contact is compressive or small; of the ring gear any flank may be touched
+            # s1 below a contact is compressive or small; of a ring gear any flank may be touched
             below = near if stress != "s1" else free if ring else pressed
             below = np.broadcast_to(below, free.shape)
             names = {f"{prefix}_{stress}": (values, below)}
@@ -283,7 +293,8 @@ def inside_teeth(geometry: DriveGeometry, mesh: SectorMesh) -> np.ndarray:
     near = NEAR * geometry.module
     inside = (radius > low + near) & (radius < high - near)
     if not mesh.plane:
-        inside &= np.abs(z) < 0.5 * geometry.face_width - near
+        front, back = geometry.gears[mesh.body].ends
+        inside &= (z > front + near) & (z < back - near)
     for grid in mesh.flanks:
         inside[grid.nodes.ravel()] = False
     return inside

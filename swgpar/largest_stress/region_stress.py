@@ -1,4 +1,4 @@
-"""The largest stresses of the regions of both gears, read from windows.
+"""The largest stresses of the regions of the gears, read from windows.
 
 A window is around one tooth. Where nodal averages have the largest stress of a region at another
 one, the stress there is that of the window in proportion. Where it is far larger there, it is
@@ -189,7 +189,7 @@ class WindowReadings:
         of_largest, lacks = known[other][-1], 0.0
         tooth, position = of_largest.tooth, of_largest.position
         region = name.partition(OF_REGION)[2]
-        unrefined = gear == FLEXIBLE_SPLINE and region in UNREFINED[model.geometry.model]
+        unrefined = gear == FLEXIBLE_SPLINE and region in UNREFINED[model.recipe.model]
         layout = model.partition.layouts[gear]
         place = partial(Place.at, layout, region)
         error = math.inf if unrefined else self._window_error(model, layout, name, main, ratio)
@@ -307,7 +307,7 @@ def nodal_by_sector(
     """Largest nodal averages (n_modelled,) MPa apart from the contact of flanks, by sector and by
     names with `OF_REGION`; collective.
 
-    Of the ring gear any flank may be touched. averages : `nodal_averages` of the gear
+    Of a ring gear any flank may be touched. averages : `nodal_averages` of the gear
     """
     mesh, regions = model.elements.bodies[gear].layout.mesh, model.regions[gear][False]
     s1, s3, mises = averages

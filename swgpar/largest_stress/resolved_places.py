@@ -1,4 +1,4 @@
-"""The largest stresses of both gears by windows where these resolve them, by nodal averages
+"""The largest stresses of the gears by windows where these resolve them, by nodal averages
 elsewhere."""
 
 from __future__ import annotations
@@ -7,12 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from swgpar.fem.body import FLEXIBLE_SPLINE
-from swgpar.largest_stress.places import APART, OF_REGION, OFF_CORNERS, ROLLER, Place
+from swgpar.largest_stress.places import APART, BODIES, OF_REGION, OFF_CORNERS, ROLLER, Place
+from swgpar.largest_stress.places import STRESSES as OF_BODY
 from swgpar.largest_stress.root_stress import RootStress
 from swgpar.largest_stress.wall_stress import WallStress
 from swgpar.model.regions import CUP_WALL, INSIDE, UNDER_CONTACT
 
-STRESSES = "fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm"
+STRESSES = tuple(f"{body}_{stress}" for body in BODIES for stress in OF_BODY)
 """Stresses that windows resolve."""
 
 MOST_LOST = 1.0

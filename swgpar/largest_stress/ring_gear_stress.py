@@ -1,4 +1,4 @@
-"""The largest stresses of the ring gear, resolved by windows."""
+"""The largest stresses of a ring gear, resolved by windows."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from swgpar.fem.body import RING_GEAR
+from swgpar.fem.body import STRESS_PREFIXES
 from swgpar.largest_stress.candidate_teeth import ROUND_OFF, first_of_largest
 from swgpar.largest_stress.local_problem import WindowStress
 from swgpar.largest_stress.places import OF_REGION
@@ -34,9 +34,9 @@ to 3 % (docs/verification/effectivity.md)."""
 
 
 def ring_gear_stresses(
-    model: DriveModel, state: LoadState, levels: int, skipped: int
+    model: DriveModel, state: LoadState, gear: str, levels: int, skipped: int
 ) -> dict[str, RegionStress]:
-    """Largest stresses of the ring gear by windows; collective.
+    """Largest stresses of a ring gear by windows; collective.
 
     A root lies between two teeth, and its middle has the same nodal average in both. Nodal averages
     lose much beside a contact near the root, so that of two loaded roots the one with less may have
@@ -44,24 +44,25 @@ def ring_gear_stresses(
     them, get the coarsest window; in the plane those with a peak of the von Mises stress as well.
     These windows tell the teeth that are followed.
     """
-    kind, averages = model.geometry.model, nodal_averages(model, RING_GEAR)
-    nodal = nodal_by_sector(model, state, RING_GEAR, averages)
+    kind, averages = model.recipe.model, nodal_averages(model, gear)
+    nodal = nodal_by_sector(model, state, gear, averages)
     stresses = ("s1", "vm") if kind == "plane" else ("s1",)
-    roots = [f"rg_{stress}{OF_REGION}{TOOTH_ROOT}" for stress in stresses]
+    prefix = STRESS_PREFIXES[gear][0]
+    roots = [f"{prefix}_{stress}{OF_REGION}{TOOTH_ROOT}" for stress in stresses]
     peaks = [tooth for root in roots for tooth in _peaks(nodal[root], kind)]
     teeth = {(tooth + beside) % len(nodal[roots[0]]) for tooth in peaks for beside in (-1, 0, 1)}
     readings, states = WindowReadings(skipped), States()
     for level in range(min(levels, RING_LEVELS[kind])):
         found = {}
         for tooth in sorted(teeth):
-            recipe = window_recipe(kind, level)
-            with solved_window(model, state, tooth, recipe, states, RING_GEAR) as window:
+            recipe = window_recipe(model.geometry.model, level)
+            with solved_window(model, state, tooth, recipe, states, gear) as window:
                 (found[tooth],) = window.by_region().values()
             if level >= skipped:
                 readings.add(tooth, level, {tooth: found[tooth]})
         share = FOLLOWED[min(level, 1)] if kind == "plane" else 1.0
         teeth = {tooth for root in roots for tooth in _followed(found, root, share)}
-    return readings.stresses(model, RING_GEAR, nodal, RATIO[kind])
+    return readings.stresses(model, gear, nodal, RATIO[kind])
 
 
 def _peaks(nodal: np.ndarray, kind: str) -> list[int]:

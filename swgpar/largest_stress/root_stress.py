@@ -241,15 +241,15 @@ def resolve_root_stress(
     ring: bool = True,
 ) -> RootStress:
     """Resolve the largest tensile stress at the teeth in the model's equilibrium under `state`, and
-    read the other stresses of both gears; collective.
+    read the other stresses of the gears; collective.
 
     levels : windows, each finer than the one before; None for those of `LEVELS`
     skipped : coarsest of these windows that are left out; their stresses are not numbers
-    ring : whether the ring gear has windows
+    ring : whether ring gears have windows
 
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
-    kind = model.geometry.model
+    kind = model.recipe.model
     parts = _parts(model)
     averages = nodal_averages(model, FLEXIBLE_SPLINE)
     on_mesh = [largest_by_tooth(model, averages[0], ends) for ends in parts]
@@ -301,16 +301,17 @@ def resolve_root_stress(
         )
     known = _place(model, found[best], PARTS[best[1]], by_part, error, float(np.max(on_mesh)))
     regions = readings.stresses(model, FLEXIBLE_SPLINE, nodal, RATIO[kind])
-    if ring:
-        regions |= ring_gear_stresses(model, state, count, skipped)
-        _release(model)
+    for gear in model.geometry.gears:
+        if ring and gear != FLEXIBLE_SPLINE:
+            regions |= ring_gear_stresses(model, state, gear, count, skipped)
+            _release(model)
     return replace(known, regions=regions, at_corner=readings.at_corner(model, known.s1))
 
 
 def _release(model: DriveModel) -> None:
     """Release the factors of windows, but not of those that further angles need; collective."""
-    kind = model.geometry.model
-    model.release_windows(kept=window_recipe(kind, PERIOD_LEVEL[kind]))
+    level = PERIOD_LEVEL[model.recipe.model]
+    model.release_windows(kept=window_recipe(model.geometry.model, level))
 
 
 def _parts(model: DriveModel) -> tuple[bool, ...]:
@@ -330,8 +331,7 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
     in the loaded state, so that the ends of the teeth count only if they do there. Raises like
     `resolve_root_stress`.
     """
-    kind = model.geometry.model
-    level = PERIOD_LEVEL[kind]
+    level = PERIOD_LEVEL[model.recipe.model]
     ends = known.part == ENDS
     s1, _, _ = nodal_averages(model, FLEXIBLE_SPLINE)
     tooth = first_of_largest(largest_by_tooth(model, s1, ends))

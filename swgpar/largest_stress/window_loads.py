@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.fem.body import RING_GEAR
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.flank_pressure.flank_loads import (
     flank_forces,
     line_loads,
@@ -50,11 +50,13 @@ class WindowLoads:
         cls, model: DriveModel, state: LoadState, mesh: SectorMesh, teeth: np.ndarray
     ) -> WindowLoads:
         """The forces of a state on the `teeth` (n,) of a gear; collective. mesh : of the window"""
-        flanks, gear = model.problem.flanks_of(RING_GEAR), mesh.body
-        loads = line_loads(
-            model.partition.layouts[gear].mesh, flank_forces(model, state, teeth, flanks, gear)
-        )
-        cells = pressed_cells(model, flanks, gear, teeth) if mesh.plane else {}
+        gear = mesh.body
+        flanks = [
+            one for one in model.problem.flanks if gear in (FLEXIBLE_SPLINE, one.ring.layout.name)
+        ]
+        forces = np.sum([flank_forces(model, state, teeth, one, gear) for one in flanks], axis=0)
+        loads = line_loads(model.partition.layouts[gear].mesh, forces)
+        cells = pressed_cells(model, flanks[0], gear, teeth) if mesh.plane else {}
         grids, nodal = {grid.side: grid for grid in mesh.flanks}, {}
         for (sector, side), load in loads.items():
             grid, projected = grids[side], load.projected()

@@ -8,7 +8,8 @@ from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe import make_recipe
 
 RATIO = {"plane": 2.0, "cup": 1.5}
-"""Ratio of element sizes of successive windows."""
+"""Ratio of element sizes of successive windows, as other constants of windows by the `model` of
+mesh recipes: a pancake's are those of a cup drive."""
 
 COUNTS: dict[str, dict[str, dict[str, tuple[int, ...]]]] = {
     "plane": {
@@ -45,6 +46,11 @@ COUNTS: dict[str, dict[str, dict[str, tuple[int, ...]]]] = {
 """Counts of the windows, coarse to fine. That of the cylinder is along all of it; fillet and closed
 end are outside."""
 
+COUNTS["pancake"] = {gear: COUNTS["cup"][gear] for gear in ("flexible_spline", "ring_gear")} | {
+    "face_width": {"elements": (4, 6, 9, 13)}
+}
+"""The flexible spline has the elements of both ring gears along its face width, and the gap's."""
+
 MOST_LEVELS = {"plane": 5, "cup": 4}
 """Windows that there are; the last one has some 200,000 and 60,000 elements."""
 
@@ -80,7 +86,7 @@ PERIOD_LEVEL = {"plane": 1, "cup": 1}
 
 
 def window_recipe(model: str, level: int) -> MeshRecipe:
-    """Recipe of the window `level`, from 0 on, of the "plane" or "cup" model."""
+    """Recipe of the window `level`, from 0 on, of the "plane", "cup" or "pancake" model."""
     content: dict[str, Any] = {
         section: {name: values[level] for name, values in counts.items()}
         for section, counts in COUNTS[model].items()

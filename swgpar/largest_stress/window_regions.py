@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.fem.body import RING_GEAR
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.largest_stress.places import inside_teeth
 from swgpar.meshing.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.sector import SectorMesh
@@ -53,7 +53,7 @@ def read_regions(
     length : mm, of the wall behind the teeth that belongs to the window
     every : (n_node,) regions of all nodes where no contact presses
     """
-    wanted = OF_RING if mesh.body == RING_GEAR else OF_SPLINE
+    wanted = OF_SPLINE if mesh.body == FLEXIBLE_SPLINE else OF_RING
     regions = np.full(len(mesh.coords), "", dtype=object)
     read = np.zeros(len(mesh.coords), dtype=bool)
     read[mesh.nodes_of(0)] = True  # the housing of a ring gear is another body
@@ -70,7 +70,7 @@ def _beside_edges(geometry: DriveGeometry, mesh: SectorMesh, length: float) -> n
     """Nodes (n_node,) bool near a cut of the wall, a corner without a radius, or the edge of the
     wave generator."""
     radius, z = np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]
-    if mesh.plane or mesh.body == RING_GEAR:
+    if mesh.plane or mesh.body != FLEXIBLE_SPLINE:
         return np.zeros(len(z), dtype=bool)
     on_rim = radius < geometry.inner_radius + BESIDE * geometry.gears[mesh.body].rim
     beside = on_rim & at_the_cam_edge(geometry, mesh.coords)
@@ -97,6 +97,5 @@ def tooth_nodes(mesh: SectorMesh, geometry: DriveGeometry, ends: bool) -> np.nda
     )
     if not ends:
         return np.flatnonzero(z <= END * face_width)
-    return np.flatnonzero(
-        (z > END * face_width) & (z <= TOOTHED * face_width + geometry.cup.back_fillet)
-    )
+    behind = 0.0 if geometry.cup is None else geometry.cup.back_fillet
+    return np.flatnonzero((z > END * face_width) & (z <= TOOTHED * face_width + behind))

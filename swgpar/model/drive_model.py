@@ -153,11 +153,9 @@ class DriveModel:
 
     @cached_property
     def regions(self) -> dict[str, dict[bool, np.ndarray]]:
-        """Regions of the nodes of a sector of flexible spline and ring gear by name, see
-        `sector_regions`."""
+        """Regions of the nodes of a sector of each gear by name, see `sector_regions`."""
         return {
-            name: sector_regions(self.geometry, self.meshes[name])
-            for name in (FLEXIBLE_SPLINE, RING_GEAR)
+            name: sector_regions(self.geometry, self.meshes[name]) for name in self.geometry.gears
         }
 
     def n_elements(self) -> int:

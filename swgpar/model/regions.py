@@ -156,10 +156,8 @@ def _smooth_region(geometry: DriveGeometry, mesh: SectorMesh, node: int, touched
         return _region_of_the_cup(
             geometry.cup, NEAR * geometry.module, mesh, node, radius, float(z)
         )
-    inner = (
-        mesh.body == "flexible_spline"
-        and radius < geometry.inner_radius + 0.5 * geometry.gears["flexible_spline"].rim
-    )
+    spline = mesh.body == FLEXIBLE_SPLINE
+    inner = spline and radius < geometry.inner_radius + 0.5 * geometry.gears["flexible_spline"].rim
     if inner:
         return RIM_INSIDE
     s = mesh.arc_lengths.get(node)
@@ -170,8 +168,8 @@ def _smooth_region(geometry: DriveGeometry, mesh: SectorMesh, node: int, touched
     root = mesh.profile.r_root_circle
     near = NEAR * geometry.module
     inside = UNDER_CONTACT if touched else INSIDE
-    if mesh.body == "ring_gear":
-        gear = geometry.gears["ring_gear"]
+    if not spline:
+        gear = geometry.gears[mesh.body]
         if radius < root - near:
             return TIP if radius < mesh.profile.r_tip_circle + near else inside
         of_rim = RIM if radius > root + 0.5 * gear.rim else TOOTH_ROOT

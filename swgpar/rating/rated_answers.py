@@ -4,7 +4,7 @@ safeties, shares."""
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from swgpar.answers.answer import Answer, with_error, with_no_limit
@@ -31,7 +31,10 @@ BEHIND_TEETH = (*WALL, BACK, ATTACHED)
 """Regions of its wall."""
 
 IN_RING = (TOOTH_ROOT, TOOTH_END, RIM, OUTER)
-"""Regions of the ring gear away from contacts of flanks."""
+"""Regions of ring gears away from contacts of flanks."""
+
+RING_GEARS = ("rg", "ds")
+"""Keys of `BODIES` of a drive's ring gears."""
 
 STATIC_PRESSURE = 4200.0
 """Pressure (MPa) between ball and race under the basic static load rating of a radial ball bearing
@@ -41,11 +44,10 @@ AGAINST_FATIGUE = ("goodman", "crossland")
 
 
 def largest_mises(
-    summary: DriveSummary, regions: Collection[str], gear: str = "fs"
+    summary: DriveSummary, regions: Collection[str], gears: Sequence[str] = ("fs",)
 ) -> Answer | None:
-    """Largest von Mises stress of a gear in these regions: "fs" the flexible spline, "rg" the ring
-    gear."""
-    every = (summary.find(region_kind(gear, "vm", region)) for region in regions)
+    """Largest von Mises stress of gears in these regions. gears : keys of `BODIES`"""
+    every = (summary.find(region_kind(gear, "vm", region)) for gear in gears for region in regions)
     found = [one for one in every if one is not None and one.value is not None]
     return max(found, key=lambda one: one.value or 0.0, default=None)
 

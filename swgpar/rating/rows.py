@@ -37,6 +37,7 @@ from swgpar.rating.rated_answers import (
     AT_TEETH,
     BEHIND_TEETH,
     IN_RING,
+    RING_GEARS,
     largest_mises,
     least_fatigue_safety,
     resolution,
@@ -195,10 +196,11 @@ def _strength(
 
 
 def _yield_of_ring(design: DriveDesign, section: RatingSection) -> RatingRow:
-    """The row of the ring gear, whose strength is that of the flexible spline where both are of one
+    """The row of the ring gears, whose strength is that of the flexible spline where all are of one
     material."""
     strength, source = section.ring_yield_strength, "rating.ring_yield_strength"
-    alike = design.materials["ring_gear"] == design.materials["flexible_spline"]
+    spline = design.materials["flexible_spline"]
+    alike = all(design.materials[gear] == spline for gear in design.geometry.gears)
     if strength is None and design.fatigue is not None and alike:
         strength, source = design.fatigue.yield_strength, "fatigue.yield_strength"
     limit = None
@@ -208,7 +210,7 @@ def _yield_of_ring(design: DriveDesign, section: RatingSection) -> RatingRow:
     return RatingRow(
         "yield of the ring gear",
         LoadCase.LARGEST,
-        partial(largest_mises, regions=IN_RING, gear="rg"),
+        partial(largest_mises, regions=IN_RING, gears=RING_GEARS),
         limit,
         "" if limit else NO_RING_STRENGTH,
         of_strength=True,
@@ -322,9 +324,8 @@ def _computation(design: DriveDesign, accuracy: float) -> Iterator[RatingRow]:
         name = f"clearance of the rigid teeth{where.replace('_', ' ')}"
         yield _row(name, LoadCase.RATED, CLEARANCES[clearance.ring], limit)
     limit = Limit(accuracy, Sense.AT_MOST, "largest error of the stress at the teeth")
-    answer = "the error of the largest tension at the teeth has no estimate "
-    if design.without_windows:
-        answer += f"with {design.without_windows}"
-    else:
-        answer += f"on this mesh; the usual mesh or --accuracy {accuracy:g} gives one"
+    answer = (
+        "the error of the largest tension at the teeth has no estimate on this mesh; the usual "
+        f"mesh or --accuracy {accuracy:g} gives one"
+    )
     yield RatingRow("resolution", LoadCase.LARGEST, resolution, limit, answer, of_computation=True)

@@ -11,13 +11,12 @@ from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
 import swgpar
+from support.pancake import loaded_pancake, pancake
 from support.paths import DATA, RECIPE
-from support.stepping import WORLD, Row, load_stepper, rotate, row
+from support.stepping import rotate, row
 from swgpar import load_design
-from swgpar.analysis.bent_start import bend
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.constraints.distributing_coupling import ROTATION
-from swgpar.design.drive_design import DriveDesign
 from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.load.load_sequence import load_sequence
 from swgpar.presentation.drive_result import DriveResult
@@ -30,18 +29,6 @@ FRICTION = 0.05
 
 LAYOUTS = {"ring_fixed": (-20.0, 42), "spline_fixed": (21.0, 40)}
 """Ratio, and teeth of the fixed ring gear."""
-
-
-def pancake(*overrides: str) -> DriveDesign:
-    return load_design(DATA / "pancake.toml", list(overrides))
-
-
-def loaded(design: DriveDesign, comm: MPI.Comm = WORLD) -> tuple[LoadStepper, Row]:
-    """The drive under its torque, from the bent shape."""
-    stepper = load_stepper(design, comm)
-    bend(stepper.model)
-    stepper.jump(load_sequence(design).loaded)
-    return stepper, row(stepper)
 
 
 def spline_rotation(stepper: LoadStepper) -> float:
@@ -58,7 +45,7 @@ def test_balance_and_period(layout: str) -> None:
     ratio, teeth = LAYOUTS[layout]
     design = pancake(f"drive.layout={layout}")
     assert design.kinematics.ratio == ratio
-    stepper, first = loaded(design)
+    stepper, first = loaded_pancake(design)
     tooth, second, cam = (
         first["tooth_torque_Nmm"],
         first["ds_tooth_torque_Nmm"],
@@ -97,7 +84,7 @@ def test_balance_and_period(layout: str) -> None:
 
 @pytest.mark.parallel(2)
 def test_any_number_of_ranks_gives_the_same() -> None:
-    (_, parallel), (_, alone) = loaded(pancake()), loaded(pancake(), MPI.COMM_SELF)
+    (_, parallel), (_, alone) = loaded_pancake(pancake()), loaded_pancake(pancake(), MPI.COMM_SELF)
     for name in set(alone) - {"torque_balance_Nmm", "newton_iterations"}:
         parallel_assert(parallel[name] == pytest.approx(alone[name], rel=1e-5, abs=1e-6))
 
@@ -105,7 +92,10 @@ def test_any_number_of_ranks_gives_the_same() -> None:
 @pytest.mark.parallel(1)
 def test_half_of_the_drive_is_the_whole() -> None:
     """Nothing but the cam and the teeth centres the flexible spline in the whole drive."""
-    (_, half), (_, whole) = loaded(pancake()), loaded(pancake("solver.symmetry=false"))
+    (_, half), (_, whole) = (
+        loaded_pancake(pancake()),
+        loaded_pancake(pancake("solver.symmetry=false")),
+    )
     for name in (
         "output_angle_deg",
         "fs_vm",
@@ -120,7 +110,7 @@ def test_half_of_the_drive_is_the_whole() -> None:
 @pytest.mark.parallel(1)
 def test_energy() -> None:
     """Without friction the input torque averages to that of the output over the ratio."""
-    stepper, _ = loaded(pancake())
+    stepper, _ = loaded_pancake(pancake())
     pitch, samples = 2.0 * np.pi / 42, 8
     rows = [rotate(stepper, k * pitch / samples) for k in range(1, samples + 1)]
     torque = [one["wg_torque_Nmm"] for one in rows]
@@ -179,7 +169,7 @@ def test_losses_are_what_friction_takes() -> None:
 def test_without_torque_the_flexible_spline_is_held() -> None:
     """It rotates with the output at its kinematic angle, and nothing touches the teeth."""
     design = pancake("load.torque=0", "steps.rotation=3", "steps.increment=3")
-    stepper, first = loaded(design)
+    stepper, first = loaded_pancake(design)
     stepper.advance(load_sequence(design).states[-1])
     last = row(stepper)
     assert first["pairs_in_contact"] == last["pairs_in_contact"] == 0
