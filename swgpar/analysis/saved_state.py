@@ -12,7 +12,7 @@ from mpi4py import MPI
 from swgpar.analysis.identity import identity
 from swgpar.contact import friction
 from swgpar.errors import OutputError
-from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.log import logger
 from swgpar.model.drive_model import DriveModel
@@ -40,6 +40,11 @@ class SolvedState:
         return cls(model.problem.multipliers().tolist(), model.problem.modelled.chosen())
 
 
+def _friction_row(ring: str, row: str) -> str:
+    """Name in a file of a row of the tractions of a ring gear. row : one of `friction.ROWS`"""
+    return f"friction/{ring}/{row}"
+
+
 def state_rows(
     model: DriveModel, displacement: Mapping[str, np.ndarray] | None = None
 ) -> dict[str, Block]:
@@ -57,8 +62,10 @@ def state_rows(
         blocks[name] = Block(values, partition.owned_sectors(name)[0], layout.count)
     if model.design.contact.friction:
         first, end = partition.owned_sectors(FLEXIBLE_SPLINE)
-        for row, values in model.problem.flanks_of(RING_GEAR).traction_rows(first, end).items():
-            blocks[row] = Block(values, first, partition.layouts[FLEXIBLE_SPLINE].count)
+        for flanks in model.problem.flanks:
+            for row, values in flanks.traction_rows(first, end).items():
+                name = _friction_row(flanks.ring.layout.name, row)
+                blocks[name] = Block(values, first, partition.layouts[FLEXIBLE_SPLINE].count)
     return blocks
 
 
@@ -76,8 +83,12 @@ def restore_state(model: DriveModel, path: Path, solved: SolvedState) -> None:
     if model.design.contact.friction:
         # a rank needs the flanks that its ring teeth face too
         every = (0, partition.layouts[FLEXIBLE_SPLINE].count)
-        rows = parallel_hdf5.read_rows(path, model.comm, dict.fromkeys(friction.ROWS, every))
-        problem.resume(friction.from_rows(rows))
+        tractions = {}
+        for ring in (flanks.ring.layout.name for flanks in problem.flanks):
+            names = {row: _friction_row(ring, row) for row in friction.ROWS}
+            read = parallel_hdf5.read_rows(path, model.comm, dict.fromkeys(names.values(), every))
+            tractions[ring] = friction.from_rows({row: read[name] for row, name in names.items()})
+        problem.resume(tractions)
 
 
 class StartStates:

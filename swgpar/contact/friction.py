@@ -99,8 +99,8 @@ class CellTractions:
 NO_TOOTH = np.iinfo(np.int64).min
 """Stands in a file where a flank has no traction."""
 
-ROWS = ("friction/tooth", "friction/cells")
-"""Names of the rows in a file, by sector of the flexible spline."""
+ROWS = ("tooth", "cells")
+"""Names of the rows for a file, by sector of the flexible spline."""
 
 
 def to_rows(

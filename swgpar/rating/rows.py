@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from swgpar.analysis.accuracy import not_refinable
 from swgpar.answers.answer import Answer, AnswerKind
 from swgpar.answers.verdict import Limit, Sense, Verdict
 from swgpar.checks.clearance import clearances
@@ -324,8 +325,9 @@ def _computation(design: DriveDesign, accuracy: float) -> Iterator[RatingRow]:
         name = f"clearance of the rigid teeth{where.replace('_', ' ')}"
         yield _row(name, LoadCase.RATED, CLEARANCES[clearance.ring], limit)
     limit = Limit(accuracy, Sense.AT_MOST, "largest error of the stress at the teeth")
+    option = "" if not_refinable(design) else f" or --accuracy {accuracy:g}"
     answer = (
         "the error of the largest tension at the teeth has no estimate on this mesh; the usual "
-        f"mesh or --accuracy {accuracy:g} gives one"
+        f"mesh{option} gives one"
     )
     yield RatingRow("resolution", LoadCase.LARGEST, resolution, limit, answer, of_computation=True)

@@ -5,7 +5,7 @@ Its parts are the structure (elements), the contacts, and the supports with the 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,7 +27,7 @@ from swgpar.contact.friction import CellTractions, PairKey
 from swgpar.contact.frozen_cells import FrozenCells
 from swgpar.contact.search import FlankPair, facing_flanks
 from swgpar.contact.wave_generator import WaveGeneratorContacts
-from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.sectors_in_reach import ModelledSectors
@@ -388,10 +388,12 @@ class DiscreteProblem:
         self.modelled.resume(chosen)
         self.blocks.pattern = None
 
-    def resume(self, tractions: dict[PairKey, CellTractions]) -> None:
-        """Take x and these tractions of the flanks of the ring gear as an accepted state."""
+    def resume(self, tractions: Mapping[str, dict[PairKey, CellTractions]]) -> None:
+        """Take x and these tractions of the flanks as an accepted state. tractions : by ring gear,
+        of which those that are not named have none"""
         self.x.copy(self.accepted)
-        self.flanks_of(RING_GEAR).resume(tractions)
+        for flanks in self.flanks:
+            flanks.resume(dict(tractions.get(flanks.ring.layout.name, {})))
 
     def output_rotation(self) -> float:
         """Rotation of the output (rad); collective."""

@@ -3,6 +3,7 @@ is the output."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,13 +14,15 @@ from pytest_mpi import parallel_assert
 import swgpar
 from support.pancake import loaded_pancake, pancake
 from support.paths import DATA, RECIPE
-from support.stepping import rotate, row
+from support.stepping import WORLD, rotate, row
 from swgpar import load_design
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.saved_state import SolvedState, restore_state, state_rows
 from swgpar.constraints.distributing_coupling import ROTATION
 from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.load.load_sequence import load_sequence
 from swgpar.presentation.drive_result import DriveResult
+from swgpar.results.checkpoint import read_checkpoint, write_checkpoint
 
 TORQUE = 1000.0
 """Torque of the output, N mm."""
@@ -163,6 +166,37 @@ def test_losses_are_what_friction_takes() -> None:
     # forces and paths of the losses are those without friction: mu times the slope of the flanks
     lost = ideal.summary["losses.flank_friction"].value
     assert lost == pytest.approx(added, rel=2.0 * FRICTION)
+
+
+@pytest.mark.parallel([1, 2])
+def test_a_checkpoint_has_the_friction_of_both_ring_gears(tmp_path: Path) -> None:
+    path = Path(WORLD.bcast(str(tmp_path))) / "state.h5"
+    stepper, _ = loaded_pancake(pancake(f"contact.friction={FRICTION}"))
+    stepper.problem.accept()
+    model, flanks = stepper.model, stepper.problem.flanks
+    before = [dict(one.history.tractions) for one in flanks]
+    write_checkpoint(path, WORLD, state_rows(model), SolvedState.of(model))
+    stepper.reset()
+    assert not any(one.history.tractions for one in flanks)
+    restore_state(model, path, read_checkpoint(path, WORLD, SolvedState))
+    for one, known in zip(flanks, before, strict=True):
+        parallel_assert(WORLD.allreduce(len(known)) > 0)
+        for pair, cells in known.items():  # of other ranks there are more
+            found = one.history.tractions[pair].traction
+            assert found == pytest.approx(cells.traction) and np.abs(found).max() > 0.0
+
+
+@pytest.mark.parallel(1)
+def test_fatigue_has_the_stress_of_windows() -> None:
+    """The largest normal stress of the cycle is the largest tension that windows find in a root."""
+    keys = {"output.root_stress": True, "steps.samples": 1, "steps.rotation": 9.0}
+    summary = run(keys | {"fatigue.surface_factor": 0.9}).summary
+    root, fatigue = summary.root_stress, summary.fatigue
+    assert root is not None and fatigue is not None
+    assert root.s1 > 1.05 * root.on_mesh
+    assert {name[:2] for name in root.regions} == {"fs", "rg", "ds"}
+    least = fatigue.least["goodman"]
+    assert least.amplitude_MPa + least.mean_MPa == pytest.approx(root.s1, rel=0.02)
 
 
 @pytest.mark.parallel(1)

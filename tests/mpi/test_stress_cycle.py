@@ -12,6 +12,7 @@ from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
 import swgpar
+from support.pancake import loaded_pancake, pancake
 from support.paths import RECIPE
 from support.stepping import WORLD, loaded, rotate, small
 from swgpar.evaluation.stress_cycle import StressCycle, sector_stress
@@ -68,6 +69,26 @@ def test_renaming_teeth_in_the_cup() -> None:
             rotate(stepper, (pitch - half) * design.kinematics.period_angle)
         found = sector_stress(body, stepper.model.stresses()[1][FLEXIBLE_SPLINE])[0, cycle.nodes]
         assert np.abs(found - renamed[pitch]).max() < 1e-6 * np.abs(renamed).max()
+    assert np.abs(renamed[1] - renamed[0]).max() > 1e-2 * np.abs(renamed).max()
+
+
+@pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
+@pytest.mark.parallel(1)
+def test_renaming_teeth_in_the_pancake(layout: str) -> None:
+    """Stress at all nodes of one sector of the pancake over the first pitches. Its spline turns
+    with the dynamic spline, which is the output or stands."""
+    design = pancake(f"drive.layout={layout}", "steps.samples=1", "steps.rotation=9.0", *WITH)
+    stepper, _ = loaded_pancake(design, MPI.COMM_SELF)
+    cycle = StressCycle(stepper.model, load_sequence(design))
+    body = stepper.model.elements.bodies[FLEXIBLE_SPLINE]
+    cycle.keep(stepper.load_state, stepper.model.stresses()[1][FLEXIBLE_SPLINE])
+    _, renamed = cycle.history()
+    assert len(renamed) == body.layout.count
+    for pitch in (1, 2):
+        for half in (0.5, 0.0):
+            rotate(stepper, (pitch - half) * design.kinematics.period_angle)
+        found = sector_stress(body, stepper.model.stresses()[1][FLEXIBLE_SPLINE])[0, cycle.nodes]
+        assert np.abs(found - renamed[pitch]).max() < 1e-5 * np.abs(renamed).max()
     assert np.abs(renamed[1] - renamed[0]).max() > 1e-2 * np.abs(renamed).max()
 
 

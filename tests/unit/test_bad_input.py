@@ -188,7 +188,6 @@ PANCAKE = [
     ),
     (("ring_gear.housing.thickness=2",), "ring_gear.housing", "allowed without it"),
     (("drive.model=plane",), "dynamic_spline is given", 'not "plane"'),
-    (("fatigue.surface_factor=0.9",), "fatigue is not available", "allowed without it"),
     (
         ("deviations.ring_gear.eccentricity=0.01",),
         "deviations is not available",

@@ -531,9 +531,27 @@ def test_a_pancake_drive_has_all_runs_but_ratcheting() -> None:
     assert 'drive.model = "pancake"' in runs["ratcheting"].refusal
 
 
-def test_resolution_names_no_option_that_a_pancake_refuses() -> None:
+def test_resolution_names_no_option_that_the_drive_refuses() -> None:
     assert "--accuracy" in row("resolution", rated()).missing
-    assert "--accuracy" not in row("resolution", pancake()).missing
+    assert "--accuracy" in row("resolution", pancake()).missing
+    sideways = {
+        "radial_stiffness": 1e5,
+        "axial_stiffness": 1e5,
+        "tilting_stiffness": 1e4,
+        "radial_force": 10.0,
+    }
+    one = row("resolution", rated(output_bearing=sideways, deviations=None, frequencies=None))
+    assert "--accuracy" not in one.missing
+
+
+def test_yield_of_the_ring_gear_is_that_of_both_ring_gears() -> None:
+    name, design = "yield of the ring gear", pancake()
+    limit = row(name, design).limit
+    assert limit is not None
+    for body in ("rg", "ds"):
+        for share, judgement in ((0.99, PASSES), (1.01, FAILS)):
+            found = summary(f"largest.{body}_vm in tooth root", share * limit.value)
+            assert judged(name, design, found) == judgement
 
 
 def test_sections_that_exclude_each_other_may_stand_in_one_file() -> None:
