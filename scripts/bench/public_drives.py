@@ -62,7 +62,7 @@ def measure(path: Path) -> dict[str, Any]:
     out = FOLDER / path.stem
     options = ("--mesh", mesh, "--overwrite", "--set", "output.figures=false")
     options += ("steps.rotation=0",) if design.has_cup else ()
-    options += () if design.drive.model == "pancake" else ("output.root_stress=false",)
+    options += ("output.root_stress=false",)
     code, last = called("run", str(path), "--out", str(out), *options)
     row["ended"] = last if code else ""
     if code == 0:

@@ -22,13 +22,18 @@ class TorqueControl:
         self.supports, self.clearances = supports, clearances
 
     def output_step_bound(self, state: LoadState) -> float | None:
-        """Bound of the output's motion in a step, in units of the last border, or None."""
+        """Bound of the output's motion in a step, in units of the last border, or None.
+
+        The output meets a flexible spline that is held alone, and one that is not takes along.
+        """
         if state.control != "torque":
             return None
+        held = self.supports.holds_spline(state)
         return self.supports.scale * min(
             (
                 clearance.largest_rotation(self._loaded_side(clearance.flanks, state))
                 for clearance in self.clearances
+                if not held or self._is_output(clearance.flanks)
             ),
             default=np.inf,
         )
