@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from swgpar.analysis.identity import RunContent
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.mesh_refinement import ChosenMesh
 from swgpar.analysis.restart import resume_run, save_run
@@ -240,18 +241,18 @@ class MemoryRecorder(Recorder):
 class FolderRecorder(Recorder):
     """Keeps everything on disk, complete after every increment.
 
-    out : results folder;  identity : of what is computed, for restarts
+    out : results folder;  computed : what the run computes, for restarts
     """
 
-    def __init__(self, stepper: LoadStepper, out: Path, identity: str) -> None:
+    def __init__(self, stepper: LoadStepper, out: Path, computed: RunContent) -> None:
         super().__init__(stepper)
-        self.out, self.identity = out, identity
+        self.out, self.computed = out, computed
         self._writer = FieldWriter(out, self.comm) if self.model.design.output.fields else None
 
     def resume(self) -> tuple[tuple[LoadState, ...], float]:
         """Bring back the state of the checkpoint; returns the states of the run, and its seconds
         so far."""
-        saved, states = resume_run(self.out, self.identity, self.stepper, self.cycle)
+        saved, states = resume_run(self.out, self.computed, self.stepper, self.cycle)
         self.record = saved.record
         self._write_tables()
         return states, saved.wall_s
@@ -278,7 +279,7 @@ class FolderRecorder(Recorder):
         self._write_tables()
         displacement = {name: values["displacement"] for name, values in fields.items()}
         kept = self.record, self.cycle, displacement, elapsed
-        save_run(self.out, self.identity, self.stepper, *kept)
+        save_run(self.out, self.computed, self.stepper, *kept)
 
     def keep_turns(self, rows: list[Row]) -> None:
         super().keep_turns(rows)

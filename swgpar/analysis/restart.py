@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from swgpar.analysis.identity import RunContent
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.run_record import RunRecord
 from swgpar.analysis.saved_state import SolvedState, restore_state, state_rows
@@ -26,6 +28,7 @@ class SavedRun:
     """Content of a checkpoint beside the rows of the state.
 
     identity : of what is computed;  load_state : that is reached
+    computed : content of the `RunContent` of that identity; None in older files
     cycle : of `StressCycle.state`
     wall_s : of the run so far;  phases_s : by name
     """
@@ -37,11 +40,12 @@ class SavedRun:
     cycle: dict[str, list[int]] | None
     wall_s: float
     phases_s: dict[str, float]
+    computed: dict[str, Any] | None = None
 
 
 def save_run(
     out: Path,
-    identity: str,
+    computed: RunContent,
     stepper: LoadStepper,
     record: RunRecord,
     cycle: StressCycle | None,
@@ -59,36 +63,39 @@ def save_run(
         count = model.partition.layouts[FLEXIBLE_SPLINE].count
         blocks |= {name: Block(values, first, count) for name, values in cycle.rows().items()}
     content = SavedRun(
-        identity,
+        computed.identity,
         record,
         stepper.load_state,
         SolvedState.of(model),
         None if cycle is None else cycle.state(),
         elapsed,
         model.phases.slowest(model.comm),
+        dict(computed.content),
     )
     checkpoint.write_checkpoint(out / CHECKPOINT, model.comm, blocks, content)
 
 
 def resume_run(
     out: Path,
-    identity: str,
+    computed: RunContent,
     stepper: LoadStepper,
     cycle: StressCycle | None,
 ) -> tuple[SavedRun, tuple[LoadState, ...]]:
     """Bring back the state of the checkpoint, on any number of ranks; collective.
 
-    identity : of the run that is to be continued
+    computed : by the run that is to be continued
 
     Returns what is saved, and the load states of the run: without those on other meshes.
     """
     model, path = stepper.model, out / CHECKPOINT
     saved = checkpoint.read_checkpoint(path, model.comm, SavedRun)
-    if saved.identity != identity:
+    if saved.identity != computed.identity:
+        there = None if saved.computed is None else RunContent(saved.computed)
+        differs = "" if there is None else f" ({computed.differs_from(there)})"
         raise InputError(
-            f"restart: {path} belongs to another design, recipe, accuracy or solver setting; "
-            "allowed are the same ones (--plain as before), only steps.rotation, the output, "
-            "solver.linear, keep_factor, far_teeth and limits may differ"
+            f"restart: {path} belongs to another design, recipe, accuracy or solver setting"
+            f"{differs}; allowed are the same ones (--plain as before), only steps.rotation, the "
+            "output, solver.linear, keep_factor, far_teeth and limits may differ"
         )
     checkpoint.require_undamaged(path, model.comm)
     record, last, sequence = saved.record, saved.load_state, stepper.sequence

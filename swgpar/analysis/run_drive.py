@@ -10,7 +10,7 @@ from swgpar.analysis.accuracy import require_refinable, with_accuracy
 from swgpar.analysis.coarse_start import MeshedDrive
 from swgpar.analysis.drive_run import DriveRun
 from swgpar.analysis.forecast import forecast, reported_memory, require_memory
-from swgpar.analysis.identity import identity
+from swgpar.analysis.identity import RunContent
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.mesh_refinement import choose_mesh
 from swgpar.analysis.model_sources import NEW_MODELS, ModelSource
@@ -113,7 +113,7 @@ def run_drive(
         elif not resumed:
             way = "begins with its loaded states" if kept.found(comm) else "begins at the start"
             logger.info("%s has no increment to continue: the run %s", folder, way)
-        what = identity(design.decisive_keys, recipe, options.accuracy)
+        what = RunContent.of(design.decisive_keys, recipe, options.accuracy)
         drive, chosen = MeshedDrive(design, comm, models), None
         if options.accuracy is not None:
             if resumed:

@@ -193,7 +193,7 @@ def test_an_accuracy_is_reached_by_refinement(tmp_path: Path) -> None:
         "--restart"
     ]
     other = execute([word.replace(str(asked), "0.2") for word in restart])
-    assert other.returncode == 2 and "belongs to another design, recipe, accuracy" in other.stderr
+    assert other.returncode == 2 and "(accuracy = 0.2, there 0.02)" in other.stderr
     succeed(restart)
     longer = json.loads((out / "summary.json").read_text())
     assert (
