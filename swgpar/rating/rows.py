@@ -50,7 +50,7 @@ AnswerSource = Callable[[DriveSummary], Answer | None]
 """Takes the answer of a row from the summary of its run."""
 
 IDEAL = "a lower bound, that of the ideal drive: [deviations] is not given"
-NO_FRICTION = "a lower bound: contact.friction = 0, and the loop has no area"
+NO_FRICTION = "a lower bound: contact.friction = 0, and backlash alone opens the loop"
 ALWAYS_AT_PEAK = "a lower bound, of the repeated peak torque at all times"
 NO_FLANK_PRESSURE = (
     "no limit of the material pair is known: rating.flank_pressure, or for steels "
