@@ -155,6 +155,23 @@ def test_stiffness_is_that_of_separate_loads() -> None:
 
 
 @pytest.mark.parallel(1)
+def test_a_program_is_that_of_separate_loads() -> None:
+    """Torque and angle of the wave generator, one after the other, with the same states as runs
+    under one torque."""
+    torque = 1e-3 * TORQUE
+    stages = [
+        {"name": "loaded", "torque": torque},
+        {"name": "unloaded", "torque": 0.4 * torque},
+        {"name": "turned", "torque": 0.4 * torque, "wave_generator": 3.0},
+    ]
+    program = run({"load.program": stages, "steps.rotation": 0.0}).history
+    alone = run({"load.torque": 0.4 * torque, "steps.rotation": 3.0, "steps.increment": 3.0})
+    for name, rel in (("output_angle_deg", 1e-5), ("wg_torque_Nmm", 1e-3), ("fs_vm", 1e-4)):
+        assert program[name][-2:] == pytest.approx(alone.history[name][-2:], rel=rel), name
+    assert program["output_angle_deg"][-3] > program["output_angle_deg"][-2]
+
+
+@pytest.mark.parallel(1)
 def test_losses_are_what_friction_takes() -> None:
     """The mean input torque with friction between the flanks is that without friction and the work
     of the pairs of flanks in both ring gears."""

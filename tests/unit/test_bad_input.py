@@ -171,9 +171,9 @@ PANCAKE = [
         "allowed contact.friction = 0, not 0.1",
     ),
     (
-        ("load.program=[{name='a', torque=1.0}]",),
-        "load.program is not available",
-        "allowed load.torque",
+        ("load.program=[{name='a', output_rotation=1.0}]",),
+        "load.program with output_rotation is not available",
+        "allowed torque",
     ),
     (
         ("wave_generator.bearing={balls=20,ball_diameter=2.0,race_thickness=0.5}",),
