@@ -24,7 +24,8 @@ class TorqueControl:
     def output_step_bound(self, state: LoadState) -> float | None:
         """Bound of the output's motion in a step, in units of the last border, or None.
 
-        The output meets a flexible spline that is held alone, and one that is not takes along.
+        The output closes its own clearance to a flexible spline that is held. One that is not it
+        takes along, and closes the clearance to the fixed ring gear too.
         """
         if state.control != "torque":
             return None
