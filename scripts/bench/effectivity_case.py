@@ -165,7 +165,7 @@ def solve(case: dict[str, Any]) -> dict[str, dict[str, Any]]:
         keep_models(models)
         done["usual"] = run(design, recipe)
         start_from(models[0])
-    with_finer_windows(recipe.model)
+    with_finer_windows(model)
     finer = replaced(reference_recipe(recipe, case["times"]), case["counts"])
     if part != "loaded":
         design = design.with_values(WITHOUT_WINDOWS)

@@ -27,14 +27,14 @@ from swgpar.evaluation.contact_error_shares import ContactErrorShares
 from swgpar.flank_pressure.pair_contact import pair_contacts
 from swgpar.largest_stress.root_stress import RootStress, resolve_root_stress
 from swgpar.largest_stress.wall_stress import CoarseWall
-from swgpar.largest_stress.window_recipes import FEWEST_LEVELS, LEVELS, MOST_LEVELS
+from swgpar.largest_stress.window_recipes import FEWEST_LEVELS, LEVELS, MOST_LEVELS, by_model
 from swgpar.load.load_sequence import load_sequence
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe, build_sector_meshes
 from swgpar.meshing.recipe_counts import ROUND_OFF, refined
 from swgpar.model.drive_model import DriveModel
 
-LARGEST = {"plane": 1_500_000, "cup": 700_000}
+LARGEST = by_model(1_500_000, 700_000)
 """Elements of the whole drive beyond which no finer mesh is taken; they need about 7 and 12 GB."""
 
 
@@ -94,7 +94,7 @@ class Refinement:
         levels: int | None = None,
     ) -> None:
         self.drive, self.design, self.largest, self.kept = drive, drive.design, largest, kept
-        self.loaded, self.kind = load_sequence(self.design).loaded, recipe.model
+        self.loaded, self.kind = load_sequence(self.design).loaded, self.design.drive.model
         self.levels = levels or LEVELS[self.kind]
         coarser = coarser_recipe(recipe)
         if coarser is None:
@@ -223,7 +223,7 @@ def choose_mesh(
     Ends with the best mesh where the accuracy is out of reach, and says so. Raises ConvergenceError
     or InputError like a run on one of the first two meshes.
     """
-    kind = recipe.model
+    kind = drive.design.drive.model
     largest = LARGEST[kind] if largest is None else largest
     levels = FEWEST_LEVELS[kind] if accuracy >= ROUGH else None
     present = Refinement(drive, recipe, largest, kept, levels)

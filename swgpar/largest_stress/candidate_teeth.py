@@ -8,6 +8,7 @@ import numpy as np
 
 from swgpar.largest_stress.local_problem import SECTORS, WindowStress
 from swgpar.largest_stress.region_stress import CLOSE, CLOSE_IN_ROOT
+from swgpar.largest_stress.window_recipes import by_model
 from swgpar.model.regions import AT_ENDS as END_REGIONS
 from swgpar.model.regions import TOOTH_ROOT
 
@@ -22,7 +23,7 @@ At the ends of teeth, after the first window, and after later ones. Between them
 the largest. At the ends the second window gives the most, up to 12 % too much."""
 
 
-LATER = {"plane": 0.995, "cup": 0.985}
+LATER = by_model(0.995, 0.985)
 """The same in one region after later windows, in one window or in two. In the plane these change
 the ratio of two stresses by up to 0.3 %, in the reference cup the third one by 1.2 %."""
 

@@ -29,6 +29,7 @@ from swgpar.largest_stress.along_width import Peak, WidthStations
 from swgpar.largest_stress.places import OF_REGION
 from swgpar.largest_stress.surface_stress import surface_mises
 from swgpar.largest_stress.window_loads import WindowLoads
+from swgpar.largest_stress.window_recipes import by_model
 from swgpar.largest_stress.window_regions import read_regions, tooth_nodes
 from swgpar.largest_stress.window_state import WindowState
 from swgpar.load.load_states import LoadState, Stage
@@ -64,7 +65,7 @@ STIFFNESS = 1e3
 """Stiffness of the springs that hold the nodes of the cuts, over E times the module: forces of some
 N stretch them by nanometres."""
 
-RTOL = {"plane": 1e-4, "cup": 1e-3}
+RTOL = by_model(1e-4, 1e-3)
 """Newton's tolerance: it changes the stress by up to 1e-5 and 5e-4, far less than a finer
 window."""
 
@@ -182,7 +183,7 @@ class LocalProblem:
             problem,
             replace(
                 model.solver.settings,
-                rtol=RTOL[recipe.model],
+                rtol=RTOL[geometry.model],
                 linear="direct",
                 reuse_factor=True,
             ),

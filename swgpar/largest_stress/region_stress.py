@@ -30,6 +30,7 @@ from swgpar.largest_stress.places import (
     working_flanks,
 )
 from swgpar.largest_stress.surface_stress import surface_mises
+from swgpar.largest_stress.window_recipes import by_model
 from swgpar.largest_stress.window_regions import tooth_nodes
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
@@ -43,7 +44,7 @@ from swgpar.model.regions import (
     WITHOUT_LIMIT,
 )
 
-UNREFINED = {"plane": (), "cup": (FLANK, TIP)}
+UNREFINED: dict[str, tuple[str, ...]] = by_model((), (FLANK, TIP))
 """Regions of the flexible spline whose elements are the same in all windows: no error follows from
 them."""
 
@@ -189,7 +190,7 @@ class WindowReadings:
         of_largest, lacks = known[other][-1], 0.0
         tooth, position = of_largest.tooth, of_largest.position
         region = name.partition(OF_REGION)[2]
-        unrefined = gear == FLEXIBLE_SPLINE and region in UNREFINED[model.recipe.model]
+        unrefined = gear == FLEXIBLE_SPLINE and region in UNREFINED[model.geometry.model]
         layout = model.partition.layouts[gear]
         place = partial(Place.at, layout, region)
         error = math.inf if unrefined else self._window_error(model, layout, name, main, ratio)

@@ -44,7 +44,7 @@ def ring_gear_stresses(
     them, get the coarsest window; in the plane those with a peak of the von Mises stress as well.
     These windows tell the teeth that are followed.
     """
-    kind, averages = model.recipe.model, nodal_averages(model, gear)
+    kind, averages = model.geometry.model, nodal_averages(model, gear)
     nodal = nodal_by_sector(model, state, gear, averages)
     stresses = ("s1", "vm") if kind == "plane" else ("s1",)
     prefix = STRESS_PREFIXES[gear][0]
@@ -55,7 +55,7 @@ def ring_gear_stresses(
     for level in range(min(levels, RING_LEVELS[kind])):
         found = {}
         for tooth in sorted(teeth):
-            recipe = window_recipe(model.geometry.model, level)
+            recipe = window_recipe(kind, level)
             with solved_window(model, state, tooth, recipe, states, gear) as window:
                 (found[tooth],) = window.by_region().values()
             if level >= skipped:
@@ -68,7 +68,7 @@ def ring_gear_stresses(
 def _peaks(nodal: np.ndarray, kind: str) -> list[int]:
     """Teeth with the largest nodal averages (n,) MPa beside them, the largest first; in a cup
     drive, where windows cost more, one. Equal ones differ by round-off."""
-    if kind == "cup":
+    if kind != "plane":
         return [first_of_largest(nodal)]
     least = nodal * (1.0 + ROUND_OFF)
     peak = (least >= np.roll(nodal, 1)) & (least >= np.roll(nodal, -1))

@@ -249,7 +249,7 @@ def resolve_root_stress(
 
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
-    kind = model.recipe.model
+    kind = model.geometry.model
     parts = _parts(model)
     averages = nodal_averages(model, FLEXIBLE_SPLINE)
     on_mesh = [largest_by_tooth(model, averages[0], ends) for ends in parts]
@@ -310,8 +310,8 @@ def resolve_root_stress(
 
 def _release(model: DriveModel) -> None:
     """Release the factors of windows, but not of those that further angles need; collective."""
-    level = PERIOD_LEVEL[model.recipe.model]
-    model.release_windows(kept=window_recipe(model.geometry.model, level))
+    kind = model.geometry.model
+    model.release_windows(kept=window_recipe(kind, PERIOD_LEVEL[kind]))
 
 
 def _parts(model: DriveModel) -> tuple[bool, ...]:
@@ -331,7 +331,7 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
     in the loaded state, so that the ends of the teeth count only if they do there. Raises like
     `resolve_root_stress`.
     """
-    level = PERIOD_LEVEL[model.recipe.model]
+    level = PERIOD_LEVEL[model.geometry.model]
     ends = known.part == ENDS
     s1, _, _ = nodal_averages(model, FLEXIBLE_SPLINE)
     tooth = first_of_largest(largest_by_tooth(model, s1, ends))

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe import make_recipe
 
-RATIO = {"plane": 2.0, "cup": 1.5}
-"""Ratio of element sizes of successive windows, as other constants of windows by the `model` of
-mesh recipes: a pancake's are those of a cup drive."""
+T = TypeVar("T")
+
+
+def by_model(plane: T, in_space: T) -> dict[str, T]:
+    """Constants of windows by `drive.model`: a pancake has those of a cup drive."""
+    return {"plane": plane, "cup": in_space, "pancake": in_space}
+
+
+RATIO = by_model(2.0, 1.5)
+"""Ratio of element sizes of successive windows."""
 
 COUNTS: dict[str, dict[str, dict[str, tuple[int, ...]]]] = {
     "plane": {
@@ -51,7 +58,7 @@ COUNTS["pancake"] = {gear: COUNTS["cup"][gear] for gear in ("flexible_spline", "
 }
 """The flexible spline has the elements of both ring gears along its face width, and the gap's."""
 
-MOST_LEVELS = {"plane": 5, "cup": 4}
+MOST_LEVELS = by_model(5, 4)
 """Windows that there are; the last one has some 200,000 and 60,000 elements."""
 
 END_RATIO = (3.0, 6.0, 6.0, 6.0)
@@ -68,20 +75,20 @@ nearer one, coarse to fine: beside the root they are as thin as the layers below
 does not bend as the surface does: at the split of the root arc, where three elements meet, the
 tension came out up to 16 % too large."""
 
-LEVELS = {"plane": 4, "cup": 3}
+LEVELS = by_model(4, 3)
 """Windows in the loaded state."""
 
-FEWEST_LEVELS = {"plane": 4, "cup": 2}
+FEWEST_LEVELS = by_model(4, 2)
 """The same for a rough answer."""
 
-RING_LEVELS = {"plane": 4, "cup": 2}
+RING_LEVELS = by_model(4, 2)
 """Windows of the ring gear. In the plane the first one is too coarse to show an order beside a
 contact near the root (docs/verification/error_sources_plane.md)."""
 
 NARROW_FROM = 2
 """Index of the first window of the flexible spline that is a narrow one of the one before."""
 
-PERIOD_LEVEL = {"plane": 1, "cup": 1}
+PERIOD_LEVEL = by_model(1, 1)
 """Index of the window with which the further angles of a period are computed."""
 
 

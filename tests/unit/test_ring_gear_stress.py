@@ -71,14 +71,18 @@ def test_the_tooth_on_the_other_side_of_the_root_may_have_the_larger_stress(
 ) -> None:
     """The root has the same nodal average in both teeth."""
     solved = windows(monkeypatch, {0: 12.0, TEETH - 1: 16.0})
-    found = ring_gear_stress.ring_gear_stresses(model(), cast(LoadState, None), 3, 0)[NAME]
+    found = ring_gear_stress.ring_gear_stresses(model(), cast(LoadState, None), RING_GEAR, 3, 0)[
+        NAME
+    ]
     assert solved == [(0, 0), (1, 0), (10, 0), (11, 0), (11, 1), (11, 2)]
     assert found.place.tooth == TEETH - 1 and found.levels == (16.0, 17.0, 18.0)
 
 
 def test_windows_that_are_left_out_still_tell_the_tooth(monkeypatch: pytest.MonkeyPatch) -> None:
     solved = windows(monkeypatch, {0: 12.0, TEETH - 1: 16.0})
-    found = ring_gear_stress.ring_gear_stresses(model(), cast(LoadState, None), 2, 1)[NAME]
+    found = ring_gear_stress.ring_gear_stresses(model(), cast(LoadState, None), RING_GEAR, 2, 1)[
+        NAME
+    ]
     assert solved == [(0, 0), (1, 0), (10, 0), (11, 0), (11, 1)]
     assert np.isnan(found.levels[0]) and found.levels[1:] == (17.0,)
 
@@ -88,7 +92,9 @@ def test_a_root_with_a_smaller_nodal_average_may_have_the_largest_stress(
 ) -> None:
     """They lose much beside a contact near the root."""
     solved = windows(monkeypatch, {0: 12.0, 5: 16.0}, further=5)
-    found = ring_gear_stress.ring_gear_stresses(model(), cast(LoadState, None), 3, 0)[NAME]
+    found = ring_gear_stress.ring_gear_stresses(model(), cast(LoadState, None), RING_GEAR, 3, 0)[
+        NAME
+    ]
     assert solved[-2:] == [(5, 1), (5, 2)] and {tooth for tooth, _ in solved} == {
         0,
         1,
@@ -103,5 +109,5 @@ def test_a_root_with_a_smaller_nodal_average_may_have_the_largest_stress(
 
 def test_a_tooth_that_has_nearly_as_much_is_followed(monkeypatch: pytest.MonkeyPatch) -> None:
     solved = windows(monkeypatch, {0: 15.5, TEETH - 1: 16.0})
-    ring_gear_stress.ring_gear_stresses(model(), cast(LoadState, None), 3, 0)
+    ring_gear_stress.ring_gear_stresses(model(), cast(LoadState, None), RING_GEAR, 3, 0)
     assert solved[4:] == [(0, 1), (11, 1), (0, 2), (11, 2)]
