@@ -10,6 +10,7 @@ a flank that is tangent to the addendum circle remains so.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 
@@ -22,6 +23,9 @@ from swgpar.input.require import require
 from swgpar.profiles.curved_segment import CurvedSegment, CurvePoints
 from swgpar.profiles.fitted_curve import fitted
 from swgpar.profiles.flank import FlankSegment, ToothProfile, check_flank
+
+STEP = 1e-3
+"""Share of a relief that is refused to which the largest one is found."""
 
 
 def _turned(segment: FlankSegment, end: float, turn: float, base: float) -> CurvedSegment:
@@ -75,7 +79,21 @@ def relieved(profile: ToothProfile, relief: float, height: float, gear: str) -> 
     end = root_between(
         lambda s: outwards * (_radius(profile, s) - base), 0.0, profile.root_start, xtol=1e-13
     )
+    try:
+        return _turned_flank(profile, relief, height, end)
+    except InputError as error:
+        fits = _largest(lambda share: _turned_flank(profile, share * relief, height, end))
+        raise InputError(
+            f"{gear}.tip_relief = {relief:g} is out of range: allowed 0 to about "
+            f"{fits * relief:.3g} mm ({error})"
+        ) from None
+
+
+def _turned_flank(profile: ToothProfile, relief: float, height: float, end: float) -> ToothProfile:
+    """The flank with a tip relief up to the arc length `end` (mm); raises InputError where it is
+    none."""
     turn = relief / profile.r_tip_circle / height**2
+    base = profile.r_tip_circle - profile.sign * height
     segments: list[FlankSegment] = []
     for begin, segment in zip(profile.breaks[:-1], profile.segments, strict=True):
         inside = min(end - begin, segment.length)
@@ -85,11 +103,21 @@ def relieved(profile: ToothProfile, relief: float, height: float, gear: str) -> 
             whole = inside <= 0.0
             segments.append(segment if whole else segment.part(inside, segment.length))
     changed = replace(profile, segments=tuple(segments))
-    try:
-        check_flank(changed, corners=profile.has_corners)
-    except InputError as error:
-        raise InputError(f"{gear}.tip_relief = {relief:g} cannot be made: {error}") from None
+    check_flank(changed, corners=profile.has_corners)
     return changed
+
+
+def _largest(make: Callable[[float], ToothProfile]) -> float:
+    """Largest share of a relief, in steps of `STEP`, with which the flank can be made."""
+    low, high = 0.0, 1.0
+    while high - low > STEP:
+        middle = 0.5 * (low + high)
+        try:
+            make(middle)
+            low = middle
+        except InputError:
+            high = middle
+    return low
 
 
 def _radius(profile: ToothProfile, s: float) -> float:

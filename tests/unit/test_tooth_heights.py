@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -74,6 +75,17 @@ def test_equal_heights_touch_and_say_so() -> None:
 def test_what_does_not_fit_is_refused(values: dict[str, Any], words: str) -> None:
     with pytest.raises(InputError, match=words):
         design(**values)
+
+
+def test_the_largest_tip_relief_is_named() -> None:
+    with pytest.raises(InputError, match="allowed 0 to about") as caught:
+        design(ring_gear__tip_relief=0.6)
+    found = re.search(r"about ([0-9.]+) mm", str(caught.value))
+    assert found is not None
+    largest = float(found[1])
+    assert design(ring_gear__tip_relief=0.98 * largest).ring_gear.tip_relief > 0.05
+    with pytest.raises(InputError, match="is out of range"):
+        design(ring_gear__tip_relief=1.02 * largest)
 
 
 def test_thin_rims_are_named() -> None:
