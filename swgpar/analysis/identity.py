@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from swgpar.input.quantities import show
 from swgpar.meshing import MeshRecipe
 from swgpar.results.atomic import to_json
 
@@ -70,4 +71,4 @@ def _text(value: Any) -> str:
     """A value as in a design file."""
     if isinstance(value, Mapping):
         return "given"
-    return "not given" if value is None else json.dumps(value)
+    return "not given" if value is None else show(value)
