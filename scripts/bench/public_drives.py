@@ -60,9 +60,9 @@ def measure(path: Path) -> dict[str, Any]:
     row["remarks"] = " | ".join(remarks(design))
     mesh = MESHES[design.drive.model]
     out = FOLDER / path.stem
-    options = ("--mesh", mesh, "--overwrite", "--set", "output.figures=false")
+    left_out = "output.figures=false", "output.root_stress=false"
+    options = ("--mesh", mesh, "--overwrite", "--set", *left_out)
     options += ("steps.rotation=0",) if design.has_cup else ()
-    options += ("output.root_stress=false",)
     code, last = called("run", str(path), "--out", str(out), *options)
     row["ended"] = last if code else ""
     if code == 0:

@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from swgpar.input.quantities import show
@@ -33,7 +34,7 @@ class RunContent:
         content = {"design": decisive, "recipe": recipe.model_dump(), "accuracy": accuracy}
         return cls(json.loads(to_json(content)))
 
-    @property
+    @cached_property
     def identity(self) -> str:
         """Two runs with the same one compute the same."""
         return hashlib.sha256(to_json(dict(self.content))).hexdigest()
