@@ -131,21 +131,19 @@ def printed(search: swgpar.OptimisationResult, width: int, monkeypatch: pytest.M
     return file.getvalue()
 
 
-@pytest.mark.parametrize("width", [60, 80])
-def test_the_table_of_the_best_is_whole(
-    width: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_table_of_the_best_is_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also with a front of many designs: every number stands on one line, in the order of the
     columns."""
     second = '\n[[optimise.objective]]\nquantity = "damping ratio 2"\n'
     search = searched(tmp_path / "search", FROM_START + second)
     assert len(search.best) > 5
-    text = printed(search, width, monkeypatch)
-    assert max(map(len, text.splitlines())) <= width and "…" not in text
-    for number in search.compared[: terminal.SHOWN]:
-        each = search.evaluations[number]
-        for value in (*each.values.values(), *each.quantities.values()):
-            assert f"{value:.5g}" in text.split()
+    for width in (60, 80):
+        text = printed(search, width, monkeypatch)
+        assert max(map(len, text.splitlines())) <= width and "…" not in text
+        for number in search.compared[: terminal.SHOWN]:
+            each = search.evaluations[number]
+            for value in (*each.values.values(), *each.quantities.values()):
+                assert f"{value:.5g}" in text.split()
 
 
 def test_parts_of_a_comparison_have_the_start_design(found: swgpar.OptimisationResult) -> None:
