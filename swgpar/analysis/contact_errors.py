@@ -35,6 +35,15 @@ to 1.7 %."""
 LEAST_PRESSURE_WITH_EDGES = 0.05
 """The same where another contact lies on an edge."""
 
+SHORT = 9.0
+"""Length of a contact over its width below which it counts as short in both directions: the
+displacement of its teeth along the face width decides as much as across. Of sixteen contacts off
+edges of drawn cups three are shorter, with true errors of 2.4 to 4.7 %; of the others one has more
+than 1.2 %."""
+
+LEAST_PRESSURE_OF_SHORT = 0.05
+"""Least error of the pressure of a short contact, as a share of it."""
+
 HERTZ = 0.5
 """Error of a pressure that a force brings with it, as shares of both: a pressure goes with the root
 of its line load. Forces of pairs move together from mesh to mesh, and where a pressure changes
@@ -79,12 +88,13 @@ def contact_errors(
         share = shown.of_largest(measure)
         if share is None:
             return None
+        largest = max(contacts, key=lambda pair: np.nan_to_num(measure(pair)))
         if model != "plane":
             # the face width decides, which is coarser: no others are to be shown
-            return max(share / SAFETY, HERTZ * (shown_force or 0.0), least_pressure)
+            of_short = LEAST_PRESSURE_OF_SHORT if largest.is_short(SHORT) else 0.0
+            return max(share / SAFETY, HERTZ * (shown_force or 0.0), least_pressure, of_short)
         # another mesh puts the cells elsewhere at a peak that is as narrow as they are
-        peak = max(contacts, key=lambda pair: np.nan_to_num(measure(pair))).unresolved
-        return max(math.hypot(max(share, by_force), LAW), peak)
+        return max(math.hypot(max(share, by_force), LAW), largest.unresolved)
 
     share = of_force(shown.of_largest(lambda pair: pair.force_share))
     if share is not None and force is not None and model == "plane":

@@ -111,6 +111,10 @@ class PairContact:
         """What tells the pair from others."""
         return self.ring, self.tooth, self.flank
 
+    def is_short(self, ratio: float) -> bool:
+        """Whether the contact is shorter along the face width than `ratio` times its width."""
+        return self.width_mm < ratio * 2.0 * self.half_width_mm
+
     def row(self) -> dict[str, Any]:
         """The row of pairs.csv."""
         left_out = ("stations", "unresolved") if self.ring else ("stations", "unresolved", "ring")

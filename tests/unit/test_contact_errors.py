@@ -11,6 +11,7 @@ import pytest
 from swgpar.analysis.contact_errors import (
     LAW,
     LEAST_PRESSURE,
+    LEAST_PRESSURE_OF_SHORT,
     LEAST_PRESSURE_WITH_EDGES,
     contact_errors,
 )
@@ -162,6 +163,20 @@ def test_pressures_of_cups_are_less_certain_beside_an_edge() -> None:
     pairs = [pair(1, 600.0), pair(2, 900.0, edge=1)]
     found = contact_errors(CoarserMesh(coarsened(cup), {}, pairs), cup, pairs, 2)
     assert found.pressure_off_edges == LEAST_PRESSURE_WITH_EDGES > LEAST_PRESSURE
+
+
+def test_pressures_of_cups_are_less_certain_where_the_contact_is_nearly_a_point() -> None:
+    """The contact with the largest pressure decides."""
+    cup = load_recipe("forces")
+    slender = replace(pair(1, 600.0), width_mm=1.0, half_width_mm=0.05)
+    short = replace(pair(2, 500.0), width_mm=0.8, half_width_mm=0.05)
+
+    def share(*pairs: PairContact) -> float | None:
+        return contact_errors(CoarserMesh(coarsened(cup), {}, pairs), cup, pairs, 2).pressure
+
+    assert share(slender, short) == LEAST_PRESSURE
+    assert share(slender, replace(short, pressure_MPa=700.0)) == LEAST_PRESSURE_OF_SHORT
+    assert share(slender, replace(short, pressure_MPa=700.0, width_mm=0.91)) == LEAST_PRESSURE
 
 
 def test_a_peak_as_narrow_as_the_cells_has_an_error_of_its_own() -> None:
