@@ -16,7 +16,7 @@ from plain_ring import PlainRingDesign, RingCounts, RingModel, RingSectors
 from support.cam_ring import HALF_ANGLE, ellipse, tight_ring
 from swgpar.geometry.cams import EllipticalCam
 from swgpar.materials import Isotropic
-from swgpar.meshing.drive_geometry import DriveGeometry, FlankCrowning, GearGeometry
+from swgpar.meshing.drive_geometry import DriveGeometry, GearGeometry
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
 from swgpar.meshing.sector import SectorMesh
 from swgpar.meshing.tooth_sector import build_sector
@@ -86,7 +86,6 @@ class ToothedRing:
             face_width=design.width,
             cam_width=design.width,
             inner_radius=design.inner_radius,
-            crowning=FlankCrowning(0.0, design.width, "parabolic"),
             cup=None,
             housing=0.0,
         )

@@ -105,6 +105,10 @@ PANCAKE_CROWNING = 0.05
 """Of the cam of a pancake drive, modules. Its flexible spline has no cone, so that there is no
 slope."""
 
+PANCAKE_FLANK_CROWNING = 0.02
+"""Of both ring gears of a pancake drive, modules: they are narrower than the flexible spline, and
+without it their ends carry."""
+
 CROWNING, SLOPE, FLANK_CROWNING = 0.1, 0.09, 0.045
 """Micro-geometry of the reference drive (Table 7.4), modules."""
 
@@ -310,14 +314,18 @@ def _table(request: Request, play: float) -> dict[str, Any]:
         table["wave_generator"]["bearing"] = _bearing(2.0 * inner, taper)
     if request.model == "pancake":
         table["dynamic_spline"] = _dynamic_spline(table, module)
-        table["micro_geometry"] = {"wg_crowning": rounded(PANCAKE_CROWNING * module)}
+        flanks = rounded(PANCAKE_FLANK_CROWNING * module)
+        table["micro_geometry"] = {
+            "wg_crowning": rounded(PANCAKE_CROWNING * module),
+            "rg_crowning": flanks,
+            "ds_crowning": flanks,
+        }
     table["material"] = {"E": 210e3, "nu": 0.29}
     table["load"] = {"torque": request.torque}
     if request.has_bearing:
         table["steps"] = {"samples": SAMPLES}
-    if request.model != "pancake":  # for which fatigue is not available
-        fields = Fatigue.model_fields
-        table["fatigue"] = {key: fields[key].default for key in STRENGTHS}
+    fields = Fatigue.model_fields
+    table["fatigue"] = {key: fields[key].default for key in STRENGTHS}
     table["rating"] = {"rated_torque": request.torque}
     return table
 

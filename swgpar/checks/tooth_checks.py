@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import ExternalGear, GearName, InternalGear
+from swgpar.design.sections import FLANK_CROWNINGS, ExternalGear, GearName, InternalGear
 from swgpar.errors import InputError
 from swgpar.input.require import require
 from swgpar.profiles import Points
@@ -51,9 +51,13 @@ def check_teeth(design: DriveDesign) -> None:
             )
         allowed = f"{least:.6g} to {LARGEST_DEDENDUM:g} modules (tips of {gear} at the major axis)"
         require(value >= least - ROUND_OFF, key, value, allowed)
-    crowning, most = design.micro_geometry.fs_crowning, 0.25 * module
+    most = 0.25 * module
     allowed = f"0 to {most:g} mm (a quarter of the module)"
-    require(0.0 <= crowning <= most, "micro_geometry.fs_crowning", crowning, allowed)
+    for gear, key in FLANK_CROWNINGS.items():
+        crowning = design.micro_geometry.flank_crowning(gear)
+        require(crowning <= most, f"micro_geometry.{key}", crowning, allowed)
+        exists = crowning == 0.0 or gear in design.gears
+        require(exists, f"micro_geometry.{key}", crowning, f"only 0 without a {gear}")
 
 
 def _check_heights_of_points(section: ExternalGear | InternalGear, gear: GearName) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebpts1, chebpts2, chebvander
 
 from swgpar.contact.flank_curve import has_a_joint
-from swgpar.geometry.micro_geometry import crowning
+from swgpar.geometry.micro_geometry import FlankCrowning
 from swgpar.geometry.rotation import MIRROR
 from swgpar.meshing.sector import FlankGrid, SectorMesh
 from swgpar.meshing.sweep import grid_quads
@@ -59,13 +59,14 @@ class FlankFaces:
 def flank_faces(
     mesh: SectorMesh,
     grid: FlankGrid,
-    removed: float,
-    width: float,
-    shape_name: str,
+    own: FlankCrowning,
+    facing: FlankCrowning | None = None,
     stretch: float = 1.0,
 ) -> FlankFaces:
-    """Faces of a flank; removed : mm, crowning at |z| = width / 2, of the curve `shape_name`.
+    """Faces of a flank. own : its crowning, which the mesh has
 
+    facing : crowning of the flank that it meets, which the gap has as if it were on this one: the
+    kernel takes that flank as a cylinder
     stretch : factor of the growth of the gear, by which the heights over the facets grow
     """
     corners = grid_quads(grid.nodes)
@@ -78,7 +79,8 @@ def flank_faces(
         """Over the facets (n_face, n_along, n) mm, at places (n_along,) along the profile."""
         s, z = (values.ravel() for values in face_samples(grid, along))
         outward = profile.normal(s) * side
-        cut = crowning(removed, z, width, shape_name)[0] * profile.crowning_weight(s)
+        cut = own.removed(z) * profile.crowning_weight(s)
+        cut = cut if facing is None else cut + facing.removed(z)
         exact = profile.point(s) * side - cut[:, None] * outward
         a, b = (v.ravel() for v in np.meshgrid(along, SAMPLES, indexing="ij"))
         facet = np.einsum("qa,fai->fqi", bilinear(a, b), mesh.coords[corners]).reshape(-1, 3)

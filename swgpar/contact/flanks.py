@@ -37,8 +37,8 @@ from swgpar.fem.elements import BodyElements
 from swgpar.fem.local_nodes import LocalNodes
 from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows
+from swgpar.geometry.micro_geometry import FlankCrowning
 from swgpar.load.load_states import LoadState
-from swgpar.meshing.drive_geometry import FlankCrowning
 
 
 class FlankContact:
@@ -49,7 +49,7 @@ class FlankContact:
     partition, spline, ring : ownership and the elements of both bodies
     ring_motion : rotation of the ring gear as a whole
     lines_on_layer : lines of contact on a layer of elements along the face width
-    crowning : of the flexible spline's flanks
+    crowning : of the flanks of the flexible spline and of those of the ring gear
     max_gap : mm, largest |gap| at which a foot point is looked for
     pressure_limit : MPa, bound of the pressure in the tangent's geometric term
     friction_coefficient : 0 without friction
@@ -69,7 +69,7 @@ class FlankContact:
         ring_motion: RingMotion,
         *,
         lines_on_layer: int,
-        crowning: FlankCrowning,
+        crowning: tuple[FlankCrowning, FlankCrowning],
         max_gap: float,
         pressure_limit: float,
         friction_coefficient: float,
@@ -79,15 +79,7 @@ class FlankContact:
         self.friction_coefficient = friction_coefficient
         mesh = spline.layout.mesh
         self.slaves = {
-            g.side: flank_faces(
-                mesh,
-                g,
-                crowning.amount,
-                crowning.width,
-                crowning.shape,
-                spline.layout.body.stretch,
-            )
-            for g in mesh.flanks
+            g.side: flank_faces(mesh, g, *crowning, spline.layout.body.stretch) for g in mesh.flanks
         }
         self.masters = {g.side: g for g in ring.layout.mesh.flanks}
         stations = Stations.of(lines_on_layer, mesh.plane)

@@ -16,11 +16,12 @@ from swgpar.geometry.bearing import BallLines, BearingSizes, RigidParts, ball_li
 from swgpar.geometry.cams import Cam, OffsetCam, make_cam
 from swgpar.geometry.cams.semi_axes import minor_semi_axis, radial_deflection
 from swgpar.geometry.disc_surface import CamSurface, GrownSurface, cam_surface
+from swgpar.geometry.micro_geometry import FlankCrowning
 from swgpar.geometry.neutral_line import neutral_line
 from swgpar.geometry.rim_inertia import RimInertia
 from swgpar.geometry.rim_motion import axial_travel, omitted_bending
 from swgpar.materials import NO_GROWTH, Growth
-from swgpar.meshing.drive_geometry import DriveGeometry, FlankCrowning, GearGeometry
+from swgpar.meshing.drive_geometry import DriveGeometry, GearGeometry
 from swgpar.profiles import (
     Conjugate,
     RackInvolute,
@@ -210,15 +211,16 @@ class DriveDesign(DriveSections):
             self.cup, self.inner_radius, self.flexible_spline.rim, 0.5 * self.drive.face_width
         )
 
-    @property
-    def crowning(self) -> FlankCrowning:
-        """Crowning of the flexible spline's flanks."""
-        micro = self.micro_geometry
-        return FlankCrowning(micro.fs_crowning, self.drive.face_width, micro.crowning_shape)
+    def crowning(self, gear: GearName) -> FlankCrowning:
+        """Crowning of the flanks of a gear."""
+        micro, (low, high) = self.micro_geometry, self.axial_range(gear)
+        amount = micro.flank_crowning(gear)
+        return FlankCrowning(amount, high - low, micro.crowning_shape, 0.5 * (low + high))
 
     def gear_geometry(self, gear: GearName) -> GearGeometry:
         """Sizes of a gear."""
-        return GearGeometry(self.profile(gear), getattr(self, gear).rim, self.axial_range(gear))
+        rim, ends = getattr(self, gear).rim, self.axial_range(gear)
+        return GearGeometry(self.profile(gear), rim, ends, self.crowning(gear))
 
     @property
     def geometry(self) -> DriveGeometry:
@@ -232,7 +234,6 @@ class DriveDesign(DriveSections):
             face_width=drive.face_width,
             cam_width=self.wave_generator.width,
             inner_radius=self.inner_radius,
-            crowning=self.crowning,
             cup=self.cup_sizes.geometry if self.has_cup else None,
             housing=self.housing.thickness if self.housing else 0.0,
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Literal
 
 import numpy as np
@@ -137,6 +138,14 @@ class DynamicSpline(Gear):
     gap: float = positive("axial gap between the ring gears", "mm")
 
 
+FLANK_CROWNINGS: Mapping[GearName, str] = {
+    "flexible_spline": "fs_crowning",
+    "ring_gear": "rg_crowning",
+    "dynamic_spline": "ds_crowning",
+}
+"""Keys of the crowning of flanks."""
+
+
 class MicroGeometry(Section):
     """Section [micro_geometry]: crowning and slope (section 7.12)."""
 
@@ -150,9 +159,17 @@ class MicroGeometry(Section):
     fs_crowning: float = not_negative(
         "crowning of the flexible spline's flanks at their ends", "mm", 0.0
     )
+    rg_crowning: float = not_negative(
+        "crowning of the ring gear's flanks at the ends of its face width", "mm", 0.0
+    )
+    ds_crowning: float = not_negative("the same of the dynamic spline's flanks", "mm", 0.0)
     crowning_shape: Literal["parabolic", "circular"] = quantity(
         "parabolic", text="curve of the crowning"
     )
+
+    def flank_crowning(self, gear: GearName) -> float:
+        """Crowning (mm) of the flanks of a gear at the ends of its face width."""
+        return float(getattr(self, FLANK_CROWNINGS[gear]))
 
 
 class Load(Section):

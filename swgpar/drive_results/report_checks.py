@@ -17,6 +17,7 @@ from swgpar.evaluation.losses import DriveLosses
 from swgpar.evaluation.numerics import BALANCE, Numerics
 from swgpar.evaluation.rotation import Rotation
 from swgpar.evaluation.strains import LargestStrains
+from swgpar.flank_pressure.pair_contact import FACE_END
 from swgpar.largest_stress.accuracy import Accuracy
 from swgpar.largest_stress.places import APART, BODIES, LargestStresses
 from swgpar.largest_stress.root_stress import RootStress
@@ -24,6 +25,12 @@ from swgpar.results.history import loaded_increments
 
 RESOLUTION = 0.05
 """Largest error of the stress at the teeth, relative."""
+
+HELPS = {
+    FACE_END: "crowning of flanks in [micro_geometry] takes the load from the ends",
+    "tip of": "tip_relief of the gears takes the load from their tips",
+}
+"""What helps where the place of an edge contact has these words."""
 
 QUALITY = 0.2
 """Least scaled Jacobian of the elements."""
@@ -133,6 +140,8 @@ def _edge(contact: LargestContact | None) -> Check:
     )
     others = f"; edges carry up to {contact.edge_force_N:.4g} N" if contact.edge_force_N else ""
     text = f"the largest pressure of the flanks {text}{others}"
+    helps = [keys for place, keys in HELPS.items() if at.edge and place in at.edge_place]
+    text = "; ".join([text, *helps])
     if contact.unknown_force_N and not at.edge:
         unknown = f"that of a pair with {contact.unknown_force_N:.4g} N could not be computed"
         return Check("edge contact", None, f"{text}; {unknown}")

@@ -131,12 +131,12 @@ class JobModel:
 
     def flank_gap(self) -> float:
         """Largest distance (mm) between a facet and the exact, crowned flank of a gear."""
-        crowning, gap = self.design.crowning, 0.0
-        for mesh in self.meshes.values():
-            removed = crowning.amount if mesh is self.spline else 0.0
-            faces = flank_faces(mesh, mesh.flanks[0], removed, crowning.width, crowning.shape)
-            gap = max(gap, float(np.abs(faces.offset).max()))
-        return gap
+        gears = self.design.geometry.gears
+        faces = (
+            flank_faces(mesh, mesh.flanks[0], gears[name].crowning)
+            for name, mesh in self.meshes.items()
+        )
+        return max(float(np.abs(each.offset).max()) for each in faces)
 
     def faceted_teeth(self) -> RigidTeeth:
         """Rigid teeth whose flanks at mid-width are polygons."""

@@ -32,7 +32,8 @@ def moved_teeth(
     indentation by these forces
     """
     spline, ring = model.partition.layouts[FLEXIBLE_SPLINE], flanks.ring.layout
-    around, crowned = np.arange(-1, 2), model.design.crowning
+    around, gears = np.arange(-1, 2), model.design.geometry.gears
+    crowned, ring_crowned = (gears[body.name].crowning for body in (spline, ring))
     u, ring_u = (
         _displacements(model, flanks, pairs, body, forces) for body in (FLEXIBLE_SPLINE, ring.name)
     )
@@ -46,7 +47,7 @@ def moved_teeth(
         turned = ring_u[k] @ SIXTHS[pair.ring_sixths].T
         tooth = pair.ring_tooth + around
         before, middle, after = (
-            MovedTooth(ring, n, -pair.side, turned[i]) for i, n in enumerate(tooth)
+            MovedTooth(ring, n, -pair.side, turned[i], ring_crowned) for i, n in enumerate(tooth)
         )
         facing.append((before, middle, after))
     return moved, facing

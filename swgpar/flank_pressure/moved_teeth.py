@@ -9,9 +9,8 @@ import numpy as np
 import scipy
 
 from swgpar.fem.body_layout import BodyLayout
-from swgpar.geometry.micro_geometry import crowning
+from swgpar.geometry.micro_geometry import FlankCrowning
 from swgpar.geometry.rotation import MIRROR, rotated
-from swgpar.meshing.drive_geometry import FlankCrowning
 from swgpar.meshing.sector import FlankGrid
 from swgpar.profiles import ToothProfile
 
@@ -23,7 +22,7 @@ class MovedTooth:
     ----------
     layout, tooth, side : body, number and flank;  u : (n_node, 3) mm, displacement of its sector in
     the drive's frame
-    crowned : crowning of the flank, None without
+    crowned : crowning of the flank
 
     Attributes
     ----------
@@ -37,7 +36,7 @@ class MovedTooth:
         tooth: int,
         side: int,
         u: np.ndarray,
-        crowned: FlankCrowning | None = None,
+        crowned: FlankCrowning,
     ) -> None:
         assert layout.mesh.profile is not None  # all gears have one
         self.body, self.profile = layout.name, layout.mesh.profile
@@ -69,10 +68,7 @@ class MovedTooth:
 
     def sections(self, z: np.ndarray) -> Sections:
         """The sections at z (n,) mm."""
-        motion, cut = self._at(z), np.zeros_like(z)
-        if self.crowned is not None:
-            cut = crowning(self.crowned.amount, z, self.crowned.width, self.crowned.shape)[0]
-        return Sections(self, motion, cut)
+        return Sections(self, self._at(z), self.crowned.removed(z))
 
 
 class Sections:
@@ -99,7 +95,8 @@ class Sections:
         local = rotated(points, -self.tooth.angle)
         local = (self._middle + rotated(local - self._moved, -self._turn)) * self.tooth.mirror
         distance, foot = self.tooth.profile.distance(local.reshape(-1, 2))
-        return distance.reshape(points.shape[:2]), foot.reshape(points.shape[:2])
+        removed = self.tooth.profile.crowning_weight(foot).reshape(points.shape[:2]) * self._cut
+        return distance.reshape(points.shape[:2]) + removed, foot.reshape(points.shape[:2])
 
 
 def _active(grid: FlankGrid, profile: ToothProfile, station: int) -> np.ndarray:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.geometry.arrays import SignedDistance
+from swgpar.geometry.arrays import Floats, SignedDistance
 from swgpar.geometry.cams import Cam
 
 
@@ -32,6 +32,27 @@ def crowning(
     radius = (0.25 * width**2 + amount**2) / (2.0 * amount)
     root = np.sqrt(radius**2 - z**2)
     return radius - root, z / root, radius**2 / root**3
+
+
+@dataclass(frozen=True)
+class FlankCrowning:
+    """Crowning of the flanks of a gear.
+
+    amount : mm, at the ends of its face width, `width` (mm);  shape : see `crowning`
+    middle : mm, z of the middle of its face width
+    """
+
+    amount: float = 0.0
+    width: float = 1.0
+    shape: str = "parabolic"
+    middle: float = 0.0
+
+    def removed(self, z: np.ndarray) -> Floats:
+        """Material removed (n,) mm along the normal of a flank at z (n,) mm; beyond the ends as
+        much as there."""
+        half = 0.5 * self.width
+        along = np.clip(np.asarray(z) - self.middle, -half, half)
+        return crowning(self.amount, along, self.width, self.shape)[0]
 
 
 Level = tuple[np.ndarray, np.ndarray, np.ndarray]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from swgpar.geometry.arrays import Floats
 from swgpar.geometry.cup_wall import CupWall, decay_length
+from swgpar.geometry.micro_geometry import FlankCrowning
 from swgpar.profiles import ToothProfile
 
 THICK_CUP = 0.85
@@ -22,11 +23,13 @@ class GearGeometry:
     """A gear.
 
     profile : exact flank;  rim : mm, thickness below the root circle;  ends : mm, of teeth along z
+    crowning : of its flanks
     """
 
     profile: ToothProfile
     rim: float
     ends: tuple[float, float]
+    crowning: FlankCrowning = field(default_factory=FlankCrowning)
 
     @property
     def outer_radius(self) -> float:
@@ -100,22 +103,13 @@ class CupGeometry:
         return self.thickness_coef > THICK_CUP
 
 
-@dataclass(frozen=True)
-class FlankCrowning:
-    """Crowning of the flexible spline's flanks: mm at |z| = width / 2, curve (see `crowning`)."""
-
-    amount: float
-    width: float
-    shape: str
-
-
 @dataclass(frozen=True, kw_only=True)
 class DriveGeometry:
     """A drive.
 
     gears : by name, the flexible spline first
     module, face_width, cam_width : mm;  inner_radius : mm, of the undeformed flexible spline
-    crowning : of the flexible spline;  cup : None without one
+    cup : None without one
     housing : mm, thickness of that around the ring gear; 0 without one
     """
 
@@ -125,7 +119,6 @@ class DriveGeometry:
     face_width: float
     cam_width: float
     inner_radius: float
-    crowning: FlankCrowning
     cup: CupGeometry | None
     housing: float
 

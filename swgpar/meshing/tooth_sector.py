@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats, Ints
-from swgpar.geometry.micro_geometry import crowning
+from swgpar.geometry.micro_geometry import FlankCrowning
 from swgpar.meshing.cross_section import CrossSection, cross_section
 from swgpar.meshing.cup import cup_slice, rounded_back
-from swgpar.meshing.drive_geometry import DriveGeometry, FlankCrowning
+from swgpar.meshing.drive_geometry import DriveGeometry
 from swgpar.meshing.housing import housing_radii, with_housing
 from swgpar.meshing.mapped import MeshError
 from swgpar.meshing.quality import element_quality
@@ -48,8 +48,7 @@ def _relief(
     """Displacement (n_z + 1, n_section, 2), mm, of the section by the crowning along the width."""
     if crowned.amount == 0.0:
         return np.zeros((1, 1, 2))
-    amount = crowning(crowned.amount, z, crowned.width, crowned.shape)[0]
-    return amount[:, None, None] * relief_field(section, profile)
+    return crowned.removed(z)[:, None, None] * relief_field(section, profile)
 
 
 def _elements(quads: NDArray[np.bool_], layers: int) -> Ints:
@@ -105,8 +104,7 @@ def build_sector(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> SectorM
     z = np.array([-0.5, 0.5]) * drive.face_width if plane else _stations(drive, recipe, gear)
     toothed = np.empty((len(z), len(section.coords), 3))
     toothed[..., :2], toothed[..., 2] = section.coords, z[:, None]
-    if spline:
-        toothed[..., :2] += _relief(drive.crowning, section, profile, z)
+    toothed[..., :2] += _relief(drive.gears[gear].crowning, section, profile, z)
     coords = toothed.reshape(-1, 3)
     rows = np.arange(len(coords), dtype=np.int32).reshape(len(z), -1)
     hexes = sweep_quads(section.quads, rows)

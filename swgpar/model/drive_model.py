@@ -377,7 +377,7 @@ def build_flank_contacts(
                 if fixed
                 else FloatingRing(supports.couplings[RING_COUPLING], partition.comm),
                 lines_on_layer=design.contact.quadrature,
-                crowning=design.crowning,
+                crowning=(design.crowning("flexible_spline"), design.crowning(name)),
                 max_gap=foot_reach(design.drive.module, design.largest_backlash),
                 pressure_limit=FLANK_PRESSURE_LIMIT * design.modulus_of("flexible_spline", name),
                 friction_coefficient=design.contact.friction,

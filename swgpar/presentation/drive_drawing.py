@@ -228,10 +228,11 @@ def _meridian(design: DriveDesign) -> Sheet:
     sheet.texts.append(Text(x, y + 18.0, wall_text))
     sheet.height = sheet.at(0.0, 0.0)[1] + 20.0
     micro = design.micro_geometry
+    on_ring = f", of the ring gear {micro.rg_crowning:g}" if micro.rg_crowning else ""
     sheet.caption = (
         "Half section, in mm, undeformed, teeth without their backlash. Micro-geometry: cam "
         f"crowning {micro.wg_crowning:g}, slope {micro.wg_slope:g}; flank crowning "
-        f"{micro.fs_crowning:g}."
+        f"{micro.fs_crowning:g}{on_ring}."
     )
     return sheet
 

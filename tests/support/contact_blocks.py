@@ -19,10 +19,10 @@ from swgpar.contact.flanks import FlankContact
 from swgpar.contact.search import FlankPair
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR, Body
 from swgpar.fem.local_nodes import LocalNodes
+from swgpar.geometry.micro_geometry import FlankCrowning
 from swgpar.geometry.rotation import MIRROR
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.materials import Material
-from swgpar.meshing.drive_geometry import FlankCrowning
 from swgpar.meshing.sector import FlankGrid, SectorMesh
 
 ORDERING = "MMD_AT_PLUS_A"
@@ -335,7 +335,7 @@ class Blocks:
             _elements(upper),
             _elements(lower),
             FixedRing(),
-            crowning=FlankCrowning(0.0, 1.0, "parabolic"),
+            crowning=(FlankCrowning(), FlankCrowning()),
             max_gap=reach,
             pressure_limit=np.inf,
             friction_coefficient=coefficient,

@@ -12,6 +12,7 @@ from scipy.special import ellipe, ellipk
 from support.contact_blocks import Blocks, Surface, arc_block
 from support.hertz import STEEL, graded, plane_modulus
 from swgpar.contact.flank_faces import flank_faces
+from swgpar.geometry.micro_geometry import FlankCrowning
 from swgpar.materials import Isotropic
 
 HARD = Isotropic(E=100.0 * STEEL.modulus, nu=0.3)
@@ -107,7 +108,9 @@ def pressed_crown(layers: int, place: float, element: float = ELEMENT) -> Presse
     blocks = Blocks(lower, upper, fixed, reach=0.5)
     width = 2.0 * WIDTH
     blocks.flanks.slaves = {
-        grid.side: flank_faces(upper.mesh, grid, width**2 / (8.0 * made.crown), width, "parabolic")
+        grid.side: flank_faces(
+            upper.mesh, grid, FlankCrowning(width**2 / (8.0 * made.crown), width)
+        )
         for grid in upper.mesh.flanks
     }
     u = np.zeros_like(blocks.points)

@@ -175,11 +175,6 @@ PANCAKE = [
         "load.program with output_rotation is not available",
         "allowed torque",
     ),
-    (
-        ("wave_generator.bearing={balls=20,ball_diameter=2.0,race_thickness=0.5}",),
-        "wave_generator.bearing",
-        "without",
-    ),
     (("drive.model=cup", "wave_generator.face_width=6"), "dynamic_spline is given", 'not "cup"'),
     (
         ("drive.layout=wave_generator_fixed",),

@@ -11,6 +11,7 @@ import swgpar
 from support.paths import DATA, DRIVERS, REFERENCE
 from swgpar.contact.flank_curve import TERMS, above_cubics
 from swgpar.contact.flank_faces import SAMPLES, flank_faces, lagrange
+from swgpar.geometry.micro_geometry import FlankCrowning
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.profiles.flank import ToothProfile
 
@@ -73,7 +74,7 @@ def test_heights_of_neighbours_meet_at_their_node() -> None:
     design = swgpar.new(ratio=50, diameter=64.0, torque=10.0, model="plane")
     mesh = build_sector_meshes(design.geometry, load_recipe("plane_coarse"))["flexible_spline"]
     grid = mesh.flanks[0]
-    faces = flank_faces(mesh, grid, 0.0, design.drive.face_width, "parabolic")
+    faces = flank_faces(mesh, grid, FlankCrowning())
     at_ends = lagrange(np.array([0.0, 1.0])) @ faces.offset
     assert np.abs(at_ends).max() < 1e-12
     assert np.abs(faces.offset).max() > 1e-3

@@ -11,7 +11,7 @@ import pytest
 import swgpar
 from support.paths import DRIVERS
 from swgpar.answers.answer import NO_ESTIMATE, NO_LIMIT, Answer
-from swgpar.drive_results.report_checks import checks
+from swgpar.drive_results.report_checks import HELPS, checks
 from swgpar.evaluation.contact_error_shares import UNKNOWN, ContactErrorShares
 from swgpar.evaluation.largest_contact import POWERS, largest_contact
 from swgpar.flank_pressure.pair_contact import PairContact
@@ -145,6 +145,7 @@ def test_involutes_on_their_tips(involute: swgpar.DriveResult) -> None:
     assert contact.edge_force_N == pairs["force_N"][pairs["edge"] == 1].max()
     verdicts = {check.name: check for check in checks(involute.summary, involute.history)}
     assert verdicts["edge contact"].good is False
+    assert verdicts["edge contact"].text.endswith("; " + HELPS["tip of"])
     inside = replace(contact.largest, edge=0, edge_place="")
     off = replace(contact, largest=inside, off_edges=inside)
     other: dict[str, Any] = {
