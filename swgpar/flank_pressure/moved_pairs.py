@@ -14,9 +14,9 @@ from swgpar.geometry.rotation import SIXTHS
 from swgpar.model.drive_model import DriveModel
 from swgpar.petsc import PETSc
 
-COARSE, FINE = 401, 21
-"""Points along a profile, and between three of them, among which that of the least gap is looked
-for."""
+ALONG, BETWEEN = 65, (17, 9)
+"""Points along a profile among which that of the least gap is looked for, and then twice between
+its neighbours: in the end they are a 2,048th of the profile apart."""
 
 Neighbours = tuple[MovedTooth, MovedTooth, MovedTooth]
 """A tooth between its neighbours, clockwise first."""
@@ -103,8 +103,11 @@ class FlankGap:
 
     def least_at(self, z: np.ndarray) -> np.ndarray:
         """Arc length (n,) mm of the least gap at z (n,) mm."""
-        length = self.tooth.profile.length
-        s = np.tile(np.linspace(0.0, length, COARSE)[:, None], len(z))
-        s = s[self(s, z).argmin(axis=0), np.arange(len(z))]
-        fine = s + np.linspace(-1.0, 1.0, FINE)[:, None] * length / (COARSE - 1)
-        return fine[self(fine, z).argmin(axis=0), np.arange(len(z))]
+        every, apart = np.arange(len(z)), self.tooth.profile.length / (ALONG - 1)
+        s = np.tile(apart * np.arange(ALONG)[:, None], len(z))
+        s = s[self(s, z).argmin(axis=0), every]
+        for count in BETWEEN:
+            around = s + apart * np.linspace(-1.0, 1.0, count)[:, None]
+            s = around[self(around, z).argmin(axis=0), every]
+            apart *= 2.0 / (count - 1)
+        return s
