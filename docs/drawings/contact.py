@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from swgpar.contact.cells import Cells, Stations, divided
 from swgpar.contact.flank_faces import SAMPLES, flank_faces
 from swgpar.contact.missing_compliance import MissingCompliance
+from swgpar.geometry.micro_geometry import FlankCrowning
 from swgpar.meshing import build_sector_meshes
 from swgpar.meshing.recipe import load_recipe
 
@@ -150,7 +151,7 @@ def offset() -> Figure:
     at = 0.5 * (nodes[2] + nodes[3])
     leader(left, (1.15, curve[0, 1] - 0.55), "facets between nodes", tuple(at), color=INK)
     left.set_title("nodes lie on the exact curve", fontsize=10)
-    faces = flank_faces(mesh, grid, 0.0, design.drive.face_width, "parabolic")
+    faces = flank_faces(mesh, grid, FlankCrowning())
     t = np.linspace(0.0, 1.0, 60)
     for i, (s0, s1) in enumerate(zip(grid.s[:-1], grid.s[1:])):
         exact = profile.point(s0 + t * (s1 - s0))
