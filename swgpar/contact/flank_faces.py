@@ -8,7 +8,7 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebpts1, chebpts2, chebvander
 
 from swgpar.contact.flank_curve import has_a_joint
-from swgpar.geometry.micro_geometry import FlankCrowning
+from swgpar.geometry.micro_geometry import NO_CROWNING, FlankCrowning
 from swgpar.geometry.rotation import MIRROR
 from swgpar.meshing.sector import FlankGrid, SectorMesh
 from swgpar.meshing.sweep import grid_quads
@@ -60,7 +60,7 @@ def flank_faces(
     mesh: SectorMesh,
     grid: FlankGrid,
     own: FlankCrowning,
-    facing: FlankCrowning | None = None,
+    facing: FlankCrowning = NO_CROWNING,
     stretch: float = 1.0,
 ) -> FlankFaces:
     """Faces of a flank. own : its crowning, which the mesh has
@@ -79,8 +79,7 @@ def flank_faces(
         """Over the facets (n_face, n_along, n) mm, at places (n_along,) along the profile."""
         s, z = (values.ravel() for values in face_samples(grid, along))
         outward = profile.normal(s) * side
-        cut = own.removed(z) * profile.crowning_weight(s)
-        cut = cut if facing is None else cut + facing.removed(z)
+        cut = own.removed(z) * profile.crowning_weight(s) + facing.removed(z)
         exact = profile.point(s) * side - cut[:, None] * outward
         a, b = (v.ravel() for v in np.meshgrid(along, SAMPLES, indexing="ij"))
         facet = np.einsum("qa,fai->fqi", bilinear(a, b), mesh.coords[corners]).reshape(-1, 3)

@@ -55,6 +55,9 @@ class FlankCrowning:
         return crowning(self.amount, along, self.width, self.shape)[0]
 
 
+NO_CROWNING = FlankCrowning()
+"""Of flanks that are cylinders."""
+
 Level = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Level h (n,) mm, gradient (n, 3) and Hessian (n, 3, 3) 1/mm of a surface."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from swgpar.geometry.arrays import Floats
 from swgpar.geometry.cup_wall import CupWall, decay_length
-from swgpar.geometry.micro_geometry import FlankCrowning
+from swgpar.geometry.micro_geometry import NO_CROWNING, FlankCrowning
 from swgpar.profiles import ToothProfile
 
 THICK_CUP = 0.85
@@ -29,7 +29,7 @@ class GearGeometry:
     profile: ToothProfile
     rim: float
     ends: tuple[float, float]
-    crowning: FlankCrowning = field(default_factory=FlankCrowning)
+    crowning: FlankCrowning = NO_CROWNING
 
     @property
     def outer_radius(self) -> float:
